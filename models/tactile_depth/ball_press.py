@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tactile_depth.by_value import ByValue
 from tactile_depth.errors import Argument, InputError
 
 LARGEST_NUMBER = 1e6  # millimetres or pixels
@@ -22,8 +23,8 @@ class Circle(NamedTuple):
     radius: float
 
 
-@dataclass(frozen=True)
-class BallPress:
+@dataclass(frozen=True, eq=False)
+class BallPress(ByValue):
     """Picture of a ball that is pressed into the gel.
 
     Attributes
@@ -49,6 +50,13 @@ class BallPress:
     circle: tuple[float, float, float] | None = None
     name: str = ""
     ball_radius_px: float | None = None
+
+    def __repr__(self) -> str:
+        image = str(self.image)
+        if isinstance(self.image, np.ndarray):
+            image = f"{self.image.dtype} {self.image.shape}"
+        named = f", name={self.name!r}" if self.name else ""
+        return f"BallPress({image}, {self.diameter_mm:g} mm, circle={self.circle}{named})"
 
     def __post_init__(self) -> None:
         for length in (Argument("diameter_mm", self.diameter_mm), Argument("ball_radius_px", self.ball_radius_px)):

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tactile_depth.by_value import ByValue
 from tactile_depth.cores import fastest
 from tactile_depth.errors import Argument, InputError
 from tactile_depth.poisson.divergence import divergence
@@ -49,8 +50,8 @@ class Score:
     rest_mm: float
 
 
-@dataclass(frozen=True)
-class Evaluation:
+@dataclass(frozen=True, eq=False)
+class Evaluation(ByValue):
     """Scores of a calibration press by press; `str` returns them as a table with the `summary`.
 
     Attributes
@@ -72,6 +73,10 @@ class Evaluation:
     central: tuple[bool, ...]
     scores: Mapping[str, tuple[Score, ...]]
     notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        left_out = f", {len(self.notes)} left out" if self.notes else ""
+        return f"Evaluation({len(self.presses)} presses{left_out}: {', '.join(self.scores)})"
 
     def values(self, model: str, name: str) -> np.ndarray:
         """Return one number of the scores of each press, float64 (presses,)."""

@@ -15,6 +15,7 @@ from typing import BinaryIO
 import numpy as np
 from PIL import Image
 
+from tactile_depth.by_value import ByValue
 from tactile_depth.camera_configuration import CameraChoice, CameraConfiguration
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import Argument, InputError
@@ -35,8 +36,8 @@ PICTURES = "a picture (PNG or JPEG), a folder of pictures, a .npy of uint8 (fram
 ACCEPTED = f"a scene ({', '.join(SCENES)}), {PICTURES}"
 
 
-@dataclass(frozen=True)
-class Frames:
+@dataclass(frozen=True, eq=False)
+class Frames(ByValue):
     """Frames on the grid.
 
     Attributes
@@ -69,6 +70,10 @@ class Frames:
     no_contact: np.ndarray | None = None
     camera: CameraConfiguration | None = None
     words: np.ndarray | None = None
+
+    def __repr__(self) -> str:
+        frames, rows, columns, _ = self.pixels.shape
+        return f"Frames({self.name!r}, {frames} x {columns}x{rows})"
 
 
 def read_picture(path: Path) -> np.ndarray:

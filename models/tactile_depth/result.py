@@ -3,20 +3,24 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from tactile_depth.by_value import ByValue
 from tactile_depth.contact.centroid import FRACTION
 from tactile_depth.contact.contact_debounce import TOUCHING
 from tactile_depth.contact.contact_events import Record
 from tactile_depth.sensor import HeightError
 
 
-@dataclass(frozen=True)
-class Contact:
+@dataclass(frozen=True, eq=False)
+class Contact(ByValue):
     """Contact of one frame, as the hardware records it.
+
+    Two contacts are equal if all their values are.
 
     Attributes
     ----------
@@ -34,6 +38,10 @@ class Contact:
     untouched_mm: float
     depth_lsb_mm: float
     pixel_pitch_mm: float
+
+    def __repr__(self) -> str:
+        peak = f"peak {self.peak_mm:.3g} mm at {self.peak_px}, area {self.area_mm2:.3g} mm^2"
+        return f"Contact({peak if self.touching else 'none'})"
 
     @property
     def touching(self) -> bool:
@@ -103,13 +111,13 @@ class Contact:
         return all((length - side) // 2 < least <= most < (length + side) // 2 - 1 for length, least, most in bounds)
 
 
-@dataclass(frozen=True)
-class Result:
+@dataclass(frozen=True, eq=False)
+class Result(ByValue):
     """Depth of one frame or of several frames.
 
     For several frames every array has a first axis of frames, and `result[i]` is the result of one frame. Rows are in
     the order of the picture. Depth is positive where the gel is pressed in. The depth map is shifted by half a pixel up
-    and to the left, because slopes are differenced backwards.
+    and to the left, because slopes are differenced backwards. Two results are equal if all their values are.
 
     Attributes
     ----------
@@ -149,6 +157,11 @@ class Result:
     pixel_pitch_mm: float
     fitted_slope: float
     height_error: HeightError | None
+
+    def __repr__(self) -> str:
+        *frames, rows, columns = self.codes.shape
+        number = f"{frames[0]} x " if frames else ""
+        return f"Result({number}{columns}x{rows}, depth up to {self.depth_mm.max(initial=-math.inf):.3g} mm)"
 
     def __len__(self) -> int:
         """Return the number of frames."""

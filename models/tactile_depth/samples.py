@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tactile_depth.built_in import synthetic
+from tactile_depth.by_value import ByValue
 from tactile_depth.errors import Argument, one_of
 from tactile_depth.scenes import BENCH, Press, render, scene_pixel_pitch_mm
 from tactile_depth.sensor import Camera, Sensor
@@ -15,8 +16,8 @@ from tactile_depth.sensor import Camera, Sensor
 CAMERA = Camera(240, 320)
 
 
-@dataclass(frozen=True)
-class Sample:
+@dataclass(frozen=True, eq=False)
+class Sample(ByValue):
     """Pictures of a contact by the synthetic sensor, and the height map that was drawn.
 
     Attributes
@@ -32,6 +33,10 @@ class Sample:
     image: np.ndarray
     reference: np.ndarray
     height_mm: np.ndarray
+
+    def __repr__(self) -> str:
+        rows, columns = self.height_mm.shape
+        return f"Sample({columns}x{rows}, height up to {self.height_mm.max():.3g} mm)"
 
 
 def sample(name: str = "ball", seed: int = 1) -> Sample:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from tactile_depth import files
+from tactile_depth.by_value import ByValue
 from tactile_depth.camera_configuration import FORMATS
 from tactile_depth.configuration import (
     COEFFICIENT_LIMITS,
@@ -88,9 +89,11 @@ class HeightError:
         return math.hypot(self.mean - 1, self.spread)
 
 
-@dataclass(frozen=True)
-class Sensor:
+@dataclass(frozen=True, eq=False)
+class Sensor(ByValue):
     """A calibrated sensor, with one or more models from colour to slope.
+
+    Its arrays are read-only. Two sensors are equal if all their values are.
 
     Attributes
     ----------
@@ -139,6 +142,17 @@ class Sensor:
     lighting: np.ndarray | None = None
     cubic: np.ndarray | None = None
     corrections: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("gradient", "coefficients", "reference", "lighting", "cubic", "corrections"):
+            if (array := getattr(self, name)) is not None:
+                view = np.asarray(array).view()
+                view.flags.writeable = False
+                object.__setattr__(self, name, view)
+
+    def __repr__(self) -> str:
+        camera = "" if self.camera is None else f"{self.camera.columns}x{self.camera.rows}, "
+        return f"Sensor({self.name!r}, {camera}{self.model})"
 
     def scaled(self, pixel_scale: float, reference: np.ndarray | None = None) -> Sensor:
         """Return the sensor on a grid with pixels `pixel_scale` camera pixels wide, with the reference on that grid."""
