@@ -81,7 +81,8 @@ def test_the_page_of_the_python_api_lists_every_argument_and_attribute() -> None
     for kind in (td.Result, td.Contact):
         names += [field.name for field in fields(kind)]
         names += [name for name in vars(kind) if not name.startswith("_")]
-    internal = ("threshold", "fitted_slope")  # in codes and by model: threshold_mm and outside are for users
+    # In codes, by model, and what makes the records: threshold_mm, outside and records are for users.
+    internal = ("threshold", "fitted_slope", "recorder", "streamed")
     assert [name for name in names if not re.search(rf"\b{name}\b", page) and name not in internal] == []
 
 

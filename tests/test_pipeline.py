@@ -144,10 +144,31 @@ def test_a_batch_is_its_frames_one_by_one(ball: Any, small: Any) -> None:
         assert batch[index].contact.touching == (index != 1)
     with pytest.raises(AttributeError, match=r"use result\[i\].contact"):
         _ = batch.contact
-    with pytest.raises(TypeError, match="has no frames"):
-        _ = small(ball.image)[0]
-    with pytest.raises(TypeError, match="accepted is the number of a frame"):
-        _ = batch[0:2]
+    assert list(batch) == [batch[0], batch[1], batch[2]]
+    assert list(batch[1:]) == list(batch[-2:]) == [batch[1], batch[2]]
+    assert len(batch[3:]) == 0
+    single = small(ball.image)
+    assert single
+    for wrong in (lambda: single[0], lambda: len(single), lambda: list(single)):
+        with pytest.raises(TypeError, match="has no frames"):
+            wrong()
+    with pytest.raises(TypeError, match="accepted is the number of a frame, or a slice"):
+        _ = batch["codes"]
+
+
+def test_records_are_computed_when_they_are_read(monkeypatch: pytest.MonkeyPatch, small: Any, ball: Any) -> None:
+    calls: list[Any] = []
+    monkeypatch.setattr("tactile_depth.result.Recorder.record", lambda _, codes: calls.append(codes))
+    result = small(np.stack([ball.image] * 2))
+    assert result.height_mm.max() > 1
+    assert not calls
+    assert len(result.records) == len(calls) == 2
+
+
+def test_a_slice_of_a_stream_keeps_its_records(small: Any, ball: Any) -> None:
+    result = small(np.stack([ball.image, ball.reference]), small.new_stream())
+    assert result[1:].records == result.records[1:]
+    assert [frame.contact.record for frame in result] == list(result.records)
 
 
 def test_paths_give_what_arrays_give(tmp_path: Path, ball: Any, small: Any) -> None:
@@ -225,7 +246,7 @@ def test_a_light_touch_has_a_record(ball: Any, pipeline: Any, depth: float) -> N
     row, column = 40, 70
     height = depth * np.exp(-((y - row) ** 2 + (x - column) ** 2) / (2 * 6**2))
     codes = np.rint(height / pipeline.depth_lsb_mm).astype(np.int32)
-    record = pipeline._record(codes[::-1] if pipeline.config.solver == "tridiagonal" else codes, None)
+    record = pipeline._recorder.record(codes)
     assert (record.peak, record.peak_position) == (codes.max(), (row, column))
     level = max(0.1, depth / 2) / pipeline.depth_lsb_mm
     assert record.area_threshold == pytest.approx(level, abs=1)

@@ -15,7 +15,7 @@ import numpy as np
 from tactile_depth import reference as exact
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import LIGHT_GAIN, Configuration
-from tactile_depth.contact.contact_events import ContactEvents, Record, Settings
+from tactile_depth.contact.contact_events import ContactEvents, Settings
 from tactile_depth.cores import fastest
 from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tactile_depth.depth.zero_offset import exact_zero, no_zero
@@ -28,7 +28,7 @@ from tactile_depth.gradient.reference_capture import largest_log2_frames
 from tactile_depth.grid_sampler import GridSampler, grid_sampler, picture_grid
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presets import SENSOR
-from tactile_depth.result import Result
+from tactile_depth.result import Recorder, Result
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import (
     config_value,
@@ -187,7 +187,8 @@ class Pipeline:
             raise InputError(Argument("area_threshold_mm", area_threshold_mm), accepted="a depth, 0 or more")
         self.threshold_mm, self.area_threshold_mm = threshold_mm, area_threshold_mm
         threshold, area = (round(depth / self.depth_lsb_mm) for depth in (threshold_mm, area_threshold_mm))
-        self._settings = Settings(threshold, threshold, area, minimum_area=1, debounce=1)
+        settings = Settings(threshold, threshold, area, minimum_area=1, debounce=1)
+        self._recorder = Recorder(settings, data_width, self.config.solver == "tridiagonal")
         self._gains = unit_gains(self.config)
         self._zero = no_zero(self.config)
         self._exact_zero = np.zeros(self.grid)
@@ -229,8 +230,10 @@ class Pipeline:
             slopes, depth = self._exact(frames, gains)
             depth = depth - self._exact_zero
         codes = np.rint(depth).astype(np.int32)
-        records = tuple(self._record(frame, stream) for frame in codes)
         codes, depth_mm = self._upright(codes), self._upright(depth) * self.depth_lsb_mm
+        streamed = None
+        if stream is not None:
+            streamed = tuple(self._recorder.next(frame, stream.events) for frame in codes)
         reference = self._tables.gains
         dark = np.zeros(codes.shape, bool) if reference is None else dark_pixels(frames, reference, self.config)
         result = Result(
@@ -239,13 +242,13 @@ class Pipeline:
             slopes,
             dark,
             None if gains is None else gains * LIGHT_GAIN.lsb,
-            records,
             dict(monitor.saturations),
-            self._settings.on_threshold,
+            self._recorder,
             self.depth_lsb_mm,
             self.pixel_pitch_mm,
             self.sensor.fitted_slope.get(self.config.gradient_model, math.inf),
             self.sensor.height_errors.get(self.config.gradient_model),
+            streamed,
         )
         return result[0] if single else result
 
@@ -269,7 +272,7 @@ class Pipeline:
     def new_stream(self) -> Stream:
         """Return the state of a stream before its first picture: light gains of 1, no contact."""
         light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
-        return Stream(light, ContactEvents(*self.grid, self.config.data_width, self.config.solver == "tridiagonal"))
+        return Stream(light, self._recorder.events(self.grid))
 
     @property
     def zero_codes(self) -> np.ndarray:
@@ -338,7 +341,7 @@ class Pipeline:
             description = {
                 "parameters": {"Config": config_value(fields)},
                 "fields": fields,
-                "registers": {name: getattr(self._settings, field) for name, field in THRESHOLDS.items()},
+                "registers": {name: getattr(self._recorder.settings, field) for name, field in THRESHOLDS.items()},
                 "grid": list(self.grid),
                 "depth_lsb_mm": self.depth_lsb_mm,
                 "pixel_pitch_mm": self.pixel_pitch_mm,
@@ -349,14 +352,6 @@ class Pipeline:
             }
             (unfinished / PARAMETERS).write_text(json.dumps(description, indent=1) + "\n")
         return folder / PARAMETERS
-
-    def _record(self, codes: np.ndarray, stream: Stream | None) -> Record:
-        """Return the record of depth codes as they leave; a picture that is not of a stream stands still."""
-        if stream is not None:
-            return stream.events.whole_frame(codes, self._settings, time=0)
-        events = self.new_stream().events
-        events.whole_frame(codes, self._settings, time=0)
-        return events.whole_frame(codes, self._settings, time=0)
 
     # Arithmetic. Each function returns slopes, and depth in codes before the zero offset, rows in stream order.
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -12,7 +13,7 @@ import numpy as np
 from tactile_depth.by_value import ByValue
 from tactile_depth.contact.centroid import FRACTION
 from tactile_depth.contact.contact_debounce import TOUCHING
-from tactile_depth.contact.contact_events import Record
+from tactile_depth.contact.contact_events import ContactEvents, Record, Settings
 from tactile_depth.sensor import HeightError
 
 
@@ -111,13 +112,48 @@ class Contact(ByValue):
         return all((length - side) // 2 < least <= most < (length + side) // 2 - 1 for length, least, most in bounds)
 
 
+@dataclass(frozen=True)
+class Recorder:
+    """Makes the record of a picture by itself, which is that of a picture that stands still in a stream.
+
+    Attributes
+    ----------
+    settings : Settings
+    width : int
+        Bits of a depth code.
+    bottom_first : bool
+        The bottom row leaves the hardware first.
+    """
+
+    settings: Settings
+    width: int
+    bottom_first: bool
+
+    def events(self, grid: tuple[int, int]) -> ContactEvents:
+        """Return the state before the first picture of a stream."""
+        return ContactEvents(*grid, self.width, self.bottom_first)
+
+    def next(self, codes: np.ndarray, events: ContactEvents) -> Record:
+        """Return the record of the next picture of a stream, from codes in the order of the picture."""
+        return events.whole_frame(codes[::-1] if self.bottom_first else codes, self.settings, time=0)
+
+    def record(self, codes: np.ndarray) -> Record:
+        """Return the record of codes (rows, columns) in the order of the picture."""
+        rows, columns = codes.shape
+        events = self.events((rows, columns))
+        self.next(codes, events)
+        return self.next(codes, events)
+
+
 @dataclass(frozen=True, eq=False)
 class Result(ByValue):
     """Depth of one frame or of several frames.
 
-    For several frames every array has a first axis of frames, and `result[i]` is the result of one frame. Rows are in
-    the order of the picture. Depth is positive where the gel is pressed in. The depth map is shifted by half a pixel up
-    and to the left, because slopes are differenced backwards. Two results are equal if all their values are.
+    For several frames every array has a first axis of frames; `result[i]` is the result of one frame, `result[i:j]`
+    that of some, and a loop gives one after another. `np.asarray` takes the arrays, such as `height_mm`, not the
+    result. Rows are in the order of the picture. Depth is positive where the gel is pressed in. The depth map is
+    shifted by half a pixel up and to the left, because slopes are differenced backwards. Two results are equal if all
+    their values are.
 
     Attributes
     ----------
@@ -131,18 +167,18 @@ class Result(ByValue):
         Pixels without light, whose colour was taken from the pixel before them.
     light_gains : float64 array (3,) or None
         Light of the reference over that of the picture, of red, green and blue; None without light gains.
-    records : tuple of Record
-        One record per frame, from which `contact` is made.
     saturations : dict of str to int
         Number of values clipped in all frames, by node of the pipeline; empty without any.
-    threshold : int
-        Depth code above which a pixel touches.
+    recorder : Recorder
+        Makes the records.
     depth_lsb_mm, pixel_pitch_mm : float
     fitted_slope : float
         Largest slope in the presses of the calibration.
     height_error : HeightError or None
         Error of the calibration, measured on presses that were not fitted and lay wholly in the picture's middle
         square; None if not measured. It holds for contacts that are central (`Contact.is_central`).
+    streamed : tuple of Record, or None
+        Records of the frames of a stream, which depend on the frames before.
     """
 
     codes: np.ndarray
@@ -150,32 +186,58 @@ class Result(ByValue):
     slopes: np.ndarray
     dark: np.ndarray
     light_gains: np.ndarray | None
-    records: tuple[Record, ...]
     saturations: dict[str, int]
-    threshold: int
+    recorder: Recorder
     depth_lsb_mm: float
     pixel_pitch_mm: float
     fitted_slope: float
     height_error: HeightError | None
+    streamed: tuple[Record, ...] | None = None
 
     def __repr__(self) -> str:
         *frames, rows, columns = self.codes.shape
         number = f"{frames[0]} x " if frames else ""
         return f"Result({number}{columns}x{rows}, depth up to {self.depth_mm.max(initial=-math.inf):.3g} mm)"
 
-    def __len__(self) -> int:
-        """Return the number of frames."""
-        return len(self.records)
+    def __bool__(self) -> bool:
+        return True
 
-    def __getitem__(self, index: int) -> Result:
-        """Return the result of one frame of several; `saturations` stays that of all."""
-        if not isinstance(index, int | np.integer):
-            raise TypeError(f"result[{index!r}]: accepted is the number of a frame")
-        if self.codes.ndim == 2:
-            raise TypeError("the result of a single picture has no frames to choose from")
+    def __len__(self) -> int:
+        """Return the number of frames; raise TypeError for the result of a single picture, as numpy does."""
+        self._require_frames()
+        return len(self.codes)
+
+    def __iter__(self) -> Iterator[Result]:
+        """Give the result of each frame."""
+        return (self[index] for index in range(len(self)))
+
+    def __getitem__(self, index: int | slice) -> Result:
+        """Return the result of one frame of several, or of a slice of them; `saturations` stays that of all."""
+        if not isinstance(index, int | np.integer | slice):
+            raise TypeError(f"result[{index!r}]: accepted is the number of a frame, or a slice")
+        self._require_frames()
         arrays = {name: getattr(self, name)[index] for name in ("codes", "depth_mm", "slopes", "dark")}
         gains = None if self.light_gains is None else self.light_gains[index]
-        return replace(self, records=(self.records[index],), light_gains=gains, **arrays)
+        streamed = self.streamed
+        if streamed is not None:
+            streamed = streamed[index] if isinstance(index, slice) else (streamed[index],)
+        return replace(self, streamed=streamed, light_gains=gains, **arrays)
+
+    def _require_frames(self) -> None:
+        if self.codes.ndim == 2:
+            raise TypeError("the result of a single picture has no frames: use its attributes")
+
+    @cached_property
+    def records(self) -> tuple[Record, ...]:
+        """One record per frame, from which `contact` is made; computed on first use, except for a stream."""
+        if self.streamed is not None:
+            return self.streamed
+        return tuple(map(self.recorder.record, self.codes if self.codes.ndim == 3 else self.codes[None]))
+
+    @property
+    def threshold(self) -> int:
+        """Depth code above which a pixel touches."""
+        return self.recorder.settings.on_threshold
 
     @property
     def threshold_mm(self) -> float:

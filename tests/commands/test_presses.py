@@ -33,11 +33,9 @@ def test_a_drawn_depth_measures_as_it_was_drawn() -> None:
     pitch = pipeline.pixel_pitch_mm
     codes = np.rint(depth * pitch / pipeline.depth_lsb_mm).astype(np.int32)
     none = np.zeros((*grid, 2))
-    record = pipeline._record(codes[::-1] if pipeline.config.solver == "tridiagonal" else codes, None)
     sizes = pipeline.depth_lsb_mm, pitch
     dark = np.zeros(grid, bool)
-    threshold = pipeline._settings.on_threshold
-    result = td.Result(codes, depth * pitch, none, dark, None, (record,), {}, threshold, *sizes, 1.0, None)
+    result = td.Result(codes, depth * pitch, none, dark, None, {}, pipeline._recorder, *sizes, 1.0, None)
     found = measured(result, press)
     assert found.height_rms < 1e-12
     assert found.cap == pytest.approx(1, abs=0.04)  # the circle lies between depths
