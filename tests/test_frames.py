@@ -183,7 +183,7 @@ def test_an_unknown_source_is_answered_with_what_is_accepted(source: Any) -> Non
     "array",
     [
         noise(2, 16, 16),
-        noise(16, 16, 3),
+        noise(16, 16),
         noise(2, 16, 16, 4),
         noise(0, 16, 16, 3),
         noise(2, 16, 16, 3).astype(np.float32),

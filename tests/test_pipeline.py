@@ -186,6 +186,23 @@ def test_paths_give_what_arrays_give(tmp_path: Path, ball: Any, small: Any) -> N
     np.testing.assert_array_equal(by_path(ball.image).codes, expected[0])
 
 
+def test_sequences_images_and_arrays_of_one_picture_are_pictures(tmp_path: Path, ball: Any, small: Any) -> None:
+    one, both = small(ball.image), small(np.stack([ball.image, ball.reference]))
+    image = Image.fromarray(ball.image)
+    image.save(tmp_path / "a.png")
+    np.save(tmp_path / "one.npy", ball.image)
+    for single in (image, tmp_path / "one.npy"):
+        assert small(single) == one
+    for several in ([ball.image, ball.reference], (image, ball.reference), [tmp_path / "a.png", ball.reference]):
+        assert small(several) == both
+    assert len(small([ball.image])) == 1
+    assert list(small.stream([image])) == list(small.stream([ball.image]))
+    by_image = td.Pipeline(ball.sensor, Image.fromarray(ball.reference), grid=SMALL)
+    np.testing.assert_array_equal(by_image(image).codes, one.codes)
+    by_image.capture_zero([Image.fromarray(ball.reference)] * 2)
+    assert td.BallPress(image, 4) == td.BallPress(ball.image, 4)  # type: ignore[arg-type]
+
+
 def test_larger_pictures_of_the_camera_give_the_same_depth(ball: Any, small: Any) -> None:
     twice = ball.image.repeat(2, axis=0).repeat(2, axis=1)
     np.testing.assert_array_equal(small(twice).codes, small(ball.image).codes)
@@ -446,6 +463,10 @@ def test_a_pipeline_that_cannot_be_is_refused(ball: Any, choices: Any, message: 
         (np.zeros((12, 16, 3), np.uint8), "are smaller than the grid of 32 x 24"),
         ("none.png", "none.png: no such file or folder"),
         (None, "pictures are NoneType: accepted is a uint8 array or a path"),
+        (iter([]), "pictures are list_iterator: accepted is .*: give them to `stream`"),
+        ([], "pictures are empty: accepted is one picture or more"),
+        ([np.zeros((240, 320), np.uint8)], r"pictures\[0\] are uint8 \(240, 320\): accepted is uint8"),
+        ([np.zeros((2, 240, 320, 3), np.uint8)], r"pictures\[0\] are several pictures: accepted is one picture"),
     ],
 )
 def test_pictures_of_no_use_are_refused(small: Any, picture: np.ndarray, message: Any) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from tactile_depth.by_value import ByValue
 from tactile_depth.errors import Argument, InputError
+from tactile_depth.npy import is_array
 
 LARGEST_NUMBER = 1e6  # millimetres or pixels
 
@@ -30,6 +31,7 @@ class BallPress(ByValue):
     Attributes
     ----------
     image : uint8 array (rows, columns, 3), RGB, or the path of a picture
+        A PIL image is kept as an array.
     diameter_mm : float
         Diameter of the ball.
     circle : (x, y, radius) in pixels of the picture, optional
@@ -59,6 +61,8 @@ class BallPress(ByValue):
         return f"BallPress({image}, {self.diameter_mm:g} mm, circle={self.circle}{named})"
 
     def __post_init__(self) -> None:
+        if is_array(self.image):
+            object.__setattr__(self, "image", np.asarray(self.image))
         for length in (Argument("diameter_mm", self.diameter_mm), Argument("ball_radius_px", self.ball_radius_px)):
             if length.value is not None and not 0 < length.value < LARGEST_NUMBER:
                 raise InputError(Argument(length.name), f" is {length.value:g}", accepted="a number above 0")

@@ -9,6 +9,7 @@ import numpy as np
 
 from tactile_depth.calibration_file import BUILT_IN, FOLDER, read_calibration
 from tactile_depth.errors import Argument, InputError
+from tactile_depth.npy import HasArray, HasInterface, is_array
 from tactile_depth.scenes import GAIN, LIGHTS, REST, SYNTHETIC_PIXEL_PITCH_MM
 from tactile_depth.sensor import COEFFICIENTS, CORRECTIONS, CUBIC, LIGHTING_AGREES, Sensor
 
@@ -46,12 +47,12 @@ def load(name_or_path: str | Path, camera_size: tuple[int, int] | None = None) -
     return read_calibration(str(name_or_path), Path(name_or_path), camera_size)
 
 
-def identify(reference: np.ndarray) -> Sensor:
+def identify(reference: np.ndarray | HasArray | HasInterface) -> Sensor:
     """Return the built-in calibration of the sensor that took a picture without contact, found by its lighting.
 
     Parameters
     ----------
-    reference : uint8 array (rows, columns, 3), RGB
+    reference : uint8 array (rows, columns, 3), RGB, or a PIL image
         Full picture of the sensor's camera.
 
     Raises
@@ -59,8 +60,9 @@ def identify(reference: np.ndarray) -> Sensor:
     InputError
         No built-in calibration has the aspect ratio and the lighting of the picture.
     """
-    if not isinstance(reference, np.ndarray):
+    if not is_array(reference):
         raise InputError("the ", Argument("reference"), f" is a {type(reference).__name__}", accepted=PICTURE)
+    reference = np.asarray(reference)
     if reference.dtype != np.uint8 or reference.ndim != 3 or reference.shape[-1] != 3 or min(reference.shape) < 3:
         raise InputError("the ", Argument("reference"), f" is {reference.dtype} {reference.shape}", accepted=PICTURE)
     rows, columns = reference.shape[:2]

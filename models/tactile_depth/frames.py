@@ -32,7 +32,7 @@ PNG_COLOURS = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with transparency", 6
 REST_SCENE = "flat"  # the scene without contact
 GREY = 128  # level of a picture that stands for one without contact
 SCENE_PICTURE = (480, 640)  # rows and columns of a scene in front of a camera
-PICTURES = "a picture (PNG or JPEG), a folder of pictures, a .npy of uint8 (frames, rows, cols, 3)"
+PICTURES = "a picture (PNG or JPEG), a folder of pictures, a .npy of uint8 (rows, cols, 3) or (frames, rows, cols, 3)"
 ACCEPTED = f"a scene ({', '.join(SCENES)}), {PICTURES}"
 
 
@@ -173,7 +173,7 @@ def load_frames(
     Parameters
     ----------
     source : str
-        A scene's name, a `.npy` of uint8 (frames, rows, cols, 3), a PNG, or a folder of PNGs.
+        A scene's name, a `.npy` of uint8 (rows, cols, 3) or (frames, rows, cols, 3), a PNG, or a folder of PNGs.
     size : (rows, cols) of the grid
     reference : str, optional
         Picture of the sensor without contact, of the same size as the frames; `flat` for a scene.
@@ -245,6 +245,8 @@ def read_pictures(
         return tuple(p.name for p in files), map(read_picture, files)
     if is_file(path) and path.suffix.lower() == ".npy":
         array = _read_array(path)
+        if array.ndim == 3:
+            return (path.name,), [array]
         return tuple(str(i) for i in range(len(array))), array
     if is_file(path):
         return (path.name,), [read_picture(path)]
@@ -334,9 +336,11 @@ def _read_array(path: Path) -> np.ndarray:
     try:
         with path.open("rb") as file:
             shape, _, dtype = read_header(file)
-            if dtype != np.uint8 or len(shape) != 4 or shape[3] != 3 or min(shape) < 1:
-                raise InputError(f"{path}: {dtype} {shape}: accepted is uint8 (frames, rows, cols, 3)")
-            _check_camera(str(path), shape[1], shape[2])
+            if dtype != np.uint8 or len(shape) not in (3, 4) or shape[-1] != 3 or min(shape) < 1:
+                raise InputError(
+                    f"{path}: {dtype} {shape}: accepted is uint8 (rows, cols, 3) or (frames, rows, cols, 3)"
+                )
+            _check_camera(str(path), shape[-3], shape[-2])
             present = path.stat().st_size - file.tell()
             if math.prod(shape) > present:  # checked before memory is allocated
                 raise ValueError(f"{present:,} bytes of data for {shape}")

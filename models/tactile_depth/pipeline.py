@@ -21,11 +21,12 @@ from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tactile_depth.depth.zero_offset import exact_zero, no_zero
 from tactile_depth.errors import Argument, InputError, Part, is_number, one_of
 from tactile_depth.files import new_files
-from tactile_depth.frames import camera_scale, read_pictures, read_stack
+from tactile_depth.frames import camera_scale
 from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, require_light, unit_gains
 from tactile_depth.gradient.light_gains import Light, LightFilter
 from tactile_depth.gradient.reference_capture import largest_log2_frames
 from tactile_depth.grid_sampler import GridSampler, grid_sampler, picture_grid
+from tactile_depth.pictures import Picture, Pictures, pictures_of
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presets import SENSOR
 from tactile_depth.result import Recorder, Result
@@ -48,8 +49,6 @@ PARAMETERS = "parameters.json"
 THRESHOLDS = {"THRESHOLD": "on_threshold", "AREA_THRESHOLD": "area_threshold"}  # fields of Settings, by register
 PICTURES = Argument("pictures")
 PIXELS_AT_ONCE = 1 << 16  # pixels of a batch of frames, whose arrays stay in a cache
-
-Pictures = np.ndarray | str | Path
 
 
 @dataclass
@@ -82,7 +81,7 @@ class Pipeline:
     ----------
     sensor : Sensor
         See `load`, `fit` and `sample`.
-    reference : uint8 array (rows, columns, 3) or (2**k, rows, columns, 3), or a path, optional
+    reference : a picture or 2**k pictures, as for a call, optional
         Pictures of the sensor without contact. A real sensor needs them.
     grid : (rows, columns), optional
         Size of the depth map, columns a power of two; by default `default_grid`, which covers the full picture.
@@ -204,9 +203,10 @@ class Pipeline:
 
         Parameters
         ----------
-        pictures : uint8 array (rows, columns, 3) or (frames, rows, columns, 3), RGB, or a path
-            Full pictures of the sensor's camera, or scaled pictures of the same aspect ratio. A path names a picture
-            (PNG, JPEG), a `.npy` of frames or a folder of pictures.
+        pictures : uint8 array (rows, columns, 3) or (frames, rows, columns, 3), RGB, or a path, or a sequence of them
+            Full pictures of the sensor's camera, or scaled pictures of the same aspect ratio. PIL images and other
+            objects that numpy takes as arrays are arrays. A path names a picture (PNG, JPEG), a `.npy` of one or of
+            several, or a folder of pictures.
         stream : Stream, optional
             The stream, `new_stream`, to which the pictures belong, in their order; by default each picture stands for
             itself.
@@ -220,7 +220,7 @@ class Pipeline:
         ------
         InputError
         """
-        frames, single = self._read(pictures, PICTURES)
+        frames, single = self._read(pictures)
         monitor = Monitor()
         gains = light_of(frames, self._tables, self.config, None if stream is None else stream.light, fastest())
         if self.arithmetic == "chip":
@@ -252,14 +252,14 @@ class Pipeline:
         )
         return result[0] if single else result
 
-    def stream(self, pictures: Iterable[np.ndarray]) -> Iterator[Result]:
+    def stream(self, pictures: Iterable[Picture]) -> Iterator[Result]:
         """Give the depth of the pictures of a stream, as the hardware does.
 
         Light gains act on the next picture, and half the peak of a contact bounds the area of the next.
 
         Parameters
         ----------
-        pictures : iterable of uint8 arrays (rows, columns, 3), RGB
+        pictures : iterable of pictures, each as for a call
 
         Raises
         ------
@@ -297,7 +297,7 @@ class Pipeline:
         if not self.config.flat_field:
             problem = ": this pipeline takes colours as sent"
             raise InputError(PICTURES, problem, remedy=("make it with ", Argument("reference", "<picture>")))
-        frames, _ = self._read(pictures, PICTURES)
+        frames, _ = self._read(pictures)
         _power_of_two(len(frames), largest_log2_frames(self.config))
         self._use_reference(frames)
 
@@ -312,7 +312,7 @@ class Pipeline:
         if not self.config.zero_offset:
             problem = ": this pipeline has no zero offset"
             raise InputError(PICTURES, problem, remedy=("make it with ", Argument("zero_offset", True)))
-        frames, _ = self._read(pictures, PICTURES)
+        frames, _ = self._read(pictures)
         _power_of_two(len(frames), LARGEST_LOG2)
         self._use_zero(frames)
 
@@ -398,30 +398,19 @@ class Pipeline:
     # Pictures.
 
     def _read_reference(self, reference: Pictures) -> np.ndarray:
-        images = read_stack(reference) if isinstance(reference, str | Path) else reference
-        frames, _ = self._read(images, Argument("reference"))
-        _power_of_two(len(frames), LARGEST_LOG2, Argument("reference"))
-        self._camera_sensor.check_lighting(images.reshape(-1, *images.shape[-3:])[0])
-        return frames
+        named = Argument("reference")
+        pictures = list(pictures_of(reference, named)[0])
+        _power_of_two(len(pictures), LARGEST_LOG2, named)
+        self._camera_sensor.check_lighting(pictures[0][1])
+        return np.stack([self._on_grid(picture, name) for name, picture in pictures])
 
-    def _read(self, pictures: Pictures, name: Argument) -> tuple[np.ndarray, bool]:
+    def _read(self, pictures: Pictures) -> tuple[np.ndarray, bool]:
         """Return frames on the grid, uint8 (frames, rows, columns, 3), and True if the input was a single picture."""
-        if isinstance(pictures, np.ndarray):
-            is_picture = pictures.ndim in (3, 4) and pictures.shape[-1] == 3 and pictures.size
-            if pictures.dtype != np.uint8 or not is_picture:
-                accepted = "uint8 (rows, columns, 3), RGB, or (frames, rows, columns, 3)"
-                raise InputError(name, f" are {pictures.dtype} {pictures.shape}", accepted=accepted)
-            single = pictures.ndim == 3
-            images = pictures[None] if single else pictures
-            return self._on_grid(images, name), single
-        if not isinstance(pictures, str | Path):
-            raise InputError(name, f" are {type(pictures).__name__}", accepted="a uint8 array or a path")
-        labels, read = read_pictures(pictures)
-        frames = [self._on_grid(image[None], f"{pictures}: {label}") for label, image in zip(labels, read, strict=True)]
-        return np.concatenate(frames), Path(pictures).is_file() and Path(pictures).suffix.lower() != ".npy"
+        read, single = pictures_of(pictures, PICTURES)
+        return np.stack([self._on_grid(picture, name) for name, picture in read]), single
 
-    def _on_grid(self, images: np.ndarray, name: Part) -> np.ndarray:
-        size = (images.shape[1], images.shape[2])
+    def _on_grid(self, picture: np.ndarray, name: Part) -> np.ndarray:
+        size = (picture.shape[0], picture.shape[1])
         if size not in self._samplers:
             self._camera_sensor.zoom(size, name)
             if self._camera_sensor.camera is None and self._samplers:
@@ -429,7 +418,7 @@ class Pipeline:
                 problem = f": {size[1]} x {size[0]} pixels (columns x rows), but the first picture had {first}"
                 raise InputError(name, problem, remedy="give pictures of one size")
             self._samplers[size] = grid_sampler(name, size, self.grid)
-        return np.stack([self._samplers[size].frame(image) for image in images])
+        return self._samplers[size].frame(picture)
 
 
 def is_whole(number: object) -> bool:
