@@ -186,6 +186,42 @@ def test_paths_give_what_arrays_give(tmp_path: Path, ball: Any, small: Any) -> N
     np.testing.assert_array_equal(by_path(ball.image).codes, expected[0])
 
 
+@pytest.mark.parametrize("grid", [(240, 320), (90, 120), (33, 44), (9, 12)])
+@pytest.mark.parametrize("model", ["lut", "quadratic"])
+def test_float_arithmetic_takes_any_grid(ball: Any, grid: Any, model: str) -> None:
+    """Compare height and position with those on a grid of the hardware."""
+    pipeline = td.Pipeline(ball.sensor, ball.reference, grid=grid, model=model, arithmetic="float")
+    result = pipeline(ball.image)
+    assert result.height_mm.shape == pipeline.grid == grid
+    usual = td.Pipeline(ball.sensor, ball.reference, model=model, arithmetic="float")(ball.image)
+    assert result.height_mm.max() == pytest.approx(usual.height_mm.max(), rel=0.02 if min(grid) > 30 else 0.15)
+    for position in ("peak_position_mm", "centroid_mm"):
+        one, other = (getattr(each.contact, position) for each in (result, usual))
+        np.testing.assert_allclose(one, other, atol=result.pixel_pitch_mm + usual.pixel_pitch_mm)
+    assert np.abs(pipeline(ball.reference).depth_mm).max() < 0.01  # the zero offset acts
+    pipeline.capture_reference(ball.reference)
+    pipeline.capture_zero(ball.reference)
+    np.testing.assert_array_equal(pipeline(ball.image).depth_mm, result.depth_mm)
+
+
+def test_a_grid_for_double_precision_alone_has_no_hardware(ball: Any, tmp_path: Path) -> None:
+    pipeline = td.Pipeline(ball.sensor, ball.reference, grid=(240, 320), arithmetic="float")
+    with pytest.raises(td.InputError, match=r"grid=\(240, 320\) is for double precision alone: make the pipeline with"):
+        pipeline.hardware(tmp_path / "hw")
+    assert not (tmp_path / "hw").exists()
+
+
+def test_attributes_of_a_pipeline_are_read_only(small: Any) -> None:
+    names = [name for name, value in vars(td.Pipeline).items() if isinstance(value, property)]
+    assert {"sensor", "config", "grid", "arithmetic", "pixel_pitch_mm", "depth_lsb_mm"} < set(names)
+    assert {"threshold_mm", "area_threshold_mm"} < set(names)
+    assert [name for name in vars(small) if not name.startswith("_")] == []
+    for name in names:
+        with pytest.raises(AttributeError, match=name):
+            setattr(small, name, getattr(small, name))
+    assert repr(small) == "Pipeline('sample', 32x24, cubic, tridiagonal, chip)"
+
+
 def test_sequences_images_and_arrays_of_one_picture_are_pictures(tmp_path: Path, ball: Any, small: Any) -> None:
     one, both = small(ball.image), small(np.stack([ball.image, ball.reference]))
     image = Image.fromarray(ball.image)
@@ -428,6 +464,9 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path, small: Any) ->
         ({"solver": "multigrid"}, "solver=multigrid is unknown"),
         ({"model": "quartic"}, "gradient_model=quartic: sample holds only lut, quadratic, cubic"),
         ({"grid": (24, 33)}, "columns=33 is not a power of two"),
+        ({"grid": (7, 33), "arithmetic": "float"}, "rows=7 is out of range: accepted are 8 to 4096"),
+        ({"grid": (24, 33), "arithmetic": "float", "solver": "spectral"}, "rows=24"),
+        ({"grid": (300, 400), "arithmetic": "float"}, "smaller than the grid"),
         ({"grid": (256, 512)}, "smaller than the grid"),
         ({"grid": (24, 32), "solver": "spectral"}, "rows=24"),
         ({"data_width": 33}, "data_width=33"),

@@ -33,6 +33,7 @@ ULTRA_WORDS, ULTRA_WIDTH = 4096, 72
 
 COLUMNS = {"spectral": (16, 512), "tridiagonal": (16, 1024)}
 ROWS = (8, 1024)
+EXACT_LENGTHS = (8, 4096)  # rows and columns of a grid in double precision
 MOST_LANES = 32
 COLUMNS_PER_LANE = 4  # at least: a lane has the row below so many clocks after it began, the loop of the recursion
 DATA_WIDTHS = (12, 32)
@@ -174,16 +175,14 @@ class Configuration:
                 remedy=("set ", Argument("gradient_model", "cubic"), " or ", Argument("light_gains", False)),
             )
         one_of(solver, COLUMNS)
-        within(columns, *COLUMNS[self.solver])
-        power_of_two(columns)
         if not self.rows:
             object.__setattr__(self, "rows", self.columns)
+        self._check_grid()
         if self.solver == "spectral" and self.rows != self.columns:
             raise InputError(
                 *(solver, " with ", Argument("rows", self.rows), " and ", columns, ": it takes square grids"),
                 remedy=("set both the same, or ", Argument("solver", "tridiagonal")),
             )
-        within(Argument("rows", self.rows), *ROWS)
         self._check_lanes()
         within(data_width, *DATA_WIDTHS)
         within(Argument("coefficient_width", self.coefficient_width), *COEFFICIENT_WIDTHS)
@@ -202,6 +201,16 @@ class Configuration:
                 f"the largest slope of the calibration is near {self.gradient_limit:g}: accepted are "
                 f"{lowest:g} to {highest:g} pixels per pixel: correct its unit"
             )
+        self._check_formats(columns, data_width)
+
+    def _check_grid(self) -> None:
+        columns = Argument("columns", self.columns)
+        within(columns, *COLUMNS[self.solver])
+        power_of_two(columns)
+        within(Argument("rows", self.rows), *ROWS)
+
+    def _check_formats(self, columns: Argument, data_width: Argument) -> None:
+        """Refuse a pipeline whose words are too short."""
         lowest, highest = COEFFICIENT_LIMITS
         if not lowest <= self.coefficient_limit <= highest or math.log2(self.coefficient_limit) % 1:
             raise InputError(
@@ -464,3 +473,20 @@ class Configuration:
             "spectral_divide": (self._bounds.column_inverse * deep, self.column_inverse),
             "column_inverse.output": (self._bounds.depth_modes * deep, self.depth_modes),
         }
+
+
+class ExactConfiguration(Configuration):
+    """Choices for double precision, which takes any grid and has no formats."""
+
+    def _check_grid(self) -> None:
+        for length in (Argument("rows", self.rows), Argument("columns", self.columns)):
+            within(length, *EXACT_LENGTHS)
+
+    def _check_formats(self, columns: Argument, data_width: Argument) -> None:
+        """Accept all: there are none."""
+
+
+def is_grid_of_hardware(rows: int, columns: int, solver: str) -> bool:
+    """Return True for a grid that the hardware can have with a solver."""
+    fewest, most = COLUMNS.get(solver, (1, 0))
+    return fewest <= columns <= most and columns.bit_count() == 1 and ROWS[0] <= rows <= ROWS[1]

@@ -14,7 +14,7 @@ import numpy as np
 
 from tactile_depth import reference as exact
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import LIGHT_GAIN, Configuration
+from tactile_depth.configuration import LIGHT_GAIN, Configuration, ExactConfiguration, is_grid_of_hardware
 from tactile_depth.contact.contact_events import ContactEvents, Settings
 from tactile_depth.cores import fastest
 from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
@@ -22,7 +22,7 @@ from tactile_depth.depth.zero_offset import exact_zero, no_zero
 from tactile_depth.errors import Argument, InputError, Part, is_number, one_of
 from tactile_depth.files import new_files
 from tactile_depth.frames import camera_scale
-from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, require_light, unit_gains
+from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, pixel_gains, require_light, unit_gains
 from tactile_depth.gradient.light_gains import Light, LightFilter
 from tactile_depth.gradient.reference_capture import largest_log2_frames
 from tactile_depth.grid_sampler import GridSampler, grid_sampler, picture_grid
@@ -32,6 +32,7 @@ from tactile_depth.presets import SENSOR
 from tactile_depth.result import Recorder, Result
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import (
+    Tables,
     config_value,
     light_of,
     slope_codes,
@@ -75,7 +76,7 @@ def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]
 
 
 class Pipeline:
-    """Pipeline for one sensor; a call with pictures returns their depth maps.
+    """Pipeline for one sensor; a call with pictures returns their depth maps. Its attributes are read-only.
 
     Parameters
     ----------
@@ -84,7 +85,8 @@ class Pipeline:
     reference : a picture or 2**k pictures, as for a call, optional
         Pictures of the sensor without contact. A real sensor needs them.
     grid : (rows, columns), optional
-        Size of the depth map, columns a power of two; by default `default_grid`, which covers the full picture.
+        Size of the depth map; by default `default_grid`, which covers the full picture. Columns are a power of two,
+        except with `arithmetic="float"`, which takes any grid up to the size of the pictures.
     solver : str
         `tridiagonal` or `spectral`.
     boundary : str
@@ -110,16 +112,6 @@ class Pipeline:
         Depth above which a pixel is in the area of the contact, whose centroid, limits and volume are recorded. Half
         the peak of the frame before counts where that is less, but never less than `threshold_mm`. A picture that is
         not of a stream counts as the frame before itself.
-
-    Attributes
-    ----------
-    sensor : Sensor
-        The sensor on the grid.
-    config : Configuration
-    grid : (int, int)
-        Rows, columns.
-    pixel_pitch_mm, depth_lsb_mm : float
-        Width of a grid pixel; depth of code 1.
 
     Raises
     ------
@@ -162,29 +154,30 @@ class Pipeline:
         one_of(Argument("arithmetic", arithmetic), ARITHMETICS)
         one_of(Argument("boundary", boundary), BOUNDARIES)
         sensor.require_reference(reference is not None)
-        rows, columns = self.grid = default_grid(sensor, solver) if grid is None else grid
+        rows, columns = self._grid = default_grid(sensor, solver) if grid is None else grid
+        self._arithmetic, self._is_of_hardware = arithmetic, is_grid_of_hardware(rows, columns, solver)
+        kind = Configuration if self._is_of_hardware or arithmetic == "chip" else ExactConfiguration
         shape: dict[str, Any] = {"columns": columns, "rows": rows, "solver": solver, "neumann": boundary == "neumann"}
         self._camera_sensor, self._samplers = sensor, dict[tuple[int, int], GridSampler]()
-        self.pixel_pitch_mm = sensor.pixel_pitch_mm * camera_scale(sensor, Configuration(**shape))
+        pitch_mm = sensor.pixel_pitch_mm * camera_scale(sensor, kind(**shape))
         rest = None if reference is None else self._read_reference(reference)
-        self.sensor = replace(sensor, pixel_pitch_mm=self.pixel_pitch_mm, reference=rest)
-        self.config = self.sensor.configuration(
+        self._sensor = replace(sensor, pixel_pitch_mm=pitch_mm, reference=rest)
+        self._config = self.sensor.configuration(
             model,
+            kind=kind,
             **shape,
             **dict(widths),
             depth_range_px=None if depth_range_mm is None else self.sensor.depth_range_px(depth_range_mm),
             zero_offset=zero_offset,
             light_gains=light_gains,
         )
-        self.arithmetic = arithmetic
-        self.depth_lsb_mm = self.config.depth_lsb_px * self.pixel_pitch_mm
         if not is_number(threshold_mm) or not 0 < threshold_mm / self.depth_lsb_mm < 2 ** (data_width - 1):
             limit = f"{self.config.depth_limit_px * self.pixel_pitch_mm:.3g} mm"
             accepted = f"a depth above 0 and within the depth range of {limit}"
             raise InputError(Argument("threshold_mm", threshold_mm), accepted=accepted)
         if not is_number(area_threshold_mm) or not 0 <= area_threshold_mm / self.depth_lsb_mm < 2**31:
             raise InputError(Argument("area_threshold_mm", area_threshold_mm), accepted="a depth, 0 or more")
-        self.threshold_mm, self.area_threshold_mm = threshold_mm, area_threshold_mm
+        self._threshold_mm, self._area_threshold_mm = threshold_mm, area_threshold_mm
         threshold, area = (round(depth / self.depth_lsb_mm) for depth in (threshold_mm, area_threshold_mm))
         settings = Settings(threshold, threshold, area, minimum_area=1, debounce=1)
         self._recorder = Recorder(settings, data_width, self.config.solver == "tridiagonal")
@@ -274,6 +267,51 @@ class Pipeline:
         light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
         return Stream(light, self._recorder.events(self.grid))
 
+    def __repr__(self) -> str:
+        rows, columns = self.grid
+        choices = f"{self.config.gradient_model}, {self.config.solver}, {self.arithmetic}"
+        return f"Pipeline({self.sensor.name!r}, {columns}x{rows}, {choices})"
+
+    @property
+    def sensor(self) -> Sensor:
+        """Sensor on the grid, with the reference in use."""
+        return self._sensor
+
+    @property
+    def config(self) -> Configuration:
+        """Configuration, which models and RTL share."""
+        return self._config
+
+    @property
+    def grid(self) -> tuple[int, int]:
+        """Rows and columns of the depth map."""
+        return self._grid
+
+    @property
+    def arithmetic(self) -> str:
+        """`chip` or `float`."""
+        return self._arithmetic
+
+    @property
+    def pixel_pitch_mm(self) -> float:
+        """Width of a grid pixel, in mm."""
+        return self.sensor.pixel_pitch_mm
+
+    @property
+    def depth_lsb_mm(self) -> float:
+        """Depth of code 1, in mm."""
+        return self.config.depth_lsb_px * self.pixel_pitch_mm
+
+    @property
+    def threshold_mm(self) -> float:
+        """Depth above which a pixel touches."""
+        return self._threshold_mm
+
+    @property
+    def area_threshold_mm(self) -> float:
+        """Depth above which a pixel is in the area of the contact."""
+        return self._area_threshold_mm
+
     @property
     def zero_codes(self) -> np.ndarray:
         """Zero offset at its nodes, depth codes in the order of the stream, int64 (node rows, node columns)."""
@@ -332,8 +370,12 @@ class Pipeline:
         Raises
         ------
         InputError
-            The folder cannot be written.
+            The folder cannot be written, or the hardware cannot have the grid.
         """
+        if not self._is_of_hardware:
+            problem = " is for double precision alone"
+            remedy = ("make the pipeline with ", Argument("arithmetic", "chip"), " and a grid that it takes")
+            raise InputError(Argument("grid", self.grid), problem, remedy=remedy)
         folder = Path(folder)
         with new_files(folder, PARAMETERS) as unfinished:
             write_roms(unfinished, self.sensor, self.config, self._zero, self._gains)
@@ -382,17 +424,22 @@ class Pipeline:
     def _use_reference(self, frames: np.ndarray) -> None:
         gains = captured_gains(frames, self.config)
         require_light(gains, self.config)
-        self._gains, self.sensor = gains, replace(self.sensor, reference=frames)
+        self._gains, self._sensor = gains, replace(self.sensor, reference=frames)
         self._prepare()
 
     def _prepare(self) -> None:
         """Compute the tables that all frames use until the reference changes."""
-        self._tables = slope_tables(self.sensor, self.config, self._gains if self.config.flat_field else None)
+        gains = self._gains if self.config.flat_field else None
+        if self._is_of_hardware:
+            self._tables = slope_tables(self.sensor, self.config, gains)
+        else:
+            self._tables = Tables(None if gains is None else pixel_gains(gains, self.config), np.empty(0, np.int64))
         self._exact_tables = exact.slope_tables(self.sensor, self.config)
 
     def _use_zero(self, frames: np.ndarray) -> None:
         light = light_of(frames, self._tables, self.config, cores=fastest())
-        self._zero = captured_zero(self._chip(frames, Monitor(), light)[1], self.config)
+        if self._is_of_hardware:
+            self._zero = captured_zero(self._chip(frames, Monitor(), light)[1], self.config)
         self._exact_zero = -exact_zero(np.zeros(self.grid), self._exact(frames, light)[1], self.config)
 
     # Pictures.

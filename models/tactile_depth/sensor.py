@@ -230,7 +230,13 @@ class Sensor(ByValue):
             )
             warnings.warn(warning, stacklevel=3)
 
-    def configuration(self, model: str = "", light_gains: bool | None = None, **choices: Any) -> Configuration:
+    def configuration(
+        self,
+        model: str = "",
+        light_gains: bool | None = None,
+        kind: type[Configuration] = Configuration,
+        **choices: Any,
+    ) -> Configuration:
         """Return the configuration that fits this sensor on its grid.
 
         Parameters
@@ -239,6 +245,8 @@ class Sensor(ByValue):
             A gradient model of the sensor; "": its best model if it has a reference, else `lut`.
         light_gains : bool or None
             A gain for each colour follows the light; None: unless the model is `lut`.
+        kind : class
+            `Configuration`, or `ExactConfiguration` for double precision alone.
         choices
             Arguments of `Configuration` that do not follow from the sensor.
 
@@ -251,7 +259,7 @@ class Sensor(ByValue):
         model = model or (self.model if flat_field else GRADIENT_MODELS[0])
         self.require_model(model)
         self.require_reference(flat_field)
-        config = Configuration(
+        config = kind(
             gradient_limit=self.gradient_limit,
             bits_per_channel=self.bits_per_channel,
             flat_field=flat_field,
