@@ -343,6 +343,13 @@ def test_a_file_that_does_not_fit_ends_with_3(tmp_path: Path, inputs: Any, argum
     assert list(tmp_path.iterdir()) == []
 
 
+def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--version"])
+    assert ended.value.code == 0
+    assert capsys.readouterr().out == f"tactile-depth {td.__version__}\n"
+
+
 def test_it_runs_as_a_module() -> None:
     ended = subprocess.run([sys.executable, "-m", "tactile_depth.cli", "--help"], capture_output=True, text=True)
     assert ended.returncode == 0

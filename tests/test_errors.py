@@ -4,10 +4,13 @@
 import argparse
 import ast
 import pickle
+from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
+import tactile_depth as td
 from commands.common.repository import ROOT
 from commands.common.run_request import ACCEPTED, CAMERA
 from commands.common.variables import VARIABLES
@@ -44,6 +47,19 @@ def test_a_message_has_arguments_what_is_accepted_and_a_remedy(accepted: Any, te
 def test_a_message_is_one_line_of_bounded_length() -> None:
     error = InputError("a\nb", "x" * 2 * LONGEST)
     assert (str(error)[:4], len(str(error)) < LONGEST, error.argument, error.value) == ("a?bx", True, None, None)
+
+
+def test_a_warning_names_the_line_that_called_the_package() -> None:
+    grey = np.full((240, 320, 3), 90, np.uint8)
+    calls: tuple[Callable[[], Any], ...] = (
+        lambda: td.Pipeline(td.load("gelsight-mini"), grey),
+        lambda: td.load("gelsight-mini").check_lighting(grey),
+    )
+    for call in calls:
+        with pytest.warns(td.InputWarning, match="does not look like the sensor") as caught:
+            call()
+        (warning,) = caught
+        assert (warning.filename, warning.lineno) == (__file__, call.__code__.co_firstlineno)
 
 
 def test_the_command_names_its_options() -> None:

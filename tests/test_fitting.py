@@ -255,13 +255,18 @@ def test_an_evaluation_on_the_fitted_presses_is_a_little_better_than_that_of_the
 
 
 def test_presses_that_the_picture_cuts_are_left_out_with_a_note(sensor: Any, folder: Path, presses: Any) -> None:
-    evaluation = td.evaluate(sensor, folder)
+    with pytest.warns(td.InputWarning) as caught:
+        evaluation = td.evaluate(sensor, folder)
     cut = [view.press.name for view in presses.views if not view.is_whole]
     assert cut
     assert len(evaluation.presses) == 24 - len(cut)
     assert [note.split(":")[0] for note in evaluation.notes] == cut
     assert evaluation.central == tuple(view.press.is_central(view.grid) for view in presses.views if view.is_whole)
     assert "cuts the contact: left out" in evaluation.notes[0]
+    assert all(note in str(evaluation) for note in evaluation.notes)
+    assert [Path(warning.filename) for warning in caught] == [Path(__file__)]
+    assert str(caught[0].message).startswith(f"{len(cut)} of 24 presses are left out: the edge of the picture cuts ")
+    assert all(name in str(caught[0].message) for name in cut)
 
 
 def test_the_table_of_an_evaluation_holds_every_press(sensor: Any, folder: Path) -> None:

@@ -6,14 +6,13 @@ from __future__ import annotations
 import io
 import math
 import sys
-import warnings
 import zipfile
 from pathlib import Path
 
 import numpy as np
 
 from tactile_depth.configuration import GRADIENT_LIMITS
-from tactile_depth.errors import Argument, InputError, InputWarning, Part
+from tactile_depth.errors import Argument, InputError, InputWarning, Part, warn
 from tactile_depth.npy import is_file, read_header
 from tactile_depth.sensor import (
     BITS_PER_CHANNEL,
@@ -141,7 +140,7 @@ def _old_camera(path: Path, camera_size: tuple[int, int] | None) -> Camera:
         "relative to a reference",
         remedy="calibrate again to have that written down",
     )
-    warnings.warn(warning, stacklevel=4)
+    warn(warning)
     return Camera(rows, columns)
 
 

@@ -2,6 +2,9 @@
 """The only error that a user's input raises, and the only warning; both hold the arguments that they name as data."""
 
 import functools
+import os
+import sys
+import warnings
 from collections.abc import Callable, Iterable
 from numbers import Real
 from typing import Any, NamedTuple
@@ -73,6 +76,15 @@ class InputError(_Message, ValueError):
 
 class InputWarning(_Message, UserWarning):
     """Input is used but may be wrong; the message says how to make it certain."""
+
+
+def warn(warning: InputWarning) -> None:
+    """Warn at the line outside of this package that called it."""
+    inside = os.path.join(os.path.dirname(os.path.abspath(__file__)), "")
+    frame, level = sys._getframe(1), 2
+    while frame.f_back is not None and os.path.abspath(frame.f_code.co_filename).startswith(inside):
+        frame, level = frame.f_back, level + 1
+    warnings.warn(warning, stacklevel=level)
 
 
 def one_of(argument: Argument, accepted: Iterable[str]) -> None:

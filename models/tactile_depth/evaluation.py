@@ -12,7 +12,7 @@ import numpy as np
 
 from tactile_depth.by_value import ByValue
 from tactile_depth.cores import fastest
-from tactile_depth.errors import Argument, InputError
+from tactile_depth.errors import Argument, InputError, InputWarning, warn
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presses import (
     BACKGROUND,
@@ -52,7 +52,7 @@ class Score:
 
 @dataclass(frozen=True, eq=False)
 class Evaluation(ByValue):
-    """Scores of a calibration press by press; `str` returns them as a table with the `summary`.
+    """Scores of a calibration press by press; `str` returns a table of them, the `notes` and the `summary`.
 
     Attributes
     ----------
@@ -134,7 +134,7 @@ class Evaluation(ByValue):
             rows = [scores[index] for scores in self.scores.values()]
             cells = "".join(f"{1000 * row.height_rms_mm:>12.1f}{row.cap_height:>12.3f}" for row in rows)
             lines.append(f"{name[-21:]:<22}{cells}{'' if is_central else '  at the side'}")
-        return "\n".join([*lines, self.summary])
+        return "\n".join([*lines, *self.notes, self.summary])
 
 
 def evaluation_of(
@@ -156,7 +156,7 @@ def evaluate(
     """Measure each gradient model of a calibration on presses of balls.
 
     Depth is computed as by the hardware with zero slope at the edge, on the grid that covers the pictures. A press that
-    the edge of the picture cuts is left out.
+    the edge of the picture cuts is left out, with a warning.
 
     Parameters
     ----------
@@ -187,12 +187,17 @@ def evaluate(
     sensor.check_lighting(pictures.background)
     on_grid = to_grid(pictures, pitch, find_circles)
     measured = [view for view in on_grid.views if view.is_whole]
-    cut = (view.press.name for view in on_grid.views if not view.is_whole)
+    cut = [view.press.name for view in on_grid.views if not view.is_whole]
     notes = tuple(f"{name}: the edge of the picture cuts the contact: left out" for name in cut)
     if not measured:
         first = (*on_grid.notes, *notes)[:1]
         problem = f": none of {len(pictures.presses)} can be used{''.join(f': {note}' for note in first)}"
         raise InputError(Argument("presses"), problem)
+    for note in on_grid.notes:
+        warn(InputWarning(note))
+    if cut:
+        count = f"{len(cut)} of {len(pictures.presses)} presses are left out: the edge of the picture cuts the contact"
+        warn(InputWarning(f"{count}: {', '.join(cut)}", remedy="press nearer to the middle"))
     scores = {model: scores_of(sensor, on_grid, measured, model) for model in sensor.models}
     return evaluation_of(on_grid, measured, scores, notes)
 

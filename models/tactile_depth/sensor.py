@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -22,7 +21,7 @@ from tactile_depth.configuration import (
     SMALLEST_DEPTH_RANGE_PX,
     Configuration,
 )
-from tactile_depth.errors import Argument, InputError, InputWarning, Part, is_number
+from tactile_depth.errors import Argument, InputError, InputWarning, Part, is_number, warn
 
 MODELS = GRADIENT_MODELS
 FORMAT_VERSION = 3
@@ -228,7 +227,7 @@ class Sensor(ByValue):
                 f"{100 * difference:.0f} %)",
                 remedy=("give the ", Argument("calibration"), " of the sensor that took it"),
             )
-            warnings.warn(warning, stacklevel=3)
+            warn(warning)
 
     def configuration(
         self,

@@ -12,6 +12,7 @@ import traceback
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from importlib.metadata import version
 from typing import NoReturn
 
 from tactile_depth import interruption
@@ -48,6 +49,14 @@ def named(argument: Argument) -> str:
     return option.split()[0] if argument.value is ... else option.format(argument.typed)
 
 
+class _Version(argparse.Action):
+    """Print the version, which is looked up for this option alone."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object, **__: object) -> None:
+        print(PROGRAM, version("tactile-depth"))
+        parser.exit()
+
+
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors are one line, as all others of this command are."""
 
@@ -57,6 +66,7 @@ class _Parser(argparse.ArgumentParser):
 
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(prog=PROGRAM, description=DESCRIPTION, allow_abbrev=False)
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command in (depth, live):
         command.add_arguments(
