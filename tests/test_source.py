@@ -4,6 +4,7 @@
 import contextlib
 import os
 import pty
+import re
 import select
 import sys
 import termios
@@ -19,6 +20,31 @@ from tactile_depth.cli import source as sources
 from tactile_depth.cli.failure import Failure
 from tactile_depth.cli.keys import pressed_keys
 from tactile_depth.cli.source import Source
+from tests import press_video
+
+ROOT = Path(__file__).parent.parent
+
+
+def test_the_page_on_opencv_prints_what_it_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("cv2", reason="OpenCV is missing: make live-test")
+    text = (ROOT / "docs" / "opencv.md").read_text()
+    loop, camera = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    printed = re.findall(r"^    (\d+: height .*)", text, re.MULTILINE)
+    (tmp_path / "demo").mkdir()
+    press_video.write_sensor(tmp_path / "demo")
+    press_video.write_video(tmp_path / "demo" / "press.avi", press_video.press_frames(), 60)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(loop, names)
+    assert capsys.readouterr().out.splitlines() == printed[:2]
+    exec(camera.replace("gelsight-mini", "demo/sensor.npz").replace("pictures(0)", 'pictures("demo/press.avi")'), names)
+    heights = capsys.readouterr().out.split()
+    assert len(heights) == 60 - 8
+    with pytest.raises(OSError, match="OpenCV cannot open it"):
+        next(names["pictures"]("none.avi"))
+
 
 # A camera.
 
