@@ -24,7 +24,7 @@ CAMERA = (240, 320)  # picture size of a GelSight Mini
 @pytest.mark.parametrize("used", ["numpy", "fast"])
 @pytest.mark.parametrize(("arithmetic", "pictures"), [("chip", 1), ("float", 1), ("chip", 16)])
 def test_picture_to_depth(
-    benchmark: Any, monkeypatch: pytest.MonkeyPatch, arithmetic: str, pictures: int, used: str
+    benchmark: Any, monkeypatch: pytest.MonkeyPatch, arithmetic: Any, pictures: int, used: str
 ) -> None:
     if used == "numpy":
         monkeypatch.setattr("tactile_depth.pipeline.fastest", lambda: cores.NUMPY)

@@ -156,7 +156,7 @@ def preset_values(preset: Preset, values: Mapping[str, str]) -> dict[str, str]:
     A drawn scene is a picture of the drawn sensor. The spectral solver gets a square grid. Without a picture the
     reference is flat, and the zero offset is that of the reference.
     """
-    chosen = {"SOLVER": preset.solver, "BOUNDARY": preset.boundary}
+    chosen: dict[str, str] = {"SOLVER": preset.solver, "BOUNDARY": preset.boundary}
     rows, columns = map(str, preset.grid)
     if "N" in values:
         rows = columns = str(variables.number(values, "N", 0, -math.inf, math.inf))

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -28,7 +28,7 @@ from tactile_depth.gradient.reference_capture import largest_log2_frames
 from tactile_depth.grid_sampler import GridSampler, grid_sampler, picture_grid
 from tactile_depth.pictures import Picture, Pictures, pictures_of
 from tactile_depth.poisson.divergence import divergence
-from tactile_depth.presets import SENSOR
+from tactile_depth.presets import SENSOR, Boundary, Model, Solver
 from tactile_depth.result import Recorder, Result
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import (
@@ -45,6 +45,7 @@ from tactile_depth.tactile_depth import (
 
 SYNTHETIC_GRID = (128, 128)
 ARITHMETICS = ("chip", "float")
+Arithmetic = Literal["chip", "float"]
 BOUNDARIES = ("neumann", "dirichlet")
 PARAMETERS = "parameters.json"
 THRESHOLDS = {"THRESHOLD": "on_threshold", "AREA_THRESHOLD": "area_threshold"}  # fields of Settings, by register
@@ -125,16 +126,16 @@ class Pipeline:
         reference: Pictures | None = None,
         *,
         grid: tuple[int, int] | None = None,
-        solver: str = SENSOR.solver,
-        boundary: str = SENSOR.boundary,
-        model: str = "",
+        solver: Solver = SENSOR.solver,
+        boundary: Boundary = SENSOR.boundary,
+        model: Model | Literal[""] = "",
         data_width: int = 24,
         coefficient_width: int = 18,
         gain_width: int = Configuration.gain_width,
         depth_range_mm: float | None = None,
         zero_offset: bool = SENSOR.zero_offset,
         light_gains: bool | None = None,
-        arithmetic: str = "chip",
+        arithmetic: Arithmetic = "chip",
         threshold_mm: float = 0.1,
         area_threshold_mm: float = 0.3,
     ) -> None:
@@ -288,7 +289,7 @@ class Pipeline:
         return self._grid
 
     @property
-    def arithmetic(self) -> str:
+    def arithmetic(self) -> Arithmetic:
         """`chip` or `float`."""
         return self._arithmetic
 

@@ -4,8 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal, cast
 
 from tactile_depth.configuration import Configuration
+
+Solver = Literal["tridiagonal", "spectral"]
+Boundary = Literal["neumann", "dirichlet"]
+Model = Literal["lut", "quadratic", "cubic"]
 
 
 @dataclass(frozen=True)
@@ -22,9 +27,9 @@ class Preset:
         A gain for each colour follows the light.
     """
 
-    solver: str
-    boundary: str
-    model: str
+    solver: Solver
+    boundary: Boundary
+    model: Model
     calibration: str
     grid: tuple[int, int]
     zero_offset: bool
@@ -32,9 +37,9 @@ class Preset:
 
 
 PUBLISHED = Preset(
-    solver=Configuration.solver,
+    solver=cast(Solver, Configuration.solver),
     boundary="neumann" if Configuration.neumann else "dirichlet",
-    model=Configuration.gradient_model,
+    model=cast(Model, Configuration.gradient_model),
     calibration="synthetic",
     grid=(Configuration.columns, Configuration.columns),
     zero_offset=Configuration.zero_offset,

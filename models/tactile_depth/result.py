@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from tactile_depth.by_value import ByValue
 from tactile_depth.contact.centroid import FRACTION
@@ -35,7 +36,7 @@ class Contact(ByValue):
     """
 
     record: Record
-    mask: np.ndarray
+    mask: npt.NDArray[np.bool_]
     untouched_mm: float
     depth_lsb_mm: float
     pixel_pitch_mm: float
@@ -181,11 +182,11 @@ class Result(ByValue):
         Records of the frames of a stream, which depend on the frames before.
     """
 
-    codes: np.ndarray
-    depth_mm: np.ndarray
-    slopes: np.ndarray
-    dark: np.ndarray
-    light_gains: np.ndarray | None
+    codes: npt.NDArray[np.int32]
+    depth_mm: npt.NDArray[np.float64]
+    slopes: npt.NDArray[np.float64]
+    dark: npt.NDArray[np.bool_]
+    light_gains: npt.NDArray[np.float64] | None
     saturations: dict[str, int]
     recorder: Recorder
     depth_lsb_mm: float
@@ -245,12 +246,12 @@ class Result(ByValue):
         return self.threshold * self.depth_lsb_mm
 
     @cached_property
-    def mask(self) -> np.ndarray:
+    def mask(self) -> npt.NDArray[np.bool_]:
         """Pixels whose depth is above the threshold, bool, as `codes`."""
         return self.codes > self.threshold
 
     @cached_property
-    def untouched_mm(self) -> np.ndarray:
+    def untouched_mm(self) -> npt.NDArray[np.float64]:
         """Mean of the depths that are not above the threshold, of each frame, in mm; NaN without such a pixel."""
         untouched = ~self.mask
         count = untouched.sum(axis=(-2, -1))
@@ -258,12 +259,12 @@ class Result(ByValue):
         return np.where(count, total / np.maximum(count, 1), np.nan)
 
     @cached_property
-    def height_mm(self) -> np.ndarray:
+    def height_mm(self) -> npt.NDArray[np.float64]:
         """Depth above the untouched surface: `depth_mm` minus `untouched_mm`."""
         return self.depth_mm - self.untouched_mm[..., None, None]
 
     @cached_property
-    def outside(self) -> np.ndarray:
+    def outside(self) -> npt.NDArray[np.bool_]:
         """Pixels whose slope exceeds `fitted_slope`, bool, as `codes`."""
         return ~self.dark & (np.hypot(self.slopes[..., 0], self.slopes[..., 1]) > self.fitted_slope)
 

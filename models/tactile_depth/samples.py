@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from tactile_depth.built_in import synthetic
 from tactile_depth.by_value import ByValue
@@ -30,9 +31,9 @@ class Sample(ByValue):
     """
 
     sensor: Sensor
-    image: np.ndarray
-    reference: np.ndarray
-    height_mm: np.ndarray
+    image: npt.NDArray[np.uint8]
+    reference: npt.NDArray[np.uint8]
+    height_mm: npt.NDArray[np.float64]
 
     def __repr__(self) -> str:
         rows, columns = self.height_mm.shape

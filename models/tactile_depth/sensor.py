@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from tactile_depth import files
 from tactile_depth.by_value import ByValue
@@ -128,19 +129,19 @@ class Sensor(ByValue):
     """
 
     name: str
-    gradient: np.ndarray | None
+    gradient: npt.NDArray[np.float64] | None
     pixel_pitch_mm: float
-    coefficients: np.ndarray | None = None
+    coefficients: npt.NDArray[np.float64] | None = None
     largest_slope: float = 0.0
     model: str = "lut"
-    reference: np.ndarray | None = None
+    reference: npt.NDArray[np.uint8] | None = None
     camera: Camera | None = None
     flat_field: bool | None = None
     fitted_slope: Mapping[str, float] = field(default_factory=dict)
     height_errors: Mapping[str, HeightError] = field(default_factory=dict)
-    lighting: np.ndarray | None = None
-    cubic: np.ndarray | None = None
-    corrections: np.ndarray | None = None
+    lighting: npt.NDArray[np.float64] | None = None
+    cubic: npt.NDArray[np.float64] | None = None
+    corrections: npt.NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         for name in ("gradient", "coefficients", "reference", "lighting", "cubic", "corrections"):
