@@ -2,6 +2,7 @@
 """Command `tactile-depth depth`: its files hold the results of the package, and bad input gives one line."""
 
 import json
+import os
 import resource
 import signal
 import subprocess
@@ -239,6 +240,26 @@ def test_a_named_calibration_with_another_reference_is_used_with_a_warning(
     assert json.loads((tmp_path / "report.json").read_text())["warnings"] == [line.removeprefix(
         "tactile-depth: warning: "
     )]  # fmt: skip
+
+
+def test_a_name_that_the_encoding_of_the_terminal_lacks_is_printed_with_replacements(
+    tmp_path: Path, inputs: Any
+) -> None:
+    (tmp_path / "\u6d4b.png").write_bytes((inputs / "press.png").read_bytes())
+    options = [
+        "--reference",
+        f"{inputs}/background.png",
+        "--calibration",
+        f"{inputs}/sensor.npz",
+        "--out",
+        "out",
+        *GRID,
+    ]
+    command = [sys.executable, "-m", "tactile_depth.cli", "depth", "\u6d4b.png", *options]
+    environment = {**os.environ, "PYTHONIOENCODING": "cp1252"}
+    run = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, timeout=WAIT_S, check=False)
+    assert run.returncode == 0, run.stderr
+    assert b"?.png: peak height" in run.stdout
 
 
 @needs_real_data

@@ -233,10 +233,10 @@ def test_a_jpeg_is_read(tmp_path: Path) -> None:
     assert load_frames(str(tmp_path), (16, 16)).labels == ("p.jpg",)
 
 
-def test_a_palette_is_looked_up(tmp_path: Path) -> None:
-    path = tmp_path / "p.png"
-    path.write_bytes(png(16, 16, 8, 3, bytes([1]) * 16, chunk(b"PLTE", bytes([9, 9, 9, 10, 20, 30]))))
-    assert (load_frames(str(path), (16, 16)).pixels == (10, 20, 30)).all()
+def test_the_files_that_macos_puts_beside_pictures_are_skipped(tmp_path: Path) -> None:
+    picture(tmp_path / "1.png", noise(20, 20, 3))
+    (tmp_path / "._1.png").write_bytes(b"\0\5\26\7")
+    assert load_frames(str(tmp_path), (16, 16)).labels == ("1.png",)
 
 
 def npz(path: Path) -> Path:
@@ -287,6 +287,8 @@ BAD: dict[str, Any] = {
     "BMP": (lambda t: drawn(t / "p.bmp"), "p.bmp: not a readable picture (it does not begin as a PNG or a JPEG does)"),
     "TIFF": (lambda t: drawn(t / "p.tif"), "p.tif: not a readable picture (it does not begin as a PNG or a JPEG does)"),
     "a JPEG that viewers rotate": (lambda t: drawn(t / "p.jpg", exif=rotated()), "asks viewers to rotate it"),
+    "a PNG that viewers rotate": (lambda t: drawn(t / "p.png", exif=rotated()), "asks viewers to rotate it"),
+    "a palette": (lambda t: written(t / "p.png", 20, 20, 8, 3, bytes(20)), "8 bits, palette", "save it as 8-bit RGB"),
     "a JPEG without colour": (lambda t: drawn(t / "p.jpg", mode="L"), "a JPEG of mode L"),
     "a large JPEG": (lambda t: drawn(t / "p.jpg", LARGEST_CAMERA + 1, 16), f"{LARGEST_CAMERA + 1}"),
     "an animation": (lambda t: drawn(t / "p.png", **ANIMATION), "an animation"),

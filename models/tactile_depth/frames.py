@@ -26,6 +26,7 @@ from tactile_depth.sensor import Sensor
 
 LARGEST_CAMERA = 4096  # largest rows and columns of a frame, so that a damaged header cannot take all memory
 PNG_SIGNATURE, JPEG_SIGNATURE = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
+APPLE_DOUBLE = "._"  # macOS puts such a file beside each on a foreign disk; it holds no picture
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg")
 EXIF_ORIENTATION, UPRIGHT = 0x0112, 1
 PNG_COLOURS = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with transparency", 6: "RGB with transparency"}
@@ -100,7 +101,7 @@ def read_picture(path: Path) -> np.ndarray:
                 raise ValueError("it does not begin as a PNG or a JPEG does")
             width, height, bits, colour = struct.unpack(">IIBB", head[16:])
             # The header is checked first: the reader converts 16 bits to 8, and allocates memory before it reads.
-            if (bits, colour) not in ((8, 2), (8, 6)) and not (bits <= 8 and colour == 3):
+            if (bits, colour) not in ((8, 2), (8, 6)):
                 raise InputError(
                     f"{path}: a PNG of {bits} bits, {PNG_COLOURS.get(colour, f'colour type {colour}')}, {height} x "
                     f"{width}: save it as 8-bit RGB"
@@ -110,6 +111,7 @@ def read_picture(path: Path) -> np.ndarray:
             with Image.open(file, formats=["PNG"]) as picture:
                 if getattr(picture, "is_animated", False):
                     raise InputError(f"{path}: an animation: save each of its frames as a PNG, in one folder")
+                _require_upright(path, picture)
                 return np.array(picture.convert("RGB"))
     except InputError:
         raise
@@ -123,9 +125,13 @@ def _read_jpeg(path: Path, file: BinaryIO) -> np.ndarray:
         _check_camera(str(path), picture.height, picture.width)
         if picture.mode != "RGB":
             raise InputError(f"{path}: a JPEG of mode {picture.mode}: save it as 8-bit RGB")
-        if picture.getexif().get(EXIF_ORIENTATION, UPRIGHT) != UPRIGHT:
-            raise InputError(f"{path}: its header asks viewers to rotate it: save it as the camera sees it")
+        _require_upright(path, picture)
         return np.array(picture)
+
+
+def _require_upright(path: Path, picture: Image.Image) -> None:
+    if picture.getexif().get(EXIF_ORIENTATION, UPRIGHT) != UPRIGHT:
+        raise InputError(f"{path}: its header asks viewers to rotate it: save it as the camera sees it")
 
 
 def _check_camera(name: str, height: int, width: int) -> None:
@@ -239,7 +245,7 @@ def read_pictures(
     except OSError as error:
         raise InputError(f"{name or source}: {error.strerror}: give a file or a folder") from error
     if folder:
-        files = sorted((p for p in listed if p.suffix.lower() in PICTURE_SUFFIXES), key=_natural)
+        files = sorted(filter(_is_picture, listed), key=_natural)
         if not files:
             raise InputError(f"{name or source}: a folder without any PNG or JPEG: accepted is {accepted}")
         return tuple(p.name for p in files), map(read_picture, files)
@@ -350,6 +356,10 @@ def _read_array(path: Path) -> np.ndarray:
         raise
     except Exception as error:  # numpy raises many kinds of errors for a damaged header
         raise InputError(f"{path}: not a readable .npy ({_line(error)}): write it with numpy.save") from error
+
+
+def _is_picture(path: Path) -> bool:
+    return path.suffix.lower() in PICTURE_SUFFIXES and not path.name.startswith(APPLE_DOUBLE)
 
 
 def _natural(path: Path) -> list[tuple[int, str]]:

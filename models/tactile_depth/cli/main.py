@@ -7,6 +7,7 @@ Exit status: 0 success, 2 input that cannot be used, 3 a failure on the way, 128
 from __future__ import annotations
 
 import argparse
+import io
 import sys
 import traceback
 import warnings
@@ -96,6 +97,9 @@ def _warnings_in_lines() -> Iterator[list[str]]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a name that the terminal's encoding lacks ends nothing
     try:
         parsed = _parser().parse_args(arguments)
         with interruption.stoppable(), _warnings_in_lines() as lines:
