@@ -22,6 +22,7 @@ from tactile_depth.cli.main import main
 from tactile_depth.cli.overview import DARK, OUTSIDE, colours, draw_overview, round_number
 from tactile_depth.cli.ply import triangles
 from tactile_depth.interruption import SIGNALS
+from tests.drawn_light import as_picture, no_contact, pressed
 from tests.real_data import FOLDER, needs_real_data
 
 GRID = ["--grid", "32x24"]
@@ -195,12 +196,13 @@ def test_nothing_is_written_when_one_picture_is_bad(tmp_path: Path, inputs: Any,
 
 @pytest.fixture(scope="module")
 def mini(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """Return a picture without contact of the sensor gelsight-mini, drawn by its calibration, and three other
-    pictures."""
+    """Return a picture without contact of the sensor gelsight-mini, drawn by its calibration, the same rotated, and
+    one with less blue."""
     folder = tmp_path_factory.mktemp("mini")
-    picture = np.kron(td.load("gelsight-mini").lighting * 90, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)  # type: ignore[operator]
+    picture = no_contact(td.load("gelsight-mini"))
     Image.fromarray(picture).save(folder / "background.png")
     Image.fromarray(np.rot90(picture, 2)).save(folder / "rotated.png")
+    Image.fromarray(picture // np.array((1, 1, 3), np.uint8)).save(folder / "yellow.png")
     return folder
 
 
@@ -225,14 +227,16 @@ def test_a_reference_of_no_known_sensor_needs_a_calibration(
 ) -> None:
     picture = f"{mini}/rotated.png"
     assert main(["depth", picture, "--reference", picture, "--out", f"{tmp_path}/out"]) == 2
-    assert "give the --calibration of the sensor that took it" in capsys.readouterr().err
+    printed = capsys.readouterr().err
+    assert "accepted are 12 %, but it is rotated by 180 degrees" in printed
+    assert "give the --calibration of the sensor that took it" in printed
     assert not (tmp_path / "out").exists()
 
 
 def test_a_named_calibration_with_another_reference_is_used_with_a_warning(
     tmp_path: Path, mini: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    picture = f"{mini}/rotated.png"
+    picture = f"{mini}/yellow.png"
     named = ["--calibration", "gelsight-mini"]
     assert main(["depth", picture, "--reference", picture, "--out", str(tmp_path), *GRID, *named]) == 0
     (line,) = capsys.readouterr().err.splitlines()
@@ -240,6 +244,23 @@ def test_a_named_calibration_with_another_reference_is_used_with_a_warning(
     assert json.loads((tmp_path / "report.json").read_text())["warnings"] == [line.removeprefix(
         "tactile-depth: warning: "
     )]  # fmt: skip
+
+
+def test_a_warning_names_its_picture_and_leaves_out_the_error(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mini = td.load("gelsight-mini")
+    across = np.linspace(0.95, 1.05, 320)[None, :, None]
+    Image.fromarray(no_contact(mini)).save(tmp_path / "background.png")
+    Image.fromarray(as_picture(pressed(mini) * across)).save(tmp_path / "press.png")
+    pictures = [f"{tmp_path}/press.png", "--reference", f"{tmp_path}/background.png", "--out", f"{tmp_path}/out"]
+    assert main(["depth", *pictures]) == 0
+    printed = capsys.readouterr()
+    assert printed.err.startswith(f"tactile-depth: warning: {tmp_path}/press.png: the picture has light that changes")
+    assert "uncertain, as the warnings say" in printed.out
+    assert "+-" not in printed.out
+    (described,) = json.loads((tmp_path / "out" / "report.json").read_text())["pictures"]
+    assert described["doubts"][0].startswith("the picture has light that changes across it by")
 
 
 def test_a_name_that_the_encoding_of_the_terminal_lacks_is_printed_with_replacements(

@@ -17,6 +17,7 @@ from commands.common.variables import VARIABLES
 from commands.run import calibrate
 from tactile_depth.cli.main import OPTIONS, _parser, named
 from tactile_depth.errors import LONGEST, Argument, InputError
+from tests.drawn_light import no_contact
 
 GRID = Argument("grid", (24, 32))
 PYTHON = {  # arguments that neither a variable of make nor an option of the command gives
@@ -50,13 +51,17 @@ def test_a_message_is_one_line_of_bounded_length() -> None:
 
 
 def test_a_warning_names_the_line_that_called_the_package() -> None:
-    grey = np.full((240, 320, 3), 90, np.uint8)
+    own = no_contact(td.load("gelsight-mini"))
+    yellow, uneven = own // np.array((1, 1, 3), np.uint8), (own * np.linspace(0.94, 1, 320)[:, None]).astype(np.uint8)
+    pipeline = td.Pipeline(td.load("gelsight-mini"), own)
     calls: tuple[Callable[[], Any], ...] = (
-        lambda: td.Pipeline(td.load("gelsight-mini"), grey),
-        lambda: td.load("gelsight-mini").check_lighting(grey),
+        lambda: td.Pipeline(td.load("gelsight-mini"), yellow),
+        lambda: pipeline.capture_reference(yellow),
+        lambda: pipeline(uneven),
+        lambda: next(pipeline.stream([uneven])),
     )
     for call in calls:
-        with pytest.warns(td.InputWarning, match="does not look like the sensor") as caught:
+        with pytest.warns(td.InputWarning, match="does not look like the sensor|light changes across it") as caught:
             call()
         (warning,) = caught
         assert (warning.filename, warning.lineno) == (__file__, call.__code__.co_firstlineno)

@@ -147,6 +147,28 @@ def test_the_first_frames_become_the_reference(
     assert counted(printed) == {"read": 9, "captured": 8, "shown": 1, "dropped": 0, "failed": 0}
 
 
+def test_frames_before_the_exposure_settles_become_no_reference(
+    tmp_path: Path, inputs: Any, live: Any, images: Any, screen: Any
+) -> None:
+    no_contact = np.array(Image.open(inputs / "background.png"))
+    first = [no_contact // 32, no_contact // 4, no_contact // 2]
+    np.save(tmp_path / "frames.npy", np.stack([*first, *[no_contact] * 8, images[5]]))
+    printed = live(tmp_path / "frames.npy")
+    (expected,) = pipeline_of(inputs).stream(images[5:6])
+    np.testing.assert_array_equal(Screen.last.heights, [expected.height_mm])
+    assert counted(printed.out) == {"read": 12, "captured": 8, "shown": 1, "dropped": 0, "failed": 3}
+    assert "a frame is left out; others are counted at the end" in printed.err
+
+
+def test_frames_that_give_no_depth_are_counted_as_failed(
+    tmp_path: Path, inputs: Any, live: Any, background: Any, images: Any, screen: Any
+) -> None:
+    np.save(tmp_path / "frames.npy", np.stack([np.zeros_like(images[5]), images[5], np.zeros_like(images[5])]))
+    printed = live(tmp_path / "frames.npy", *background)
+    assert counted(printed.out) == {"read": 3, "shown": 1, "dropped": 0, "failed": 2}
+    assert "frame 0: it is black" in printed.err
+
+
 def test_the_calibration_is_found_by_the_captured_reference(
     tmp_path: Path, screen: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -277,7 +299,7 @@ def test_bad_input_is_one_line(
 ) -> None:
     monkeypatch.chdir(inputs)
     (inputs / "few").mkdir(exist_ok=True)
-    Image.new("RGB", (320, 240)).save(inputs / "few" / "0.png")
+    Image.new("RGB", (320, 240), (128, 128, 128)).save(inputs / "few" / "0.png")
     assert main(["live", *options]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert message in line

@@ -17,6 +17,7 @@ from tactile_depth.resampling import resampling
 from tactile_depth.rom_files import write_words
 from tactile_depth.tactile_depth import hdl_parameters, light_of, slope_tables, tactile_depth, top_parameters
 from tactile_depth.tactile_depth import write_roms as write_tables
+from tests.drawn_light import no_contact
 
 SMALL = (24, 32)
 
@@ -397,8 +398,8 @@ def test_a_reference_that_leaves_nothing_is_refused(ball: Any) -> None:
 
 def test_the_error_of_the_calibration_comes_with_the_result() -> None:
     mini = td.load("gelsight-mini")
-    no_contact = np.clip(np.kron(mini.lighting * 90, np.ones((60, 80, 1))), 0, 255).astype(np.uint8)  # type: ignore[operator]
-    result = td.Pipeline(mini, no_contact)(no_contact)
+    picture = no_contact(mini)
+    result = td.Pipeline(mini, picture)(picture)
     assert result.height_error == mini.height_errors["cubic"]
     assert 0.03 < result.height_error.relative < 0.05
     assert result.fitted_slope == mini.fitted_slope["cubic"]

@@ -30,6 +30,7 @@ from tactile_depth.registers.axil_registers import GAINS
 from tactile_depth.resampling import resampling
 from tactile_depth.tactile_depth import hdl_parameters, top_parameters
 from tests import real_data
+from tests.drawn_light import no_contact
 
 VERSION = "9.8.7"  # a tag that only the copy has
 BESIDE_THE_PACKAGE = ("CHANGELOG.md", "CITATION.cff", "LICENSE", "PKG-INFO", "README.md", "pyproject.toml", "setup.py")
@@ -132,10 +133,8 @@ def pictures(folder: Path) -> Any:
             shutil.copy(data / "background.png", place)
             shutil.copy(data / "9.500mm" / "12.png", place / "press.png")
         else:
-            blocks = td.load("gelsight-mini").lighting * 90  # type: ignore[operator]
-            no_contact = np.kron(blocks, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)
             for name in ("background.png", "press.png"):
-                Image.fromarray(no_contact).save(place / name)
+                Image.fromarray(no_contact(td.load("gelsight-mini"))).save(place / name)
     return place
 
 

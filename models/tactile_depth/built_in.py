@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from tactile_depth.calibration_file import BUILT_IN, FOLDER, read_calibration
+from tactile_depth.checks.exchanges import exchange_of
 from tactile_depth.errors import Argument, InputError
 from tactile_depth.npy import HasArray, HasInterface, is_array
 from tactile_depth.scenes import GAIN, LIGHTS, REST, SYNTHETIC_PIXEL_PITCH_MM
@@ -77,10 +78,11 @@ def identify(reference: np.ndarray | HasArray | HasInterface) -> Sensor:
             camera = sensor.camera
             reasons.append(f"{sensor.name} takes {camera.columns} x {camera.rows}, this has {columns} x {rows} pixels")
             continue
-        if difference > LIGHTING_AGREES:
+        exchange = exchange_of(sensor, reference)
+        if difference > LIGHTING_AGREES or exchange:
             reasons.append(
                 f"its lighting differs from {sensor.name} by {100 * difference:.0f} %, accepted are "
-                f"{100 * LIGHTING_AGREES:.0f} %"
+                f"{100 * LIGHTING_AGREES:.0f} %{exchange and f', but {exchange}'}"
             )
         elif nearest is None or difference < nearest[0]:
             nearest = difference, sensor

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from tactile_depth.by_value import ByValue
+from tactile_depth.checks.reference_check import check_reference
 from tactile_depth.cores import fastest
 from tactile_depth.errors import Argument, InputError, InputWarning, warn
 from tactile_depth.poisson.divergence import divergence
@@ -184,7 +185,7 @@ def evaluate(
             f"{by_balls:.4g}: give presses of that sensor, or correct ball_radius_px"
         )
     sensor.require_reference(True)
-    sensor.check_lighting(pictures.background)
+    check_reference(sensor, pictures.background[None])
     on_grid = to_grid(pictures, pitch, find_circles)
     measured = [view for view in on_grid.views if view.is_whole]
     cut = [view.press.name for view in on_grid.views if not view.is_whole]

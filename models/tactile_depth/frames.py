@@ -17,6 +17,7 @@ from PIL import Image
 
 from tactile_depth.by_value import ByValue
 from tactile_depth.camera_configuration import CameraChoice, CameraConfiguration
+from tactile_depth.checks.reference_check import check_reference
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import Argument, InputError
 from tactile_depth.grid_sampler import grid_sampler
@@ -157,7 +158,7 @@ def on_grid(sensor: Sensor, frames: Frames) -> Sensor:
     sensor.require_reference(frames.reference is not None)
     zoom = 1.0 if frames.picture_size is None else sensor.zoom(frames.picture_size, frames.name)
     if frames.no_contact is not None:
-        sensor.check_lighting(frames.no_contact)
+        check_reference(sensor, frames.no_contact[None])
     placed = sensor
     if frames.camera is not None:
         columns, rows = frames.camera.centre_shift

@@ -19,7 +19,7 @@ Picture = np.ndarray | HasArray | HasInterface | str | Path
 Pictures = Picture | Sequence[Picture]
 
 
-def pictures_of(given: Pictures, name: Argument) -> tuple[Iterator[tuple[Part, np.ndarray]], bool]:
+def pictures_of(given: Pictures, name: Part) -> tuple[Iterator[tuple[Part, np.ndarray]], bool]:
     """Return pictures, uint8 (rows, columns, 3), each with its name in errors, and True for a single picture.
 
     Those of a folder are read one by one when the iterator reaches them.
@@ -36,14 +36,20 @@ def pictures_of(given: Pictures, name: Argument) -> tuple[Iterator[tuple[Part, n
         array = np.asarray(given)
         if array.dtype != np.uint8 or array.ndim not in (3, 4) or array.shape[-1] != 3 or not array.size:
             raise InputError(name, f" are {array.dtype} {array.shape}", accepted=SHAPES)
-        return ((name, picture) for picture in (array if array.ndim == 4 else array[None])), array.ndim == 3
+        if array.ndim == 3:
+            return iter([(name, array)]), True
+        return ((_item(name, index), picture) for index, picture in enumerate(array)), False
     if not isinstance(given, Sequence):
-        remedy = "give them to `stream`" if isinstance(given, Iterable) and name.name == "pictures" else ""
+        remedy = "give them to `stream`" if isinstance(given, Iterable) and str(name) == "pictures" else ""
         accepted = "a uint8 array or a path, or a sequence of them"
         raise InputError(name, f" are {type(given).__name__}", accepted=accepted, remedy=remedy)
     if not given:
         raise InputError(name, " are empty", accepted="one picture or more")
     return _of_sequence(given, name), False
+
+
+def _item(name: Part, index: int) -> Part:
+    return Argument(f"{name.name}[{index}]") if isinstance(name, Argument) else f"{name}[{index}]"
 
 
 def _labelled(
@@ -52,9 +58,9 @@ def _labelled(
     return ((f"{source}: {label}", picture) for label, picture in zip(labels, pictures, strict=True))
 
 
-def _of_sequence(given: Sequence[Picture], name: Argument) -> Iterator[tuple[Part, np.ndarray]]:
+def _of_sequence(given: Sequence[Picture], name: Part) -> Iterator[tuple[Part, np.ndarray]]:
     for index, one in enumerate(given):
-        item = Argument(f"{name.name}[{index}]")
+        item = _item(name, index)
         pictures, single = pictures_of(one, item)
         if not single:
             raise InputError(item, " are several pictures", accepted="one picture, uint8 (rows, columns, 3) or a path")

@@ -5,32 +5,39 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 
 from tactile_depth import reference as exact
+from tactile_depth.checks.blocks import Rest
+from tactile_depth.checks.doubts import Doubt, UnusablePicture, Warned, tell
+from tactile_depth.checks.light_check import doubts_of
+from tactile_depth.checks.picture_check import Checked, check_picture
+from tactile_depth.checks.reference_check import check_reference
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import LIGHT_GAIN, Configuration, ExactConfiguration, is_grid_of_hardware
-from tactile_depth.contact.contact_events import ContactEvents, Settings
+from tactile_depth.contact.contact_events import Settings
 from tactile_depth.cores import fastest
 from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tactile_depth.depth.zero_offset import exact_zero, no_zero
-from tactile_depth.errors import Argument, InputError, Part, is_number, one_of
+from tactile_depth.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
 from tactile_depth.files import new_files
 from tactile_depth.frames import camera_scale
 from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, pixel_gains, require_light, unit_gains
 from tactile_depth.gradient.light_gains import Light, LightFilter
 from tactile_depth.gradient.reference_capture import largest_log2_frames
-from tactile_depth.grid_sampler import GridSampler, grid_sampler, picture_grid
-from tactile_depth.pictures import Picture, Pictures, pictures_of
+from tactile_depth.grid_sampler import picture_grid
+from tactile_depth.pictures import Picture, Pictures
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presets import SENSOR, Boundary, Model, Solver
+from tactile_depth.reader import Reader, power_of_two_of
 from tactile_depth.result import Recorder, Result
 from tactile_depth.sensor import Sensor
+from tactile_depth.stream import Stream
 from tactile_depth.tactile_depth import (
     Tables,
     config_value,
@@ -49,24 +56,8 @@ Arithmetic = Literal["chip", "float"]
 BOUNDARIES = ("neumann", "dirichlet")
 PARAMETERS = "parameters.json"
 THRESHOLDS = {"THRESHOLD": "on_threshold", "AREA_THRESHOLD": "area_threshold"}  # fields of Settings, by register
-PICTURES = Argument("pictures")
+PICTURES, REFERENCE = Argument("pictures"), Argument("reference")
 PIXELS_AT_ONCE = 1 << 16  # pixels of a batch of frames, whose arrays stay in a cache
-
-
-@dataclass
-class Stream:
-    """State that a stream of pictures leaves for its next one.
-
-    Attributes
-    ----------
-    light : LightFilter or None
-        Light gains; None for a pipeline without them.
-    events : ContactEvents
-        Whether something touches, and the last peak.
-    """
-
-    light: LightFilter | None
-    events: ContactEvents
 
 
 def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]:
@@ -159,9 +150,11 @@ class Pipeline:
         self._arithmetic, self._is_of_hardware = arithmetic, is_grid_of_hardware(rows, columns, solver)
         kind = Configuration if self._is_of_hardware or arithmetic == "chip" else ExactConfiguration
         shape: dict[str, Any] = {"columns": columns, "rows": rows, "solver": solver, "neumann": boundary == "neumann"}
-        self._camera_sensor, self._samplers = sensor, dict[tuple[int, int], GridSampler]()
+        self._reader = Reader(sensor, self._grid)
+        self._rest: Rest | None = None
+        self._doubts: tuple[Doubt, ...] = ()
         pitch_mm = sensor.pixel_pitch_mm * camera_scale(sensor, kind(**shape))
-        rest = None if reference is None else self._read_reference(reference)
+        rest = None if reference is None else self._rest_of(reference, REFERENCE, LARGEST_LOG2)
         self._sensor = replace(sensor, pixel_pitch_mm=pitch_mm, reference=rest)
         self._config = self.sensor.configuration(
             model,
@@ -192,7 +185,7 @@ class Pipeline:
             if zero_offset:
                 self._use_zero(rest)
 
-    def __call__(self, pictures: Pictures, stream: Stream | None = None) -> Result:
+    def __call__(self, pictures: Pictures, stream: Stream | None = None, name: str = "") -> Result:
         """Return the depth of pictures.
 
         Parameters
@@ -204,6 +197,8 @@ class Pipeline:
         stream : Stream, optional
             The stream, `new_stream`, to which the pictures belong, in their order; by default each picture stands for
             itself.
+        name : str
+            Names the pictures in errors and warnings.
 
         Returns
         -------
@@ -213,8 +208,14 @@ class Pipeline:
         Raises
         ------
         InputError
+            The pictures are not accepted, or one of them gives no right depth (`UnusablePicture`).
+
+        Warns
+        -----
+        InputWarning
+            The heights of a picture are uncertain.
         """
-        frames, single = self._read(pictures)
+        frames, checked, single = self._checked(pictures, name or PICTURES)
         monitor = Monitor()
         gains = light_of(frames, self._tables, self.config, None if stream is None else stream.light, fastest())
         if self.arithmetic == "chip":
@@ -243,25 +244,43 @@ class Pipeline:
             self.sensor.fitted_slope.get(self.config.gradient_model, math.inf),
             self.sensor.height_errors.get(self.config.gradient_model),
             streamed,
+            self._warned(checked, gains, depth_mm, None if stream is None else stream.warned),
         )
         return result[0] if single else result
 
-    def stream(self, pictures: Iterable[Picture]) -> Iterator[Result]:
+    def stream(self, pictures: Iterable[Picture], stream: Stream | None = None) -> Iterator[Result]:
         """Give the depth of the pictures of a stream, as the hardware does.
 
-        Light gains act on the next picture, and half the peak of a contact bounds the area of the next.
+        Light gains act on the next picture, and half the peak of a contact bounds the area of the next. A picture that
+        gives no right depth is left out and counted.
 
         Parameters
         ----------
         pictures : iterable of pictures, each as for a call
+        stream : Stream, optional
+            The stream, `new_stream`, that the pictures continue.
 
         Raises
         ------
         InputError
+            A picture is not accepted.
+
+        Warns
+        -----
+        InputWarning
+            Once for each kind of doubt, and for the first picture that is left out.
         """
-        stream = self.new_stream()
+        stream = self.new_stream() if stream is None else stream
         for picture in pictures:
-            yield self(picture, stream)
+            stream.taken += 1
+            try:
+                result = self(picture, stream, f"picture {stream.taken - 1}")
+            except UnusablePicture as error:
+                stream.failed += 1
+                if stream.failed == 1:
+                    warn(InputWarning("left out and counted: ", *error.parts))
+                continue
+            yield result
 
     def new_stream(self) -> Stream:
         """Return the state of a stream before its first picture: light gains of 1, no contact."""
@@ -336,9 +355,7 @@ class Pipeline:
         if not self.config.flat_field:
             problem = ": this pipeline takes colours as sent"
             raise InputError(PICTURES, problem, remedy=("make it with ", Argument("reference", "<picture>")))
-        frames, _ = self._read(pictures)
-        _power_of_two(len(frames), largest_log2_frames(self.config))
-        self._use_reference(frames)
+        self._use_reference(self._rest_of(pictures, PICTURES, largest_log2_frames(self.config)))
 
     def capture_zero(self, pictures: Pictures) -> None:
         """Take the depth of pictures without contact as the zero offset, as the hardware's capture does.
@@ -351,8 +368,8 @@ class Pipeline:
         if not self.config.zero_offset:
             problem = ": this pipeline has no zero offset"
             raise InputError(PICTURES, problem, remedy=("make it with ", Argument("zero_offset", True)))
-        frames, _ = self._read(pictures)
-        _power_of_two(len(frames), LARGEST_LOG2)
+        frames, *_ = self._checked(pictures, PICTURES)
+        power_of_two_of(len(frames), LARGEST_LOG2, PICTURES)
         self._use_zero(frames)
 
     def hardware(self, folder: str | Path) -> Path:
@@ -425,6 +442,7 @@ class Pipeline:
     def _use_reference(self, frames: np.ndarray) -> None:
         gains = captured_gains(frames, self.config)
         require_light(gains, self.config)
+        self._rest = Rest.of(frames)
         self._gains, self._sensor = gains, replace(self.sensor, reference=frames)
         self._prepare()
 
@@ -443,38 +461,36 @@ class Pipeline:
             self._zero = captured_zero(self._chip(frames, Monitor(), light)[1], self.config)
         self._exact_zero = -exact_zero(np.zeros(self.grid), self._exact(frames, light)[1], self.config)
 
-    # Pictures.
+    # Checks of pictures.
 
-    def _read_reference(self, reference: Pictures) -> np.ndarray:
-        named = Argument("reference")
-        pictures = list(pictures_of(reference, named)[0])
-        _power_of_two(len(pictures), LARGEST_LOG2, named)
-        self._camera_sensor.check_lighting(pictures[0][1])
-        return np.stack([self._on_grid(picture, name) for name, picture in pictures])
+    def _rest_of(self, pictures: Pictures, name: Argument, largest_log2: int) -> np.ndarray:
+        """Return pictures without contact on the grid, uint8 (frames, rows, columns, 3)."""
+        images, frames = self._reader.reference(pictures, name, largest_log2)
+        self._doubts = check_reference(self._reader.sensor, images, name)
+        return frames
 
-    def _read(self, pictures: Pictures) -> tuple[np.ndarray, bool]:
-        """Return frames on the grid, uint8 (frames, rows, columns, 3), and True if the input was a single picture."""
-        read, single = pictures_of(pictures, PICTURES)
-        return np.stack([self._on_grid(picture, name) for name, picture in read]), single
+    def _checked(self, pictures: Pictures, name: Part) -> tuple[np.ndarray, list[Checked], bool]:
+        """Return frames on the grid, uint8 (frames, rows, columns, 3), their checks, and True for a single picture."""
+        read, single = self._reader.pictures(pictures, name)
+        frames, checked = [], []
+        for each, frame in read:
+            frames.append(frame)
+            checked.append(check_picture(frame, self._rest, each))
+        return np.stack(frames), checked, single
 
-    def _on_grid(self, picture: np.ndarray, name: Part) -> np.ndarray:
-        size = (picture.shape[0], picture.shape[1])
-        if size not in self._samplers:
-            self._camera_sensor.zoom(size, name)
-            if self._camera_sensor.camera is None and self._samplers:
-                first = next(iter(self._samplers))[::-1]
-                problem = f": {size[1]} x {size[0]} pixels (columns x rows), but the first picture had {first}"
-                raise InputError(name, problem, remedy="give pictures of one size")
-            self._samplers[size] = grid_sampler(name, size, self.grid)
-        return self._samplers[size].frame(picture)
+    def _warned(
+        self, checked: Sequence[Checked], gains: np.ndarray | None, depth_mm: np.ndarray, warned: Warned | None
+    ) -> tuple[tuple[str, ...], ...]:
+        """Return for each picture why its heights are uncertain; warn of it, and in a stream only of what is new."""
+        light = [None] * len(checked) if gains is None else gains * LIGHT_GAIN.lsb
+        texts = []
+        for each, gain, depth in zip(checked, light, depth_mm, strict=True):
+            doubts = doubts_of(each, gain, depth, self.threshold_mm)
+            tell(doubts if warned is None else warned.new(doubts))
+            texts.append(tuple(map(str, (*self._doubts, *doubts))))
+        return tuple(texts)
 
 
 def is_whole(number: object) -> bool:
     """Return True for a whole number."""
     return isinstance(number, int | np.integer) and not isinstance(number, bool)
-
-
-def _power_of_two(count: int, largest_log2: int, name: Argument = PICTURES) -> None:
-    if count.bit_count() != 1 or count > 1 << largest_log2:
-        problem = f": {count} pictures: the hardware averages 1, 2, 4, .. {1 << largest_log2}"
-        raise InputError(name, problem, remedy="give so many")

@@ -175,11 +175,13 @@ class Result(ByValue):
     depth_lsb_mm, pixel_pitch_mm : float
     fitted_slope : float
         Largest slope in the presses of the calibration.
-    height_error : HeightError or None
+    calibration_error : HeightError or None
         Error of the calibration, measured on presses that were not fitted and lay wholly in the picture's middle
         square; None if not measured. It holds for contacts that are central (`Contact.is_central`).
     streamed : tuple of Record, or None
         Records of the frames of a stream, which depend on the frames before.
+    warnings : tuple of tuples of str
+        For each frame why its heights are uncertain.
     """
 
     codes: npt.NDArray[np.int32]
@@ -192,8 +194,9 @@ class Result(ByValue):
     depth_lsb_mm: float
     pixel_pitch_mm: float
     fitted_slope: float
-    height_error: HeightError | None
+    calibration_error: HeightError | None
     streamed: tuple[Record, ...] | None = None
+    warnings: tuple[tuple[str, ...], ...] = ()
 
     def __repr__(self) -> str:
         *frames, rows, columns = self.codes.shape
@@ -219,14 +222,19 @@ class Result(ByValue):
         self._require_frames()
         arrays = {name: getattr(self, name)[index] for name in ("codes", "depth_mm", "slopes", "dark")}
         gains = None if self.light_gains is None else self.light_gains[index]
-        streamed = self.streamed
-        if streamed is not None:
-            streamed = streamed[index] if isinstance(index, slice) else (streamed[index],)
-        return replace(self, streamed=streamed, light_gains=gains, **arrays)
+        frames = range(len(self))[index] if isinstance(index, slice) else (index,)
+        streamed = None if self.streamed is None else tuple(self.streamed[frame] for frame in frames)
+        warned = tuple(self.warnings[frame] for frame in frames) if self.warnings else ()
+        return replace(self, streamed=streamed, warnings=warned, light_gains=gains, **arrays)
 
     def _require_frames(self) -> None:
         if self.codes.ndim == 2:
             raise TypeError("the result of a single picture has no frames: use its attributes")
+
+    @property
+    def height_error(self) -> HeightError | None:
+        """Error of the heights, `calibration_error`; None if it was not measured, or if a frame has a warning."""
+        return None if any(self.warnings) else self.calibration_error
 
     @cached_property
     def records(self) -> tuple[Record, ...]:

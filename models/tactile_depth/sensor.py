@@ -22,7 +22,7 @@ from tactile_depth.configuration import (
     SMALLEST_DEPTH_RANGE_PX,
     Configuration,
 )
-from tactile_depth.errors import Argument, InputError, InputWarning, Part, is_number, warn
+from tactile_depth.errors import Argument, InputError, Part, is_number
 
 MODELS = GRADIENT_MODELS
 FORMAT_VERSION = 3
@@ -216,19 +216,6 @@ class Sensor(ByValue):
         if self.lighting is None:
             return math.inf
         return float(np.sqrt(((lighting(reference) - self.lighting) ** 2).mean()))
-
-    def check_lighting(self, reference: np.ndarray) -> None:
-        """Warn if a picture without contact, uint8 (rows, columns, 3), does not look like this sensor's."""
-        if self.lighting is None or reference.mean() < TOO_DARK:  # a reference that dark is refused later
-            return
-        difference = self.lighting_difference(reference)
-        if difference > LIGHTING_AGREES:
-            warning = InputWarning(
-                f"the reference does not look like the sensor of {self.name} (its lighting differs by "
-                f"{100 * difference:.0f} %)",
-                remedy=("give the ", Argument("calibration"), " of the sensor that took it"),
-            )
-            warn(warning)
 
     def configuration(
         self,

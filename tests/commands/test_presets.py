@@ -7,7 +7,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from PIL import Image
 
@@ -16,10 +15,11 @@ from commands.hardware import fpga, synth, synthesis
 from commands.run import sim
 from commands.study import tune
 from tactile_depth.built_in import load
-from tactile_depth.errors import InputError, InputWarning
+from tactile_depth.errors import InputError
 from tactile_depth.pipeline import Pipeline
 from tactile_depth.presets import PRESETS, SENSOR
 from tactile_depth.tactile_depth import default_parameters, top_parameters
+from tests.drawn_light import no_contact
 
 SIZES: dict[str, tuple[int, int]] = {
     "": (96, 128),
@@ -46,10 +46,10 @@ def parsed(words: str, preset: str = "sensor", frames: str = "") -> run_request.
     return run_request.parse(words.split(), (*run_request.ACCEPTED, *run_request.CAMERA), preset, frames)
 
 
-def grey(folder: Path) -> Path:
-    """Write a picture that stands for one without contact, and return its path."""
-    picture = folder / "grey.png"
-    Image.fromarray(np.full((240, 320, 3), 128, np.uint8)).save(picture)
+def background(folder: Path) -> Path:
+    """Write a drawn picture without contact of the preset's sensor, and return its path."""
+    picture = folder / "background.png"
+    Image.fromarray(no_contact(load(SENSOR.calibration))).save(picture)
     return picture
 
 
@@ -60,10 +60,9 @@ def test_published_is_the_default_of_the_package_of_the_rtl() -> None:
     assert top_parameters(config) == default_parameters()
 
 
-@pytest.mark.filterwarnings("ignore::tactile_depth.errors.InputWarning")
 def test_sensor_is_the_default_of_the_python_package(tmp_path: Path) -> None:
     _, _, config = synthesis.design(parsed(""))
-    assert config == Pipeline(load(SENSOR.calibration), reference=grey(tmp_path)).config
+    assert config == Pipeline(load(SENSOR.calibration), reference=background(tmp_path)).config
 
 
 @pytest.mark.parametrize(("words", "size"), SIZES.items())
@@ -87,7 +86,7 @@ def test_a_drawn_scene_is_of_the_drawn_sensor() -> None:
 
 
 def test_pictures_need_a_reference(tmp_path: Path) -> None:
-    request = parsed(f"FRAMES={grey(tmp_path)}")
+    request = parsed(f"FRAMES={background(tmp_path)}")
     assert (request.calibration, request.reference, request.zero) == (SENSOR.calibration, None, None)
     with pytest.raises(InputError, match="reference"):
         synthesis.design(request)
@@ -121,15 +120,14 @@ def test_the_first_line_names_the_preset(tmp_path: Path, capsys: pytest.CaptureF
 
 def test_the_module_of_a_reference_is_that_of_the_python_package(tmp_path: Path) -> None:
     """`make wrap NAME=.. REFERENCE=..` writes the fields and the tables that `Pipeline.hardware` writes."""
-    picture, out = grey(tmp_path), tmp_path / "out"
+    picture, out = background(tmp_path), tmp_path / "out"
     words = ["NAME=finger", f"REFERENCE={picture}", f"OUT={out}"]
     command = [sys.executable, "-m", "commands", "wrap", *words]
     result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=True)
     assert result.stdout.startswith(
         "preset sensor: tridiagonal, neumann, 96 x 128, cubic, flat field, zero offset, light gains\n"
     )
-    with pytest.warns(InputWarning):
-        pipeline = Pipeline(load("gelsight-mini"), reference=picture)
+    pipeline = Pipeline(load("gelsight-mini"), reference=picture)
     described = json.loads(pipeline.hardware(tmp_path / "hardware").read_text())
     assert (out / "tactile_depth_finger.sv").read_text() == wrapper.wrapper("finger", described["fields"])
     for name in described["tables"]:

@@ -16,7 +16,6 @@ from PIL.PngImagePlugin import PngInfo
 from tactile_depth.cli.options import add_pipeline_arguments, choose_sensor, make_pipeline, read_reference
 from tactile_depth.cli.overview import draw_overview
 from tactile_depth.cli.ply import write_ply
-from tactile_depth.errors import InputError
 from tactile_depth.files import new_files
 from tactile_depth.frames import read_pictures
 from tactile_depth.pipeline import Pipeline
@@ -34,6 +33,7 @@ UNITS = {
     "depth_um.png": f"the same in micrometres, 16 bits, clipped at 0 and {LARGEST_UM}",
     "depth.ply": "the same as a mesh, mm",
     "peak_height_mm": "largest height",
+    "warnings": "of a picture: why its heights are uncertain",
     "light_gains": "light of the reference over that of the picture, of red, green and blue; null without light gains",
     "peak_mm": "largest depth above the threshold, mm; depth is height before the mean of the untouched surface is "
     "subtracted",
@@ -72,10 +72,7 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     with new_files(out, REPORT, "files") as folder:
         frames, heights = [], []
         for label, image in _pictures(options.pictures):
-            try:
-                result = pipeline(image)
-            except InputError as error:
-                raise InputError(f"{label}: ", *error.parts) from error
+            result = pipeline(image, name=label)
             heights.append(result.height_mm.astype(np.float32))
             frames.append((label, image, result))
         digits = len(str(len(frames) - 1))
@@ -109,7 +106,9 @@ def summary(result: Result) -> str:
         peak, error = float(result.height_mm.max()), result.height_error
         spread = "" if error is None else f" +- {peak * error.relative:.2f}"
         parts = [f"peak height {peak:.2f}{spread} mm, contact area {contact.area_mm2:.1f} mm2"]
-        if error is None:
+        if any(result.warnings):
+            parts.append("uncertain, as the warnings say")
+        elif error is None:
             parts.append("error of the calibration not measured")
         elif not contact.is_central:
             parts.append("the contact leaves the middle square, where the error was measured; beside it it is larger")
@@ -185,6 +184,7 @@ def _describe(result: Result) -> dict[str, Any]:
             "centroid_mm": contact.centroid_mm,
             "is_central": contact.is_central if contact.touching else None,
         },
+        "warnings": list(*result.warnings),
         "light_gains": None if result.light_gains is None else result.light_gains.tolist(),
         "saturations": result.saturations,
         "dark_pixels": int(result.dark.sum()),

@@ -12,6 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
+from tactile_depth.checks.doubts import UnusablePicture
+from tactile_depth.checks.picture_check import check_picture
+from tactile_depth.checks.reference_check import STEADY
 from tactile_depth.cli.display import Display, load_rerun
 from tactile_depth.cli.keys import pressed_keys
 from tactile_depth.cli.options import add_pipeline_arguments, choose_sensor, make_pipeline, read_reference
@@ -103,6 +106,8 @@ def first_frames(frames: Iterator[Frame | None], source: Source) -> np.ndarray:
     for frame in frames:
         if frame is None:
             continue
+        if not _is_settled(frame, images, source):
+            continue
         source.counts.captured += 1
         images.append(frame.image)
         if frame.image.shape != images[0].shape:
@@ -115,13 +120,28 @@ def first_frames(frames: Iterator[Frame | None], source: Source) -> np.ndarray:
     )
 
 
+def _is_settled(frame: Frame, images: list[np.ndarray], source: Source) -> bool:
+    """Return False for a frame that gives no reference; begin anew when the exposure has changed. Both are counted."""
+    try:
+        check_picture(frame.image, None, f"frame {frame.index}")
+    except UnusablePicture as error:
+        source.counts.fail(error)
+        return False
+    if images and abs(frame.image.mean() / images[0].mean() - 1) > STEADY:
+        for _ in images:
+            source.counts.fail(InputError(f"{source.name}: the exposure has not settled"))
+        source.counts.captured -= len(images)
+        images.clear()
+    return True
+
+
 def processed(frames: Iterator[Frame | None], pipeline: Pipeline, counts: Counts) -> Iterator[Shot | None]:
     """Give frames with their depth; None when none has arrived for a while.
 
     Raises
     ------
     InputError
-        The first frame cannot be processed. Later ones are counted as failed.
+        The first frame cannot be processed. Later ones are counted as failed, and so are frames that give no depth.
     """
     is_first, stream = True, pipeline.new_stream()
     for frame in frames:
@@ -129,9 +149,9 @@ def processed(frames: Iterator[Frame | None], pipeline: Pipeline, counts: Counts
             yield None
             continue
         try:
-            result = pipeline(frame.image, stream)
+            result = pipeline(frame.image, stream, f"frame {frame.index}")
         except InputError as error:
-            if is_first:
+            if is_first and not isinstance(error, UnusablePicture):
                 raise
             counts.fail(error)
             continue

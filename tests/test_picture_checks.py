@@ -1,0 +1,381 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of pictures and references: each wrong kind is refused or warned of, right ones are not."""
+
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import tactile_depth as td
+from tactile_depth.checks.blocks import Rest
+from tactile_depth.checks.picture_check import check_picture
+from tactile_depth.frames import read_picture
+from tactile_depth.press_folder import read_presses
+from tactile_depth.scenes import BENCH
+from tests.ball_presses import real_folder
+from tests.drawn_light import as_picture, no_contact, pressed
+
+Edit = Callable[[np.ndarray], np.ndarray]
+X, Y = np.linspace(-1, 1, 320)[None, :, None], np.linspace(-1, 1, 240)[:, None, None]
+
+
+def in_light(light: Any) -> Edit:
+    return lambda picture: np.clip(np.rint(picture * np.asarray(light)), 0, 255).astype(np.uint8)
+
+
+def torn(first: int, shift: int) -> Edit:
+    return lambda picture: np.concatenate((picture[:first], np.roll(picture[first:], shift, axis=1)))
+
+
+def lost_bytes(first: int, count: int) -> Edit:
+    def edit(picture: np.ndarray) -> np.ndarray:
+        sent, begin = picture.reshape(-1), first * picture[0].size
+        rest = np.concatenate((sent[begin + count :], np.zeros(count, np.uint8)))
+        return np.concatenate((sent[:begin], rest)).reshape(picture.shape)
+
+    return edit
+
+
+def rest_of(first: int, colour: Any) -> Edit:
+    def edit(picture: np.ndarray) -> np.ndarray:
+        edited = picture.copy()
+        edited[first:] = picture[first] if colour is None else colour
+        return edited
+
+    return edit
+
+
+def channel(index: int, level: int) -> Edit:
+    def edit(picture: np.ndarray) -> np.ndarray:
+        edited = picture.copy()
+        edited[..., index] = level
+        return edited
+
+    return edit
+
+
+def grey(picture: np.ndarray) -> np.ndarray:
+    return np.repeat(picture.mean(axis=-1, keepdims=True), 3, axis=-1).astype(np.uint8)
+
+
+def ordered(*order: int) -> Edit:
+    return lambda picture: np.ascontiguousarray(picture[..., order])
+
+
+def mirrored(picture: np.ndarray) -> np.ndarray:
+    return picture[:, ::-1].copy()
+
+
+REFUSED: dict[str, tuple[Edit, str]] = {
+    "black": (lambda p: np.zeros_like(p), "it is black"),
+    "white": (lambda p: np.full_like(p, 255), "100.0 % of its pixels are clipped"),
+    "one grey": (lambda p: np.full_like(p, 128), "one colour everywhere"),
+    "one colour": (lambda p: np.full_like(p, (90, 110, 70)), "one colour everywhere"),
+    "green alone": (in_light((0, 1, 0)), "has no red and no blue"),
+    "no blue": (channel(2, 0), "has no blue"),
+    "constant red": (channel(0, 70), "has no red"),
+    "grey": (grey, "is grey"),
+    "tinted grey": (lambda p: in_light((0.8, 1, 1.1))(grey(p)), "is grey"),
+    "red and blue": (ordered(2, 1, 0), "red and blue are exchanged"),
+    "red and green": (ordered(1, 0, 2), "red and green are exchanged"),
+    "green and blue": (ordered(0, 2, 1), "green and blue are exchanged"),
+    "blue first": (ordered(2, 0, 1), "in the order blue, red, green"),
+    "red last": (ordered(1, 2, 0), "in the order green, blue, red"),
+    "mirrored": (mirrored, "mirrored left to right"),
+    "upside down": (lambda p: p[::-1].copy(), "mirrored top to bottom"),
+    "rotated": (lambda p: np.rot90(p, 2).copy(), "rotated by 180 degrees"),
+    "rotated and BGR": (lambda p: p[::-1, ::-1, ::-1].copy(), "red and blue are exchanged and it is rotated by 180"),
+    "torn by 40 pixels": (torn(80, 40), "it is torn"),
+    "torn by -33 pixels": (torn(97, -33), "it is torn"),
+    "torn near the end": (torn(200, 40), "it is torn"),
+    "40 pixels lost": (lost_bytes(80, 120), "it is torn"),
+    "begun late": (lambda p: np.roll(p, 77, axis=0), "it is torn"),
+    "half black": (rest_of(120, 0), "[45]. % of it are dark"),
+    "the end black": (rest_of(200, 0), "1. % of it are dark"),
+    "the rest grey": (rest_of(100, 128), "of its rows are one row, repeated"),
+    "the rest green": (rest_of(170, (0, 135, 0)), "of its rows are one row, repeated"),
+    "the rest a row": (rest_of(100, None), "of its rows are one row, repeated"),
+    "clipped": (in_light(2.2), "of its pixels are clipped"),
+}
+DOUBTED: dict[str, tuple[Edit, str]] = {
+    "right side brighter": (
+        in_light(1 + 0.02 * X),
+        r"changes across it by 4 % in red, [34] % in green, [34] % in blue",
+    ),
+    "lower side brighter": (in_light(1 + 0.02 * Y), "changes across it by"),
+    "one lamp": (in_light(1 + 0.03 * X * (1, 0, 0)), "changes across it by [56] % in red, 0 % in green, 0 % in blue"),
+    "vignette": (in_light(1 - 0.06 * (X * X + Y * Y)), "changes across it by"),
+    "30 % across": (in_light(1 + 0.3 * X), "changes across it by"),
+    "a quarter of the light": (in_light(0.25), "differs from that of the reference by -75 % in red, -75 % in green"),
+    "a little clipped": (in_light(1.62), "of its pixels are clipped, heights there are too small"),
+    "noise": (
+        lambda p: np.random.default_rng(1).integers(0, 256, p.shape, np.uint8),
+        "differs by .* % from its",
+    ),
+    "other bytes lost": (lost_bytes(80, 40), "differs by .* % from its"),
+}
+LIGHTS = (0.8, 0.9, 0.95, 1.05, 1.1, 1.2, (1.05, 1, 0.95), (0.95, 1.05, 1), (1.1, 1, 0.9))
+
+
+@pytest.fixture(scope="module")
+def mini() -> td.Sensor:
+    return td.load("gelsight-mini")
+
+
+@pytest.fixture(scope="module")
+def reference(mini: td.Sensor) -> np.ndarray:
+    return no_contact(mini)
+
+
+@pytest.fixture(scope="module")
+def press(mini: td.Sensor) -> np.ndarray:
+    return as_picture(pressed(mini), seed=2)
+
+
+@pytest.fixture(scope="module")
+def pipeline(mini: td.Sensor, reference: np.ndarray) -> td.Pipeline:
+    return td.Pipeline(mini, reference)
+
+
+@pytest.fixture(scope="module")
+def real() -> tuple[td.Pipeline, np.ndarray, list[np.ndarray]]:
+    """Return the pipeline of the real presses, their reference and each third of them."""
+    folder = real_folder()
+    background = read_picture(folder / "background.png")
+    presses = [read_picture(press.image) for press in read_presses(folder)[0]]  # type: ignore[arg-type]
+    return td.Pipeline(td.load("gelsight-mini"), background), background, presses
+
+
+def certain(pipeline: td.Pipeline, picture: np.ndarray) -> td.Result:
+    """Return the depth of a picture; fail if anything is doubted."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        result = pipeline(picture)
+    assert not any(result.warnings)
+    return result
+
+
+def doubted(pipeline: td.Pipeline, picture: np.ndarray, message: str) -> td.Result:
+    with pytest.warns(td.InputWarning, match=message):
+        result = pipeline(picture)
+    assert result.warnings[0]
+    assert result.height_error is None
+    return result
+
+
+# Pictures with a right reference.
+
+
+@pytest.mark.parametrize("light", [1, *LIGHTS])
+def test_right_pictures_are_certain(
+    pipeline: td.Pipeline, press: np.ndarray, reference: np.ndarray, light: Any
+) -> None:
+    for picture in (press, reference):
+        assert certain(pipeline, in_light(light)(picture)).height_error is not None
+    doubled = np.kron(press, np.ones((2, 2, 1), np.uint8))
+    certain(pipeline, doubled)
+
+
+@pytest.mark.parametrize("name", BENCH)
+def test_drawn_contacts_are_certain(name: str) -> None:
+    sample = td.sample(name)
+    for light in (1, 0.8, 1.1):
+        certain(td.Pipeline(sample.sensor, sample.reference), in_light(light)(sample.image))
+
+
+@pytest.mark.parametrize("kind", REFUSED)
+def test_a_picture_that_gives_no_depth_is_refused(pipeline: td.Pipeline, press: np.ndarray, kind: str) -> None:
+    edit, message = REFUSED[kind]
+    with pytest.raises(td.InputError, match=f"pictures: .*{message}"):
+        pipeline(edit(press))
+
+
+@pytest.mark.parametrize("kind", DOUBTED)
+def test_a_picture_that_gives_a_doubtful_depth_is_warned_of(
+    pipeline: td.Pipeline, press: np.ndarray, kind: str
+) -> None:
+    edit, message = DOUBTED[kind]
+    doubted(pipeline, edit(press), message)
+
+
+@pytest.mark.parametrize("size", [(128, 128), (24, 32)])
+def test_other_grids_see_the_same(mini: td.Sensor, reference: np.ndarray, press: np.ndarray, size: Any) -> None:
+    pipeline = td.Pipeline(mini, reference, grid=size)
+    certain(pipeline, press)
+    for kind in ("red and blue", "torn by 40 pixels", "half black", "grey"):
+        with pytest.raises(td.InputError, match=REFUSED[kind][1]):
+            pipeline(REFUSED[kind][0](press))
+
+
+def test_light_gains_that_are_off_compensate_nothing(mini: td.Sensor, reference: np.ndarray, press: np.ndarray) -> None:
+    pipeline = td.Pipeline(mini, reference, light_gains=False)
+    certain(pipeline, press)
+    doubted(pipeline, in_light(1.1)(press), r"by \+10 % in red, .* and there are no light gains")
+
+
+def test_square_pictures_can_be_rotated_by_90_degrees(mini: td.Sensor) -> None:
+    square = no_contact(mini)[:, :240]
+    for turns, angle in ((1, 270), (3, 90)):
+        with pytest.raises(td.InputError, match=f"rotated by {angle} degrees"):
+            check_picture(np.ascontiguousarray(np.rot90(square, turns)), Rest.of(square[None]), "picture")
+
+
+# References.
+
+
+PAIRS: dict[str, tuple[Edit, str]] = {
+    "BGR": (ordered(2, 1, 0), "red and blue are exchanged"),
+    "red and green": (ordered(1, 0, 2), "red and green are exchanged"),
+    "green and blue": (ordered(0, 2, 1), "green and blue are exchanged"),
+    "rotated": (lambda p: np.rot90(p, 2).copy(), "rotated by 180 degrees"),
+    "upside down": (lambda p: p[::-1].copy(), "mirrored top to bottom"),
+    "grey": (grey, "is grey"),
+    "one grey": (lambda p: np.full_like(p, 128), "is grey"),
+    "clipped": (in_light(2.2), "of its pixels are clipped"),
+    "white": (lambda p: np.full_like(p, 255), "of its pixels are clipped"),
+}
+
+
+@pytest.mark.parametrize("kind", PAIRS)
+def test_a_reference_that_gives_no_depth_is_refused(mini: td.Sensor, reference: np.ndarray, kind: str) -> None:
+    edit, message = PAIRS[kind]
+    with pytest.raises(td.InputError, match=f"reference: .*{message}"):
+        td.Pipeline(mini, edit(reference))
+
+
+def test_a_mirrored_pair_is_warned_of(mini: td.Sensor, reference: np.ndarray, press: np.ndarray) -> None:
+    with pytest.warns(td.InputWarning, match="reference: it is mirrored left to right, by the lighting"):
+        pipeline = td.Pipeline(mini, mirrored(reference))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        result = pipeline(mirrored(press))
+    assert result.height_error is None
+    assert "mirrored left to right" in result.warnings[0][0]
+
+
+def test_a_reference_with_contact_is_warned_of(mini: td.Sensor, reference: np.ndarray, press: np.ndarray) -> None:
+    with pytest.warns(td.InputWarning, match="reference: it is not smooth .* as if something touched"):
+        pipeline = td.Pipeline(mini, press)
+    doubted(pipeline, reference, "stands out by .* as if something touched it in the reference")
+    with pytest.warns(td.InputWarning, match="it is not smooth"):
+        pipeline = td.Pipeline(mini, press)
+    assert pipeline(press).height_error is None
+
+
+def test_a_reference_of_another_sensor_is_warned_of(mini: td.Sensor, reference: np.ndarray) -> None:
+    with pytest.warns(td.InputWarning, match="does not look like the sensor of gelsight-mini"):
+        td.Pipeline(mini, in_light((1, 1, 0.3))(reference))
+
+
+def test_the_frames_of_a_reference_agree(mini: td.Sensor, reference: np.ndarray, press: np.ndarray) -> None:
+    with pytest.raises(td.InputError, match="reference: picture 3 is -100 % as bright as the others"):
+        td.Pipeline(mini, np.stack([reference] * 3 + [np.zeros_like(reference)]))
+    with pytest.raises(td.InputError, match="reference: picture 1 differs from the others"):
+        td.Pipeline(mini, np.stack([reference, press, reference, reference]))
+
+
+def test_a_captured_reference_is_checked(mini: td.Sensor, reference: np.ndarray, press: np.ndarray) -> None:
+    pipeline = td.Pipeline(mini, reference)
+    with pytest.raises(td.InputError, match="red and blue are exchanged"):
+        pipeline.capture_reference(ordered(2, 1, 0)(reference))
+    with pytest.raises(td.InputError, match="it is black"):
+        pipeline.capture_zero(np.zeros_like(reference))
+    certain(pipeline, press)
+    with pytest.warns(td.InputWarning, match="it is not smooth"):
+        pipeline.capture_reference(press)
+    assert pipeline(press).warnings[0]
+    pipeline.capture_reference(reference)
+    certain(pipeline, press)
+
+
+# Batches and streams.
+
+
+def test_a_folder_names_the_picture(tmp_path: Path, pipeline: td.Pipeline, press: np.ndarray) -> None:
+    for name, picture in (("1.png", press), ("2.png", np.zeros_like(press))):
+        Image.fromarray(picture).save(tmp_path / name)
+    with pytest.raises(td.InputError, match=r"2\.png: it is black"):
+        pipeline(tmp_path)
+
+
+def test_a_batch_names_the_picture(pipeline: td.Pipeline, press: np.ndarray) -> None:
+    with pytest.raises(td.InputError, match=r"pictures\[1\]: it is black"):
+        pipeline(np.stack([press, np.zeros_like(press)]))
+    with pytest.warns(td.InputWarning, match=r"pictures\[1\]: its light changes across it"):
+        batch = pipeline(np.stack([press, in_light(1 + 0.03 * X)(press)]))
+    assert batch.height_error is None
+    assert batch[0].height_error is not None
+    assert batch[1].height_error is None
+
+
+def test_a_stream_leaves_out_what_gives_no_depth(pipeline: td.Pipeline, press: np.ndarray) -> None:
+    stream, black, bgr = pipeline.new_stream(), np.zeros_like(press), press[..., ::-1].copy()
+    with pytest.warns(td.InputWarning) as warned:
+        results = list(pipeline.stream([black, press, bgr, press], stream))
+    assert [str(each.message)[:48] for each in warned] == ["left out and counted: picture 0: it is black, at"]
+    assert (stream.taken, stream.failed) == (4, 2)
+    expected = list(pipeline.stream([press, press]))
+    for result, same in zip(results, expected, strict=True):
+        np.testing.assert_array_equal(result.codes, same.codes)
+
+
+def test_a_stream_warns_once_of_each_kind(pipeline: td.Pipeline, press: np.ndarray) -> None:
+    uneven = in_light(1 + 0.03 * X)(press)
+    with pytest.warns(td.InputWarning) as warned:
+        results = list(pipeline.stream([uneven, uneven, uneven]))
+    assert len(warned) == 1
+    assert all(result.height_error is None for result in results)
+
+
+# The real presses.
+
+
+def test_all_real_presses_are_certain(real: Any) -> None:
+    pipeline, background, presses = real
+    for picture in (background, *presses):
+        certain(pipeline, picture)
+
+
+@pytest.mark.parametrize("light", LIGHTS)
+def test_real_presses_in_another_light_are_certain(real: Any, light: Any) -> None:
+    for picture in real[2][::3]:
+        certain(real[0], in_light(light)(picture))
+
+
+@pytest.mark.parametrize("kind", [kind for kind in REFUSED if kind != "the rest green"])
+def test_real_presses_that_give_no_depth_are_refused(real: Any, kind: str) -> None:
+    edit, message = REFUSED[kind]
+    for picture in real[2][::9]:
+        with pytest.raises(td.InputError, match=message):
+            real[0](edit(picture))
+
+
+@pytest.mark.parametrize("kind", [kind for kind in DOUBTED if "lamp" not in kind and "clipped" not in kind])
+def test_real_presses_that_give_a_doubtful_depth_are_warned_of(real: Any, kind: str) -> None:
+    edit, message = DOUBTED[kind]
+    for picture in real[2][::9]:
+        doubted(real[0], edit(picture), message.split(" 4 %")[0])
+
+
+def test_a_real_press_is_no_reference(real: Any) -> None:
+    _, background, presses = real
+    for press in presses[::3]:
+        with pytest.warns(td.InputWarning, match="it is not smooth"):
+            pipeline = td.Pipeline(td.load("gelsight-mini"), press)
+        doubted(pipeline, background, "stands out")
+
+
+@pytest.mark.parametrize("kind", PAIRS)
+def test_real_references_that_give_no_depth_are_refused(real: Any, kind: str) -> None:
+    with pytest.raises(td.InputError, match=f"reference: .*{PAIRS[kind][1]}"):
+        td.Pipeline(td.load("gelsight-mini"), PAIRS[kind][0](real[1]))
+
+
+def test_a_mirrored_real_pair_is_warned_of(real: Any) -> None:
+    for picture in (real[1], *real[2][::9]):
+        with pytest.warns(td.InputWarning, match="mirrored left to right"):
+            td.Pipeline(td.load("gelsight-mini"), mirrored(picture))
