@@ -214,9 +214,85 @@ def test_what_is_left_out_is_warned_of(folder: Path) -> None:
     assert sensor.height_errors["quadratic"].mean == pytest.approx(1, abs=0.06)
 
 
+def in_memory(change: Any, circles: bool, columns: float = 1) -> tuple[list[td.BallPress], np.ndarray]:
+    """Return the presses and the background with changed pictures, whose pixels are 1 / `columns` times as wide."""
+    return [
+        td.BallPress(
+            change(pictures()[name]), diameter, ((x + 0.5) * columns - 0.5, y, contact) if circles else None, name
+        )
+        for name, diameter, x, y, contact, _ in places()
+    ], change(pictures()["background.png"])
+
+
+def narrowed(picture: np.ndarray) -> np.ndarray:
+    """Return a picture with pixels that are 1.25 times as wide as high."""
+    size = (CAMERA[1] * 4 // 5, CAMERA[0])
+    return np.asarray(Image.fromarray(picture).resize(size, Image.Resampling.BOX))
+
+
+@pytest.mark.parametrize("circles", [True, False])
+def test_pixels_that_are_not_square_give_the_same_millimetres(sensor: Any, tmp_path: Path, circles: bool) -> None:
+    balls, background = in_memory(narrowed, circles, 0.8)
+    wide = td.fit(balls, background, pitch_mm=(PITCH, 1.25 * PITCH), quiet=True)
+    assert (wide.pixel_pitch_mm, wide.pixel_aspect) == (PITCH, 1.25)
+    square = td.fit(*in_memory(np.array, circles), pitch_mm=PITCH, quiet=True)
+    for model in MODELS:
+        error, other = wide.height_errors[model], square.height_errors[model]
+        assert error.mean == pytest.approx(other.mean, abs=0.02)
+        assert error.spread < max(1.3 * other.spread, 0.01)
+    wide.save(tmp_path / "wide.npz")
+    again = td.load(tmp_path / "wide.npz")
+    assert again.pixel_aspect == 1.25
+    assert td.evaluate(again, balls, background).scores.keys() == wide.height_errors.keys()
+    seen = (
+        td.Pipeline(again, background)(balls[8].image),
+        td.Pipeline(square, pictures()["background.png"])(pictures()[places()[8][0]]),
+    )
+    one, two = (result.contact for result in seen)
+    assert seen[0].height_mm.max() == pytest.approx(seen[1].height_mm.max(), rel=0.02)
+    assert one.area_mm2 == pytest.approx(two.area_mm2, rel=0.05)
+    assert one.volume_mm3 == pytest.approx(two.volume_mm3, rel=0.05)
+    assert one.centroid_mm == pytest.approx(two.centroid_mm, abs=0.1)
+    assert np.abs(seen[0].slopes).max() == pytest.approx(np.abs(seen[1].slopes).max(), rel=0.1)
+
+
+def test_contacts_that_are_no_circles_are_warned_of() -> None:
+    balls, background = in_memory(narrowed, False)
+    with pytest.warns(InputWarning, match=r"contacts are \d\d % narrower than high, .* give pitch_mm=\(height, width\)"):
+        td.fit(balls, background, pitch_mm=PITCH, models="quadratic", quiet=True)
+
+
+def test_grey_pictures_are_refused() -> None:
+    def grey(picture: np.ndarray) -> np.ndarray:
+        return picture[..., [1, 1, 1]]
+
+    def tinted(picture: np.ndarray) -> np.ndarray:
+        return (grey(picture) * (0.8, 1, 0.9)).astype(np.uint8)
+
+    for change in (grey, tinted):
+        with pytest.raises(InputError, match="the colours of all presses change alike, as in grey pictures"):
+            td.fit(*in_memory(change, True), pitch_mm=PITCH, quiet=True)
+
+
+def test_markers_on_the_gel_hide_no_circle() -> None:
+    """Draw dark dots that stay where they are: their light is divided by that of the background."""
+    rows, columns = np.indices(CAMERA)
+    dots = np.hypot(rows % 24 - 12, columns % 24 - 12) < 4
+
+    def dotted(picture: np.ndarray) -> np.ndarray:
+        return np.where(dots[..., None], 0.3 * picture, picture).astype(np.uint8)
+
+    error = td.fit(*in_memory(dotted, False), pitch_mm=PITCH, models="cubic", quiet=True).height_errors["cubic"]
+    without = td.fit(*in_memory(np.array, False), pitch_mm=PITCH, models="cubic", quiet=True).height_errors["cubic"]
+    assert error.presses == without.presses
+    assert error.mean == pytest.approx(without.mean, abs=0.02)
+
+
 @pytest.mark.parametrize(
     ("choices", "message"),
     [
+        ({"pitch_mm": (0.1, 0.3)}, "pitch_mm=.*: accepted is pixels 0.5 to 2 times as wide as high"),
+        ({"pitch_mm": (0.1, 0.1, 0.1)}, "pitch_mm=.*: accepted are 1e-06 to 1000"),
         ({"models": "quartic"}, "models=quartic: accepted are lut, quadratic, cubic"),
         ({"models": ()}, "models=: accepted are lut, quadratic, cubic"),
         ({"bits": 7}, "bits=7: accepted is a whole number from 1 to 6"),

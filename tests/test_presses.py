@@ -76,10 +76,11 @@ def test_the_largest_slope_is_that_at_the_edge_of_the_contact() -> None:
 @pytest.mark.parametrize("index", range(0, 24, 3))
 def test_a_circle_is_found_in_the_picture(index: int) -> None:
     name, _, x, y, contact, ball = places()[index]
-    circle = find_circle(pictures()[name], pictures()["background.png"], 0.8 * ball)
-    assert circle is not None
-    assert math.hypot(circle[0] - x, circle[1] - y) < 2.5
-    assert abs(circle[2] - contact) < 2.5
+    found = find_circle(pictures()[name], pictures()["background.png"], 0.8 * ball)
+    assert found is not None
+    assert math.hypot(found.circle.x - x, found.circle.y - y) < 2.5
+    assert abs(found.circle.radius - contact) < 2.5
+    assert abs(found.stretch - 1) < 0.03
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -99,8 +100,8 @@ def test_a_circle_is_found_at_any_size_of_the_picture() -> None:
     two, four = found
     assert two is not None
     assert four is not None
-    x, y, radius = two
-    assert four == pytest.approx((2 * x + 0.5, 2 * y + 0.5, 2 * radius), abs=1e-6)
+    x, y, radius = two.circle
+    assert four.circle == pytest.approx((2 * x + 0.5, 2 * y + 0.5, 2 * radius), abs=1e-6)
     assert abs(radius / 2 / contact - 1) < 0.15
 
 

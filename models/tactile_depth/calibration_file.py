@@ -34,6 +34,7 @@ BUILT_IN = ("synthetic", "gelsight-mini")
 LARGEST_COEFFICIENT = 1e6
 LARGEST_MEMBER = 2 * (1 << BITS_PER_CHANNEL[1]) ** 3 * np.dtype(np.longdouble).itemsize + 1024  # bytes, with a header
 PIXEL_PITCHES_MM = (1e-6, 1e3)
+PIXEL_ASPECTS = (0.5, 2.0)
 CAMERA_SIZES = (8, 8192)  # rows, and columns
 LONGEST_EXPOSURE_US = 1e8
 OLD_KEYS = ("gradient", "pixel_pitch_mm", "coefficients", "largest_slope", "model")
@@ -45,6 +46,7 @@ KEYS = (
     "lighting",
     "cubic",
     "corrections",
+    "pixel_aspect",
     *(f"{what}_{model}" for what in ("fitted_slope", "cap_height") for model in MODELS),
 )
 
@@ -103,6 +105,7 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
         lighting=_finite(path, arrays, "lighting", (*LIGHTING_BLOCKS, 3)) if "lighting" in arrays else None,
         cubic=_polynomials(path, arrays, "cubic", CUBIC) if held["cubic"] else None,
         corrections=_corrections(path, arrays) if held["cubic"] else None,
+        pixel_aspect=_aspect(path, arrays) if "pixel_aspect" in arrays else 1.0,
     )
 
 
@@ -276,6 +279,13 @@ def _model(path: Path, model: np.ndarray | None, held: list[str]) -> str:
     if name not in held:
         raise InputError(f"{path}: `model` is {name}: accepted is a model that the file holds: {', '.join(held)}")
     return name
+
+
+def _aspect(path: Path, arrays: Arrays) -> float:
+    aspect, (low, high) = _number(path, arrays, "pixel_aspect"), PIXEL_ASPECTS
+    if not low <= aspect <= high:
+        raise InputError(f"{path}: `pixel_aspect` is {aspect:g}: accepted are {low:g} to {high:g}, width over height")
+    return aspect
 
 
 def _pitch(path: Path, arrays: Arrays) -> float:

@@ -5,10 +5,12 @@ from __future__ import annotations
 
 import importlib.util
 import math
+from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import map_coordinates
 
+from tactile_depth.ball_press import Circle
 from tactile_depth.errors import InputError
 from tactile_depth.resampling import resampling
 
@@ -28,8 +30,15 @@ def require_circle_finder() -> None:
         )
 
 
-def find_circle(image: np.ndarray, background: np.ndarray, largest_radius: float) -> tuple[float, float, float] | None:
-    """Return x, y and radius of the contact's circle in pixels of a picture; None if there is no visible circle.
+class Found(NamedTuple):
+    """Contact found in a picture, and its width over its height as seen, which is 1 for a circle."""
+
+    circle: Circle
+    stretch: float
+
+
+def find_circle(image: np.ndarray, background: np.ndarray, largest_radius: float, aspect: float = 1.0) -> Found | None:
+    """Return the contact's circle in pixels of a picture; None if there is no visible circle.
 
     Larger pictures are averaged to 320 columns first, because lengths and filters below are meant for such pictures.
 
@@ -42,25 +51,33 @@ def find_circle(image: np.ndarray, background: np.ndarray, largest_radius: float
     ----------
     image, background : uint8 array (rows, columns, 3)
     largest_radius : float
-        In pixels.
+        In pixels, down the rows, as the radius that is returned.
+    aspect : float
+        Width of a pixel over its height.
     """
     rows, columns = image.shape[:2]
     if columns <= MOST_COLUMNS:
-        return _find(image.astype(np.float64), background.astype(np.float64), largest_radius)
+        return _find(image.astype(np.float64), background.astype(np.float64), largest_radius, aspect)
     plan = resampling((rows, columns), (rows * MOST_COLUMNS // columns, MOST_COLUMNS))
-    found = _find(plan.average(image), plan.average(background), largest_radius / plan.scale)
+    found = _find(plan.average(image), plan.average(background), largest_radius / plan.scale, aspect)
     if found is None:
         return None
-    (x, y, radius), (top, left) = found, plan.origin
-    return (x + 0.5) * plan.scale - 0.5 + left, (y + 0.5) * plan.scale - 0.5 + top, radius * plan.scale
+    (x, y, radius), (top, left) = found.circle, plan.origin
+    x, y = (x + 0.5) * plan.scale - 0.5 + left, (y + 0.5) * plan.scale - 0.5 + top
+    return Found(Circle(x, y, radius * plan.scale), found.stretch)
 
 
-def _find(image: np.ndarray, background: np.ndarray, largest_radius: float) -> tuple[float, float, float] | None:
+def _find(image: np.ndarray, background: np.ndarray, largest_radius: float, aspect: float) -> Found | None:
     from skimage.filters import gaussian
     from skimage.measure import CircleModel, ransac
+    from skimage.transform import resize
 
     reference = np.maximum(background, 1)
     magnitude = np.linalg.norm(gaussian((image - reference) / reference, 1.5, channel_axis=-1), axis=-1)
+    if aspect != 1:  # square pixels, from edge to edge
+        shape = (magnitude.shape[0], round(magnitude.shape[1] * aspect))
+        aspect = shape[1] / magnitude.shape[1]
+        magnitude = resize(magnitude, shape)
     centre_x, centre_y, rough = _rough_circle(magnitude, largest_radius)
     angle = np.linspace(0, 2 * np.pi, RAYS, endpoint=False)[:, None]
     along = np.arange(0.5 * rough, 1.05 * rough, 0.25)
@@ -80,7 +97,16 @@ def _find(image: np.ndarray, background: np.ndarray, largest_radius: float) -> t
         return None
     # `params` became `center` and `radius` in scikit-image 0.26.
     x, y, radius = (*model.center, model.radius) if hasattr(model, "center") else model.params
-    return float(x), float(y), float(radius)
+    stretch = _stretch(points[on_circle] - (x, y))
+    return Found(Circle(float((x + 0.5) / aspect - 0.5), float(y), float(radius)), stretch)
+
+
+def _stretch(offsets: np.ndarray) -> float:
+    """Return width over height of the ellipse through points around its centre, (n, 2), x first."""
+    angle, distance = np.arctan2(offsets[:, 1], offsets[:, 0]), np.hypot(*offsets.T)
+    waves = [np.ones_like(angle), *(wave(k * angle) for k in (1, 2) for wave in (np.cos, np.sin))]
+    mean, _, _, wider, _ = np.linalg.lstsq(np.stack(waves, axis=-1), distance, rcond=None)[0]
+    return float((mean + wider) / (mean - wider))
 
 
 def _rough_circle(magnitude: np.ndarray, largest_radius: float) -> tuple[float, float, float]:

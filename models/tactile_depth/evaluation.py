@@ -186,7 +186,7 @@ def evaluate(
         )
     sensor.require_reference(True)
     check_reference(sensor, pictures.background[None])
-    on_grid = to_grid(pictures, pitch, find_circles)
+    on_grid = to_grid(pictures, pitch, find_circles, aspect=sensor.pixel_aspect)
     measured = [view for view in on_grid.views if view.is_whole]
     cut = [view.press.name for view in on_grid.views if not view.is_whole]
     notes = tuple(f"{name}: the edge of the picture cuts the contact: left out" for name in cut)

@@ -34,7 +34,7 @@ from warnings import warn
 import numpy as np
 
 from tactile_depth import reference
-from tactile_depth.calibration_file import LONGEST_EXPOSURE_US, PIXEL_PITCHES_MM
+from tactile_depth.calibration_file import LONGEST_EXPOSURE_US, PIXEL_ASPECTS, PIXEL_PITCHES_MM
 from tactile_depth.configuration import CORRECTION_BITS, DEVIATION, GRADIENT_LIMITS
 from tactile_depth.errors import Argument, InputError, InputWarning
 from tactile_depth.evaluation import Evaluation, Score, evaluation_of, scores_of
@@ -90,7 +90,7 @@ def fit(
     presses: str | Path | Sequence[BallPress],
     background: np.ndarray | str | Path | None = None,
     *,
-    pitch_mm: float | None = None,
+    pitch_mm: float | tuple[float, float] | None = None,
     models: str | Sequence[str] = MODELS,
     bits: int = DEFAULT_BITS,
     find_circles: bool = False,
@@ -111,8 +111,9 @@ def fit(
         `diameter_mm` and optionally `centre_x_px`, `centre_y_px`, `contact_radius_px`, `ball_radius_px`.
     background : uint8 array (rows, columns, 3) or path, optional
         Picture of the sensor without contact; by default that of the folder.
-    pitch_mm : float, optional
-        Millimetres per camera pixel; by default computed from the balls' radii in pixels.
+    pitch_mm : float or (height, width), optional
+        Millimetres per camera pixel; by default computed from the balls' radii in pixels. Two numbers, down the rows
+        and along the columns, if pixels are not square; radii in pixels then count down the rows.
     models : str or sequence of str
         Gradient models to fit: `lut`, `quadratic`, `cubic`.
     bits : int
@@ -138,7 +139,8 @@ def fit(
     """
     wanted = check_arguments(models, bits, pitch_mm, exposure_us)
     pictures = gather(presses, background)
-    on_grid = to_grid(pictures, camera_pitch_mm(pictures, pitch_mm), find_circles)
+    height, aspect = pixel_size(pitch_mm)
+    on_grid = to_grid(pictures, camera_pitch_mm(pictures, height), find_circles, aspect=aspect)
     for note in on_grid.notes:
         warn(InputWarning(note), stacklevel=2)
     fitted = fit_presses(on_grid, wanted, bits, name or pictures.name, exposure_us)
@@ -148,7 +150,7 @@ def fit(
 
 
 def check_arguments(
-    models: str | Sequence[str], bits: int, pitch_mm: float | None, exposure_us: float | None
+    models: str | Sequence[str], bits: int, pitch_mm: float | tuple[float, float] | None, exposure_us: float | None
 ) -> tuple[str, ...]:
     """Return the models; raise InputError if an argument of `fit` is not accepted."""
     wanted = (models,) if isinstance(models, str) else tuple(models)
@@ -157,13 +159,25 @@ def check_arguments(
     low, high = BITS_PER_CHANNEL
     if not isinstance(bits, int) or not low <= bits <= high:
         raise InputError(Argument("bits", bits), accepted=f"a whole number from {low} to {high}")
-    shortest, longest = PIXEL_PITCHES_MM
-    if pitch_mm is not None and not shortest <= pitch_mm <= longest:
-        accepted = (f"{shortest:g} to {longest:g}", "in mm per camera pixel")
-        raise InputError(Argument("pitch_mm", pitch_mm), accepted=accepted)
+    pixel_size(pitch_mm)
     if exposure_us is not None and not 0 < exposure_us <= LONGEST_EXPOSURE_US:
         raise InputError(Argument("exposure_us", exposure_us), accepted="a time above 0, in microseconds")
     return tuple(model for model in MODELS if model in wanted)
+
+
+def pixel_size(pitch_mm: float | tuple[float, float] | None) -> tuple[float | None, float]:
+    """Return the height of a pixel in mm, and its width over its height; raise InputError if they are not accepted."""
+    if pitch_mm is None:
+        return None, 1.0
+    given, (shortest, longest) = np.atleast_1d(np.asarray(pitch_mm)), PIXEL_PITCHES_MM
+    is_pitch = given.shape in ((1,), (2,)) and given.dtype.kind in "iuf"
+    if not is_pitch or not ((shortest <= given) & (given <= longest)).all():
+        accepted = (f"{shortest:g} to {longest:g}", "in mm per camera pixel, or its height and width")
+        raise InputError(Argument("pitch_mm", pitch_mm), accepted=accepted)
+    aspect, (low, high) = float(given[-1] / given[0]), PIXEL_ASPECTS
+    if not low <= aspect <= high:
+        raise InputError(Argument("pitch_mm", pitch_mm), accepted=f"pixels {low:g} to {high:g} times as wide as high")
+    return float(given[0]), aspect
 
 
 def fit_presses(
@@ -237,12 +251,13 @@ def _fit_models(
         filled(by_model["lut"]) if "lut" in models else None,
         presses.pitch_mm,
         solved(by_model["quadratic"]).reshape(COEFFICIENTS) if "quadratic" in models else None,
-        0.0 if models == ("lut",) else steepest,
+        0.0 if models == ("lut",) else steepest * max(1.0, presses.aspect),
         models[0],
         flat_field=True,
         fitted_slope=dict.fromkeys(models, steepest),
         cubic=cubic,
         corrections=corrections,
+        pixel_aspect=presses.aspect,
     )
     return sensor if corrections is None else replace(sensor, corrections=_as_stored(corrections, sensor))
 

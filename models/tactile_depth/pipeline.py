@@ -234,7 +234,7 @@ class Pipeline:
         result = Result(
             codes,
             depth_mm,
-            slopes,
+            slopes / (self.sensor.pixel_aspect, 1),
             dark,
             None if gains is None else gains * LIGHT_GAIN.lsb,
             dict(monitor.saturations),
@@ -245,6 +245,7 @@ class Pipeline:
             self.sensor.height_errors.get(self.config.gradient_model),
             streamed,
             self._warned(checked, gains, depth_mm, None if stream is None else stream.warned),
+            self.sensor.pixel_aspect,
         )
         return result[0] if single else result
 
@@ -314,7 +315,7 @@ class Pipeline:
 
     @property
     def pixel_pitch_mm(self) -> float:
-        """Width of a grid pixel, in mm."""
+        """Height of a grid pixel, in mm; its width is `sensor.pixel_aspect` times that."""
         return self.sensor.pixel_pitch_mm
 
     @property

@@ -32,13 +32,19 @@ LARGEST_CONTACT = 0.999  # fraction of the ball's radius: slopes grow without bo
 LARGEST_CIRCLE = 0.8  # largest circle that is searched for, as a fraction of the ball's radius
 BACKGROUND = Argument("background")
 TOP_PX = 2  # radius of the top of a cap, in grid pixels
+# Standard deviation of the colours in the contacts, second over first principal axis. Colour pictures of 45 real
+# presses: 0.58; the same pictures in grey: 0.
+ALIKE = 0.1
+# Width over height of found contacts, less 1. Real presses: 0.04, by the light; pixels 8 % narrower than high: 0.08.
+STRETCHED, FEWEST_STRETCHES = 0.06, 4
 
 
 @dataclass(frozen=True)
 class GridPress:
-    """Geometry of a press on a grid; lengths are in grid pixels, x along the columns, y down the rows.
+    """Geometry of a press on a grid; x counts along the columns, y down the rows, and the radii in heights of a pixel.
 
     A depth map is shifted by half a pixel up and to the left (divergence.py): it shows the centre at x + 0.5, y + 0.5.
+    `aspect` is the width of a pixel over its height.
     """
 
     name: str
@@ -46,6 +52,7 @@ class GridPress:
     y: float
     contact_radius: float
     ball_radius: float
+    aspect: float = 1.0
 
     @property
     def cap_height(self) -> float:
@@ -60,7 +67,8 @@ class GridPress:
     def margin(self, grid: tuple[int, int]) -> float:
         """Return the distance from the contact circle to the nearest edge of a grid; negative if it is cut."""
         rows, columns = grid
-        return min(self.x, self.y, columns - 1 - self.x, rows - 1 - self.y) - self.contact_radius
+        across, down = min(self.x, columns - 1 - self.x), min(self.y, rows - 1 - self.y)
+        return min(across * self.aspect, down) - self.contact_radius
 
     def is_central(self, grid: tuple[int, int]) -> bool:
         """Return True if the contact lies completely in the middle square of a grid."""
@@ -71,21 +79,24 @@ class GridPress:
     def distance(self, grid: tuple[int, int]) -> np.ndarray:
         """Return the distance of each pixel from the centre in contact radii, float64 (rows, columns)."""
         rows, columns = np.indices(grid)
-        return np.hypot(columns - self.x, rows - self.y) / self.contact_radius
+        return np.hypot((columns - self.x) * self.aspect, rows - self.y) / self.contact_radius
 
     def slopes(self, grid: tuple[int, int]) -> np.ndarray:
-        """Return the slopes of the depth, float64 (rows, columns, 2): those of the ball in the contact, 0 elsewhere."""
+        """Return the change of the depth from pixel to pixel, float64 (rows, columns, 2), in heights of a pixel.
+
+        It is that of the ball in the contact, 0 elsewhere. Of square pixels it is the slope.
+        """
         rows, columns = np.indices(grid, dtype=np.float64)
-        offset = np.stack((columns - self.x, rows - self.y), axis=-1)
+        offset = np.stack(((columns - self.x) * self.aspect, rows - self.y), axis=-1)
         squared = (offset**2).sum(axis=-1)
         touches = squared < self.contact_radius**2
         drop = np.sqrt(np.where(touches, self.ball_radius**2 - squared, 1))
-        return np.where(touches[..., None], -offset / drop[..., None], 0)
+        return np.where(touches[..., None], -offset * (self.aspect, 1) / drop[..., None], 0)
 
     def _squared(self, grid: tuple[int, int]) -> np.ndarray:
         """Return the squared distance of each depth of a map from the centre."""
         rows, columns = np.indices(grid)
-        return (columns - self.x - 0.5) ** 2 + (rows - self.y - 0.5) ** 2
+        return ((columns - self.x - 0.5) * self.aspect) ** 2 + (rows - self.y - 0.5) ** 2
 
     def depth(self, grid: tuple[int, int]) -> np.ndarray:
         """Return the depth of the ball above the contact circle, float64 (rows, columns), NaN outside."""
@@ -101,7 +112,7 @@ class GridPress:
         """Return points of the contact circle in a depth map: columns, rows, float64 (360,) each."""
         angle = np.linspace(0, 2 * np.pi, 360, endpoint=False)
         return (
-            self.x + 0.5 + self.contact_radius * np.cos(angle),
+            self.x + 0.5 + self.contact_radius / self.aspect * np.cos(angle),
             self.y + 0.5 + self.contact_radius * np.sin(angle),
         )
 
@@ -200,6 +211,8 @@ class GridPresses:
         Detected minus given circles in camera pixels: x, y, radius.
     pixel_format : str
         Pixel format of the camera that the pictures were converted for.
+    aspect : float
+        Width of a pixel over its height.
     """
 
     name: str
@@ -211,6 +224,7 @@ class GridPresses:
     notes: tuple[str, ...]
     agreement: np.ndarray
     pixel_format: str = "rgb888"
+    aspect: float = 1.0
 
     @property
     def grid(self) -> tuple[int, int]:
@@ -222,7 +236,7 @@ class GridPresses:
         """The size of the gel in the picture by the pitch, which balls of known diameter cannot check."""
         rows, columns = self.background.shape[:2]
         return (
-            f"{self.pitch_mm:.3g} mm per pixel: the picture shows {columns * self.pitch_mm:.1f} x "
+            f"{self.pitch_mm:.3g} mm per pixel: the picture shows {columns * self.pitch_mm * self.aspect:.1f} x "
             f"{rows * self.pitch_mm:.1f} mm of the gel. Check that with a ruler: balls fit any pitch, and an error of "
             "the pitch changes heights by twice as much"
         )
@@ -305,24 +319,28 @@ def to_grid(
     find_circles: bool = False,
     compare_circles: bool = False,
     choice: CameraChoice | None = None,
+    aspect: float = 1.0,
 ) -> GridPresses:
     """Resample presses to `picture_grid`, which covers their pictures; `notes` names the presses left out and why.
 
     Parameters
     ----------
     pitch_mm : float
-        Millimetres per camera pixel.
+        Millimetres per camera pixel, down the rows.
     find_circles : bool
         Detect circles in the pictures even if circles are given, and use the detected circles.
     compare_circles : bool
         Detect circles, use the given circles, and return the differences.
     choice : CameraChoice, optional
         Pictures are converted to what this camera sends, and then taken as its hardware takes them.
+    aspect : float
+        Width of a pixel over its height.
 
     Raises
     ------
     InputError
-        The background is too small or too dark, or scikit-image is needed and missing.
+        The background is too small or too dark, the colours of all pictures change alike, or scikit-image is needed and
+        missing.
     """
     background = pictures.background
     camera = background.shape[:2]
@@ -338,7 +356,7 @@ def to_grid(
     rest = sampler.frame(background)
     gains = captured_gains(rest[None], config)
     require_light(gains, config, BACKGROUND)
-    notes, agreement = list(pictures.notes), []
+    notes, agreement, stretches = list(pictures.notes), [], []
     geometry: list[tuple[GridPress, float]] = []
     frames: list[np.ndarray] = []
     for press in pictures.presses:
@@ -348,9 +366,11 @@ def to_grid(
             seen = None
             if find_circles or compare_circles or press.circle is None:
                 largest = min(LARGEST_CIRCLE * ball, min(camera) / 2)
-                seen = Circle(*circle) if (circle := find_circle(image, background, largest)) else None
+                found = find_circle(image, background, largest, aspect)
+                seen = None if found is None else found.circle
+                stretches += [] if found is None else [found.stretch]
             given = None if press.circle is None else Circle(*press.circle)
-            at = _grid_press(press.name, seen if find_circles else given or seen, ball, sampler, grid)
+            at = _grid_press(press.name, seen if find_circles else given or seen, ball, sampler, grid, aspect)
         except InputError as error:
             notes.append(str(InputError(f"{error}: left out")))
             continue
@@ -362,13 +382,38 @@ def to_grid(
     codes, relative, light = flat_codes(stack, gains, config), ratios(stack, gains, config), Light.of(config)
     colours = light.deviations(relative, settled(relative, light)[:, None, None])
     views = tuple(View(*at, *parts) for at, *parts in zip(geometry, stack, codes, colours, strict=True))
+    _require_colours(views, pictures.name)
+    notes += _stretched(stretches)
     differences = np.array(agreement).reshape(-1, 3)
     presses = GridPresses(pictures.name, views, background, rest, pitch_mm, sampler.scale, tuple(notes), differences)
-    return presses if choice is None else replace(presses, pixel_format=choice.pixel_format)
+    form = presses.pixel_format if choice is None else choice.pixel_format
+    return replace(presses, pixel_format=form, aspect=aspect)
+
+
+def _require_colours(views: Sequence[View], name: str) -> None:
+    """Raise InputError if all colours change alike in all contacts, as in grey pictures: they show no direction."""
+    if not views:
+        return
+    colours = np.concatenate([view.deviations[view.press.distance(view.grid) < FITTED_SHARE] for view in views])
+    first, second, _ = np.sqrt(np.linalg.eigvalsh(np.cov(colours.T.astype(np.float64)))[::-1].clip(0))
+    if second < ALIKE * first:
+        remedy = "give colour pictures of a gel that is lit in several colours"
+        raise InputError(f"{name}: the colours of all presses change alike, as in grey pictures", remedy=remedy)
+
+
+def _stretched(stretches: Sequence[float]) -> list[str]:
+    """Return a line if contacts of balls are ellipses."""
+    if len(stretches) < FEWEST_STRETCHES or abs(stretch := float(np.median(stretches)) - 1) < STRETCHED:
+        return []
+    wider = "wider" if stretch > 0 else "narrower"
+    return [
+        f"contacts are {100 * abs(stretch):.0f} % {wider} than high, and those of balls are circles: if pixels are not "
+        "square, give pitch_mm=(height, width) of a pixel"
+    ]
 
 
 def _grid_press(
-    name: str, circle: Circle | None, ball: float, sampler: GridSampler, grid: tuple[int, int]
+    name: str, circle: Circle | None, ball: float, sampler: GridSampler, grid: tuple[int, int], aspect: float
 ) -> GridPress:
     """Return the geometry of a circle and a ball's radius in camera pixels; raise InputError if it cannot be used."""
     if circle is None:
@@ -382,6 +427,7 @@ def _grid_press(
         (circle.y - top + 0.5) / sampler.scale - 0.5,
         circle.radius / sampler.scale,
         ball / sampler.scale,
+        aspect,
     )
     if not (press.distance(grid) < FITTED_SHARE).any():
         raise InputError(f"{name}: the press is outside the picture")

@@ -33,6 +33,8 @@ class Contact(ByValue):
     untouched_mm : float
         Mean depth of the other pixels, which a height is counted from, in mm; NaN without any.
     depth_lsb_mm, pixel_pitch_mm : float
+    pixel_aspect : float
+        Width of a grid pixel over its height, `pixel_pitch_mm`.
     """
 
     record: Record
@@ -40,6 +42,7 @@ class Contact(ByValue):
     untouched_mm: float
     depth_lsb_mm: float
     pixel_pitch_mm: float
+    pixel_aspect: float = 1.0
 
     def __repr__(self) -> str:
         peak = f"peak {self.peak_mm:.3g} mm at {self.peak_px}, area {self.area_mm2:.3g} mm^2"
@@ -68,12 +71,12 @@ class Contact(ByValue):
     @property
     def area_mm2(self) -> float:
         """Area whose depth is above `area_threshold_mm`, in mm^2; 0 for a contact that does not reach it."""
-        return self.record.area * self.pixel_pitch_mm**2
+        return self.record.area * self._pixel_mm2
 
     @property
     def volume_mm3(self) -> float:
         """Sum of the depths in the area times the area of a pixel, in mm^3."""
-        return self.record.volume * self.depth_lsb_mm * self.pixel_pitch_mm**2
+        return self.record.volume * self.depth_lsb_mm * self._pixel_mm2
 
     @property
     def centroid_px(self) -> tuple[float, float]:
@@ -103,7 +106,11 @@ class Contact(ByValue):
         if not self.touching:
             return None
         row, column = index
-        return row * self.pixel_pitch_mm, column * self.pixel_pitch_mm
+        return row * self.pixel_pitch_mm, column * self.pixel_pitch_mm * self.pixel_aspect
+
+    @property
+    def _pixel_mm2(self) -> float:
+        return self.pixel_pitch_mm**2 * self.pixel_aspect
 
     @property
     def is_central(self) -> bool:
@@ -182,6 +189,8 @@ class Result(ByValue):
         Records of the frames of a stream, which depend on the frames before.
     warnings : tuple of tuples of str
         For each frame why its heights are uncertain.
+    pixel_aspect : float
+        Width of a grid pixel over its height, `pixel_pitch_mm`.
     """
 
     codes: npt.NDArray[np.int32]
@@ -197,6 +206,7 @@ class Result(ByValue):
     calibration_error: HeightError | None
     streamed: tuple[Record, ...] | None = None
     warnings: tuple[tuple[str, ...], ...] = ()
+    pixel_aspect: float = 1.0
 
     def __repr__(self) -> str:
         *frames, rows, columns = self.codes.shape
@@ -282,4 +292,5 @@ class Result(ByValue):
         if self.codes.ndim != 2:
             raise AttributeError("several frames have several contacts: use result[i].contact")
         untouched = float(self.untouched_mm)
-        return Contact(self.records[0], self.mask, untouched, self.depth_lsb_mm, self.pixel_pitch_mm)
+        pixel = (self.pixel_pitch_mm, self.pixel_aspect)
+        return Contact(self.records[0], self.mask, untouched, self.depth_lsb_mm, *pixel)

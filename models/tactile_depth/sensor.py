@@ -102,7 +102,7 @@ class Sensor(ByValue):
         Model `lut`: slope dz/dx (along the columns) and dz/dy (down the rows) by the top b bits of red, green and
         blue, in pixels per pixel; depth z is positive pressed in. Real sensors are flat-fielded first: 128 I / ref.
     pixel_pitch_mm : float
-        Pitch of the camera's pixels; the pitch of the grid is larger if pixels are averaged.
+        Height of the camera's pixels; that of the grid's is larger if pixels are averaged.
     coefficients : float64 array (2, 3, 6), or None
         Model `quadratic`: slope = sum over red, green, blue of C (I / ref - 1), C = a quadratic in the position:
         terms 1, x, y, x^2, x y, y^2, in mm from the picture's centre, x along the columns, y down the rows.
@@ -126,6 +126,9 @@ class Sensor(ByValue):
     height_errors : mapping of str to HeightError, by model
     lighting : float64 array (`LIGHTING_BLOCKS`, 3), or None
         Block means of the picture without contact over their mean, which distinguish types of sensors.
+    pixel_aspect : float
+        Width of a pixel over its height. The models give the change of depth from pixel to pixel, in heights of a
+        pixel: dz/dx times this, and dz/dy.
     """
 
     name: str
@@ -142,6 +145,7 @@ class Sensor(ByValue):
     lighting: npt.NDArray[np.float64] | None = None
     cubic: npt.NDArray[np.float64] | None = None
     corrections: npt.NDArray[np.float64] | None = None
+    pixel_aspect: float = 1.0
 
     def __post_init__(self) -> None:
         for name in ("gradient", "coefficients", "reference", "lighting", "cubic", "corrections"):
@@ -373,6 +377,7 @@ class Sensor(ByValue):
             "corrections": None if self.corrections is None else self.corrections.astype(np.float32),
             "largest_slope": self.largest_slope if self.models != ("lut",) else None,
             "lighting": self.lighting,
+            "pixel_aspect": self.pixel_aspect if self.pixel_aspect != 1 else None,
         }
         for model, slope in self.fitted_slope.items():
             arrays[f"fitted_slope_{model}"] = slope

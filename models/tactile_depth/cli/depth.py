@@ -131,7 +131,7 @@ def _write_frame(folder: Path, suffix: str, label: str, image: np.ndarray, resul
     unit = PngInfo()
     unit.add_text("Description", "height above the untouched surface in micrometres")
     Image.fromarray(micrometres).save(folder / picture, pnginfo=unit)
-    write_ply(folder / mesh, result.height_mm, result.pixel_pitch_mm)
+    write_ply(folder / mesh, result.height_mm, result.pixel_pitch_mm, result.pixel_aspect)
     draw_overview(image, result, f"{label}: {summary(result)}").save(folder / overview)
     return [picture, mesh, overview]
 
@@ -161,6 +161,7 @@ def _describe_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> dict[
         "light_gains": config.light_gains,
         "grid": {"rows": pipeline.grid[0], "columns": pipeline.grid[1]},
         "pixel_pitch_mm": pipeline.pixel_pitch_mm,
+        "pixel_aspect": pipeline.sensor.pixel_aspect,
         "depth_lsb_mm": pipeline.depth_lsb_mm,
         "depth_range_mm": config.depth_range_px * pipeline.pixel_pitch_mm,
         "threshold_mm": pipeline.threshold_mm,

@@ -122,7 +122,7 @@ class Display(AbstractContextManager["Display"]):
         stream.log(
             "surface",
             rerun.Mesh3D.from_fields(
-                vertex_positions=vertices_mm(height, result.pixel_pitch_mm),
+                vertex_positions=vertices_mm(height, result.pixel_pitch_mm, result.pixel_aspect),
                 vertex_normals=_normals(result.slopes),
                 vertex_colors=colours(height, *depth_range).reshape(-1, 3),
             ),

@@ -64,7 +64,7 @@ def draw_overview(picture: np.ndarray, result: Result, caption: str) -> Image.Im
     rows, columns = result.codes.shape
     height = result.height_mm
     low, high = min(float(height.min()), 0.0), max(float(height.max()), result.threshold_mm)
-    size = (PANEL_WIDTH, round(PANEL_WIDTH * rows / columns))
+    size = (PANEL_WIDTH, round(PANEL_WIDTH * rows / columns / result.pixel_aspect))
     top = MARGIN + TITLE + 12
     width = 3 * PANEL_WIDTH + GAP + 2 * MARGIN + MARGIN
     canvas = Image.new("RGB", (width, top + size[1] + 24 + 3 * (LABEL + 8)), BACKGROUND)
@@ -82,7 +82,7 @@ def draw_overview(picture: np.ndarray, result: Result, caption: str) -> Image.Im
     canvas.paste(surface, (lefts[2], top))
 
     below = top + size[1] + 10
-    _scale_bar(draw, label, (lefts[1], below), columns * result.pixel_pitch_mm)
+    _scale_bar(draw, label, (lefts[1], below), columns * result.pixel_pitch_mm * result.pixel_aspect)
     draw.text((lefts[2], below), f"height drawn {exaggeration:.3g} times as tall", FADED, label)
     left = lefts[1]
     for colour, text, mask in (

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 
-def vertices_mm(height_mm: np.ndarray, pixel_pitch_mm: float) -> np.ndarray:
+def vertices_mm(height_mm: np.ndarray, pixel_pitch_mm: float, pixel_aspect: float) -> np.ndarray:
     """Return the points of a surface, float32 (rows * columns, 3): x to the right, y up the picture, z the height.
 
     x and y count from the upper left corner of the picture: depth (i, j) lies half a pixel up and to the left of the
@@ -16,6 +16,7 @@ def vertices_mm(height_mm: np.ndarray, pixel_pitch_mm: float) -> np.ndarray:
     """
     rows, columns = height_mm.shape
     y, x = np.mgrid[:rows, :columns].astype(np.float32) * np.float32(pixel_pitch_mm)
+    x *= np.float32(pixel_aspect)
     return np.stack([x, -y, height_mm.astype(np.float32)], axis=-1).reshape(-1, 3)
 
 
@@ -26,9 +27,9 @@ def triangles(rows: int, columns: int) -> np.ndarray:
     return np.stack([a, c, b, b, c, d], axis=-1).reshape(-1, 3)
 
 
-def write_ply(path: Path, height_mm: np.ndarray, pixel_pitch_mm: float) -> None:
+def write_ply(path: Path, height_mm: np.ndarray, pixel_pitch_mm: float, pixel_aspect: float) -> None:
     """Write a height map, float (rows, columns) in mm."""
-    points = vertices_mm(height_mm, pixel_pitch_mm)
+    points = vertices_mm(height_mm, pixel_pitch_mm, pixel_aspect)
     faces = triangles(*height_mm.shape)
     coordinates = "".join(f"property float {axis}\n" for axis in "xyz")
     header = (
