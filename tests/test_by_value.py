@@ -75,6 +75,11 @@ def test_every_public_class_with_arrays_is_compared_by_value() -> None:
     assert [kind for kind in with_arrays if not issubclass(kind, ByValue)] == []
 
 
+def test_the_arrays_of_a_copied_sensor_cannot_be_written() -> None:
+    for copied in (pickle.loads(pickle.dumps(td.load("gelsight-mini"))), copy.deepcopy(td.load("gelsight-mini"))):
+        assert not copied.cubic.flags.writeable
+
+
 def test_the_arrays_of_a_sensor_cannot_be_written() -> None:
     mine = np.zeros((2, 3, 6))
     sensor = replace(td.load("gelsight-mini"), coefficients=mine, reference=np.zeros((24, 32, 3), np.uint8))

@@ -205,6 +205,12 @@ def test_presses_in_memory_give_the_same_sensor(sensor: Any) -> None:
     assert again.name == "mine"
 
 
+def test_a_background_may_be_a_pil_image(folder: Path) -> None:
+    image = Image.fromarray(pictures()["background.png"])
+    fitted = td.fit(folder, image, models="quadratic", quiet=True)
+    np.testing.assert_array_equal(fitted.coefficients, td.fit(folder, models="quadratic", quiet=True).coefficients)
+
+
 def test_what_is_left_out_is_warned_of(folder: Path) -> None:
     balls = [td.BallPress(folder / row["frame"], row["diameter_mm"]) for row in table_rows()]
     background = pictures()["background.png"]
@@ -258,7 +264,9 @@ def test_pixels_that_are_not_square_give_the_same_millimetres(sensor: Any, tmp_p
 
 def test_contacts_that_are_no_circles_are_warned_of() -> None:
     balls, background = in_memory(narrowed, False)
-    with pytest.warns(InputWarning, match=r"contacts are \d\d % narrower than high, .* give pitch_mm=\(height, width\)"):
+    with pytest.warns(
+        InputWarning, match=r"contacts are \d\d % narrower than high, .* give pitch_mm=\(height, width\)"
+    ):
         td.fit(balls, background, pitch_mm=PITCH, models="quadratic", quiet=True)
 
 

@@ -14,6 +14,7 @@ from tactile_depth.by_value import ByValue
 from tactile_depth.checks.reference_check import check_reference
 from tactile_depth.cores import fastest
 from tactile_depth.errors import Argument, InputError, InputWarning, warn
+from tactile_depth.pictures import Picture
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presses import (
     BACKGROUND,
@@ -150,7 +151,7 @@ def evaluation_of(
 def evaluate(
     sensor: Sensor,
     presses: str | Path | Sequence[BallPress],
-    background: np.ndarray | str | Path | None = None,
+    background: Picture | None = None,
     *,
     find_circles: bool = False,
 ) -> Evaluation:

@@ -40,6 +40,7 @@ from tactile_depth.errors import Argument, InputError, InputWarning
 from tactile_depth.evaluation import Evaluation, Score, evaluation_of, scores_of
 from tactile_depth.gradient.flat_field import FLAT_CODE
 from tactile_depth.gradient.polynomial_gradient import correction_codes, correction_unit, correction_units
+from tactile_depth.pictures import Picture
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presses import (
     FITTED_SHARE,
@@ -88,7 +89,7 @@ class Fit:
 
 def fit(
     presses: str | Path | Sequence[BallPress],
-    background: np.ndarray | str | Path | None = None,
+    background: Picture | None = None,
     *,
     pitch_mm: float | tuple[float, float] | None = None,
     models: str | Sequence[str] = MODELS,
@@ -109,7 +110,7 @@ def fit(
     presses : path of a folder, or sequence of BallPress
         A folder holds pictures (PNG, JPEG) of one size, background.png, and presses.csv with columns `frame`,
         `diameter_mm` and optionally `centre_x_px`, `centre_y_px`, `contact_radius_px`, `ball_radius_px`.
-    background : uint8 array (rows, columns, 3) or path, optional
+    background : uint8 array (rows, columns, 3), PIL image or path, optional
         Picture of the sensor without contact; by default that of the folder.
     pitch_mm : float or (height, width), optional
         Millimetres per camera pixel; by default computed from the balls' radii in pixels. Two numbers, down the rows

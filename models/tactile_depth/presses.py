@@ -21,6 +21,7 @@ from tactile_depth.frames import read_picture
 from tactile_depth.gradient.flat_field import captured_gains, flat_codes, ratios, require_light
 from tactile_depth.gradient.light_gains import Light, settled
 from tactile_depth.grid_sampler import GridSampler, grid_sampler, picture_grid
+from tactile_depth.pictures import Picture
 from tactile_depth.press_folder import background_path, read_presses
 
 SMALLEST_GRID = 16  # columns
@@ -247,16 +248,14 @@ class GridPresses:
         return self.pitch_mm * self.scale
 
 
-def gather(
-    presses: str | Path | Sequence[BallPress], background: np.ndarray | str | Path | None = None
-) -> PressPictures:
+def gather(presses: str | Path | Sequence[BallPress], background: Picture | None = None) -> PressPictures:
     """Return presses from a folder or from memory.
 
     Parameters
     ----------
     presses : path of a folder, or sequence of BallPress
         A folder holds pictures, presses.csv (press_folder.py) and background.png or .jpg.
-    background : uint8 array (rows, columns, 3) or path, optional
+    background : uint8 array (rows, columns, 3), PIL image or path, optional
         Picture without contact; by default that of the folder.
 
     Raises
@@ -444,10 +443,11 @@ def _press_image(press: BallPress, background: np.ndarray) -> np.ndarray:
     return image
 
 
-def _picture(image: np.ndarray | str | Path, name: Part) -> np.ndarray:
-    """Return the pixels of a picture, from an array or a path."""
-    if not isinstance(image, np.ndarray):
+def _picture(image: Picture, name: Part) -> np.ndarray:
+    """Return the pixels of a picture, from an array, a PIL image or a path."""
+    if isinstance(image, str | Path):
         return read_picture(Path(image))
+    image = np.asarray(image)
     if image.dtype != np.uint8 or image.ndim != 3 or image.shape[-1] != 3 or not image.size:
         raise InputError(name, f": {image.dtype} {image.shape}", accepted="uint8 (rows, columns, 3), RGB")
     return image

@@ -154,6 +154,10 @@ class Sensor(ByValue):
                 view.flags.writeable = False
                 object.__setattr__(self, name, view)
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.__post_init__()  # a copy's arrays could be written
+
     def __repr__(self) -> str:
         camera = "" if self.camera is None else f"{self.camera.columns}x{self.camera.rows}, "
         return f"Sensor({self.name!r}, {camera}{self.model})"
