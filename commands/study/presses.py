@@ -2,8 +2,8 @@
 """`make presses`: what the pipeline makes of real ball presses, each by a calibration from all others, and in RTL.
 
 Heights, caps, untouched gel, centroid and area of each whole press, `PRESET=sensor` and 24 bits, alone and in other
-light; then each press through the RTL with its own calibration, every code against the model. The folder is that of
-`make calibrate`. RTL=0: model only. Exit status: 1 if a code differs, 2 on bad input.
+light; errors of fits to fewer presses; then each press through the RTL with its own calibration, every code against the
+model. The folder is that of `make calibrate`. RTL=0: model only. Exit status: 1 if a code differs, 2 on bad input.
 """
 
 from __future__ import annotations
@@ -24,12 +24,13 @@ from commands.run import bench
 from commands.run.calibrate import data_folder
 from tactile_depth.calibration_file import PIXEL_PITCHES_MM
 from tactile_depth.configuration import LIGHT_GAIN
-from tactile_depth.fitting import fit_presses
+from tactile_depth.fitting import DRAWN_OUT, errors_by_number, fit_presses
 from tactile_depth.frames import read_picture
 from tactile_depth.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
 from tactile_depth.registers.axil_registers import GAINS
 
 VARIABLES = ("PRESSES", "PITCH", "SIM", "RTL")
+NUMBERS = (8, 12, 18, 24, 36)  # presses of a fit
 LIGHTS = ((0.8,) * 3, (0.9,) * 3, (0.95,) * 3, (1.05,) * 3, (1.1,) * 3, (1.05, 1.0, 0.95), (0.95, 1.0, 1.05))
 
 
@@ -148,7 +149,8 @@ def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
         if simulator is not None:
             differing += codes_differ(simulator, pipeline, view.frame, result)
     print(f"each press by a calibration from all others, {presses.grid[1]} x {presses.grid[0]}, {pictures.name}\n")
-    print(table(same, np.array([view.press.is_central(view.grid) for view in views])))
+    central = np.array([view.press.is_central(view.grid) for view in views])
+    print(table(same, central))
     rows = []
     for light, values in lit.items():
         caps, areas = (
@@ -165,6 +167,13 @@ def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
         )
     head = ["light, of red, green, blue", "caps over those in the same light, mean", "largest change", "areas, mean"]
     print(f"\n{markdown.table(head, rows)}")
+    numbers = [number for number in NUMBERS if number + DRAWN_OUT <= len(presses.views)]
+    if numbers and central.sum() >= DRAWN_OUT:
+        by_number = errors_by_number(
+            presses, numbers, progress=lambda each: tqdm(each, "fits", leave=False, disable=None)
+        )
+        rows = [[str(number), f"{cap:.3f}", f"{1000 * rms:.1f}"] for number, (cap, rms) in by_number.items()]
+        print(f"\n{markdown.table(['presses fitted', 'caps, RMS error in the middle', 'height RMS, um'], rows)}")
     if simulator is not None:
         total = len(views) * presses.grid[0] * presses.grid[1]
         print(f"\nRTL on {simulator}: {total - differing:,} of {total:,} codes equal the model's")
