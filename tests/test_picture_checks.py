@@ -233,6 +233,7 @@ PAIRS: dict[str, tuple[Edit, str]] = {
     "green and blue": (ordered(0, 2, 1), "green and blue are exchanged"),
     "rotated": (lambda p: np.rot90(p, 2).copy(), "rotated by 180 degrees"),
     "upside down": (lambda p: p[::-1].copy(), "mirrored top to bottom"),
+    "mirrored": (mirrored, "it is mirrored left to right, by the lighting of gelsight-mini"),
     "grey": (grey, "is grey"),
     "one grey": (lambda p: np.full_like(p, 128), "is grey"),
     "clipped": (in_light(2.2), "of its pixels are clipped"),
@@ -245,16 +246,6 @@ def test_a_reference_that_gives_no_depth_is_refused(mini: td.Sensor, reference: 
     edit, message = PAIRS[kind]
     with pytest.raises(td.InputError, match=f"reference: .*{message}"):
         td.Pipeline(mini, edit(reference))
-
-
-def test_a_mirrored_pair_is_warned_of(mini: td.Sensor, reference: np.ndarray, press: np.ndarray) -> None:
-    with pytest.warns(td.InputWarning, match="reference: it is mirrored left to right, by the lighting"):
-        pipeline = td.Pipeline(mini, mirrored(reference))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        result = pipeline(mirrored(press))
-    assert result.height_error is None
-    assert "mirrored left to right" in result.warnings[0][0]
 
 
 def test_a_reference_with_contact_is_warned_of(mini: td.Sensor, reference: np.ndarray, press: np.ndarray) -> None:
@@ -375,7 +366,7 @@ def test_real_references_that_give_no_depth_are_refused(real: Any, kind: str) ->
         td.Pipeline(td.load("gelsight-mini"), PAIRS[kind][0](real[1]))
 
 
-def test_a_mirrored_real_pair_is_warned_of(real: Any) -> None:
+def test_a_mirrored_real_pair_is_refused(real: Any) -> None:
     for picture in (real[1], *real[2][::9]):
-        with pytest.warns(td.InputWarning, match="mirrored left to right"):
+        with pytest.raises(td.InputError, match="mirrored left to right"):
             td.Pipeline(td.load("gelsight-mini"), mirrored(picture))

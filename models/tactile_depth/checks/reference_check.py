@@ -53,18 +53,15 @@ def check_reference(sensor: Sensor, pictures: np.ndarray, name: Part = REFERENCE
 
 
 def _other_lighting(sensor: Sensor, rest: np.ndarray, name: Part) -> list[Doubt]:
-    """Compare a reference with the lighting of the calibration; refuse what is certainly another order of it."""
+    """Compare a reference with the lighting of the calibration; refuse another order of it."""
     if sensor.lighting is None:
         return []
     own, seen = np.maximum(sensor.lighting, DARKEST), np.maximum(lighting(rest), DARKEST)
     if is_grey(seen, own):
         raise UnusablePicture(name, ": it is grey, its colours do not differ", remedy="take it in colour, as RGB")
-    differs = float(np.sqrt(((seen - own) ** 2).mean()))
     if exchange := exchange_of(sensor, rest):
-        text = f": {exchange}, by the lighting of {sensor.name}"
-        if differs > LIGHTING_AGREES:
-            raise UnusablePicture(name, text, remedy=CORRECT_IT)
-        return [doubt("order of the reference", name, text, remedy=CORRECT_IT)]
+        raise UnusablePicture(name, f": {exchange}, by the lighting of {sensor.name}", remedy=CORRECT_IT)
+    differs = float(np.sqrt(((seen - own) ** 2).mean()))
     if differs > LIGHTING_AGREES:
         text = f": it does not look like the sensor of {sensor.name} (its lighting differs by {100 * differs:.0f} %)"
         remedy = ("give the ", Argument("calibration"), " of the sensor that took it")
