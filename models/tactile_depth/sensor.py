@@ -21,6 +21,7 @@ from tactile_depth.configuration import (
     GRADIENT_MODELS,
     SMALLEST_DEPTH_RANGE_PX,
     Configuration,
+    ExactConfiguration,
 )
 from tactile_depth.errors import Argument, InputError, Part, is_number
 
@@ -262,7 +263,9 @@ class Sensor(ByValue):
             light_gains=model != "lut" if light_gains is None else light_gains,
             **choices,
         )
-        return replace(config, coefficient_limit=self._coefficient_limit(config)) if config.polynomials else config
+        if not config.polynomials or isinstance(config, ExactConfiguration):
+            return config
+        return replace(config, coefficient_limit=self._coefficient_limit(config))
 
     def _coefficient_limit(self, config: Configuration) -> float:
         """Return the power of two above all coefficients on the grid of a configuration, from the smallest accepted."""
