@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make registers`: writes all files that the maps in registers/ describe, and the list of sources for FuseSoC.
 
-There are two maps: tactile_depth.rdl of the pipeline, and camera.rdl of the camera front end. Four files of each are
+There are two maps: tactile_depth.rdl of the pipeline, and camera.rdl of the camera front end. Five files of each are
 committed, so that nobody needs these tools to use them: the page by peakrdl-markdown, the C header by peakrdl-cheader,
-a package of SystemVerilog, because no exporter writes one that Icarus 11 reads, and the JSON that register_map.py
-reads, because a run then needs no compiler of 40 MB. The Python access layer of peakrdl-python goes to build/: it has
-thousands of lines, most of them its library.
+the IP-XACT of IEEE 1685-2014 by peakrdl-ipxact, a package of SystemVerilog, because no exporter writes one that Icarus
+11 reads, and the JSON that register_map.py reads, because a run then needs no compiler of 40 MB. The Python access layer
+of peakrdl-python goes to build/: it has thousands of lines, most of them its library.
 """
 
 import json
@@ -18,10 +18,11 @@ from typing import Any
 
 from peakrdl_cheader.c_standards import CStandard
 from peakrdl_cheader.exporter import CHeaderExporter
+from peakrdl_ipxact import IPXACTExporter
 from peakrdl_markdown import MarkdownExporter
 from peakrdl_python.exporter import PythonExporter
 from systemrdl.compiler import RDLCompiler
-from systemrdl.node import FieldNode, RegNode, RootNode
+from systemrdl.node import AddrmapNode, FieldNode, RegNode, RootNode
 
 from commands.common import variables, wrapper
 from commands.common.repository import ROOT, sources
@@ -30,6 +31,7 @@ from tactile_depth.camera.pixel_format import chroma_codes
 from tactile_depth.camera_configuration import FORMATS
 
 FUSESOC = ROOT / "tactile_depth.core"
+VENDOR = "tactile-depth"  # of the IP-XACT components
 LAYER = ROOT / "build" / "registers"
 LAYER_NAME = "tactile_depth_registers"  # `tactile_depth` is the package of models
 
@@ -271,6 +273,16 @@ def fusesoc_core() -> str:
     return re.sub(r"(?<=  rtl:\n    files:\n)( {6}- .*\n)+", files, FUSESOC.read_text())
 
 
+def ip_xact(of: Map, top: AddrmapNode, path: Path) -> str:
+    """Return the text of the IP-XACT component of a map, which is first written to `path`."""
+    identity = re.search(r"^name: .*:(\w+):([\w.]+)$", FUSESOC.read_text(), re.MULTILINE)
+    assert identity is not None
+    name, version = identity.groups()
+    IPXACTExporter(vendor=VENDOR, library=name, version=version).export(top, str(path))
+    declaration, _, body = path.read_text().partition("\n")
+    return f"{declaration}\n<!-- SPDX-License-Identifier: Apache-2.0 -->\n<!-- {of.written_by} -->\n{body}"
+
+
 def generated(of: Map) -> dict[Path, str]:
     """Return the text of each committed file that is written from a map."""
     top = compiled(of.source).top
@@ -285,6 +297,7 @@ def generated(of: Map) -> dict[Path, str]:
             ROOT / "docs" / of.page: f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n{page.read_text()}",
             of.source.with_suffix(".h"): f"// SPDX-License-Identifier: Apache-2.0\n// {of.written_by}\n"
             + header.read_text(),
+            of.source.with_suffix(".xml"): ip_xact(of, top, folder / f"{of.name}.xml"),
             ROOT / "models" / "tactile_depth" / "registers" / of.data: json.dumps(described, indent=1) + "\n",
             of.package: package(of, registers),
         }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Maps in registers/: generated files are up to date, and C and Python access the registers by them."""
+"""Maps in registers/: generated files are up to date, and C, Python and IP-XACT have the same registers."""
 
 import shutil
 import subprocess
@@ -7,6 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from peakrdl_ipxact import IPXACTImporter
+from systemrdl.compiler import RDLCompiler
+from systemrdl.node import AddrmapNode
 
 from commands.common.repository import ROOT
 from commands.hardware import registers
@@ -100,6 +103,50 @@ def test_the_c_header(of: registers.Map, tmp_path: Path) -> None:
     ran = subprocess.run([compiler, *flags, program, "-o", tmp_path / "program"], capture_output=True, text=True)
     assert ran.returncode == 0, ran.stderr
     assert subprocess.run([tmp_path / "program"]).returncode == 0
+
+
+class Importer(IPXACTImporter):
+    """Importer of IP-XACT, which has no word for `external`: a register whose accesses the user defines is external."""
+
+    def parse_register(self, register: Any) -> Any:
+        parsed = super().parse_register(register)
+        parsed.external = any("onread" in field.properties for field in parsed.children)
+        return parsed
+
+
+def described(top: AddrmapNode) -> list[dict[str, Any]]:
+    """Return name, address, bits and fields of each register of a map; a field with bits, access, reset and values."""
+    accesses = ("sw", "onwrite", "onread")
+    return [
+        {
+            "name": register.inst_name,
+            "address": register.absolute_address,
+            "bits": register.get_property("regwidth"),
+            "text": (register.get_property("name"), register.get_property("desc")),
+            "fields": [
+                {
+                    "name": field.inst_name,
+                    "bits": (field.high, field.low),
+                    "access": [str(field.get_property(access)) for access in accesses],
+                    "reset": field.get_property("reset"),
+                    "values": [(code.name, code.value) for code in field.get_property("encode") or ()],
+                    "text": field.get_property("name"),
+                }
+                for field in register.fields()
+            ],
+        }
+        for register in top.registers(unroll=True)
+    ]
+
+
+@pytest.mark.parametrize("of", MAPS, ids=lambda of: of.name)
+def test_the_ip_xact(of: registers.Map) -> None:
+    """Import the component again: it has the registers of the map, with their addresses, fields, access and reset."""
+    compiler = RDLCompiler()
+    Importer(compiler).import_file(str(of.source.with_suffix(".xml")))
+    imported = compiler.elaborate(f"{of.name}__{of.name}_mmap__{of.name}", inst_name=of.name).top
+    assert described(imported) == described(registers.compiled(of.source).top)
+    assert [register["name"] for register in described(imported)] == [register.name for register in MAPS[of]]
 
 
 def test_the_python_layer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
