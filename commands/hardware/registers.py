@@ -4,8 +4,8 @@
 There are two maps: tactile_depth.rdl of the pipeline, and camera.rdl of the camera front end. Five files of each are
 committed, so that nobody needs these tools to use them: the page by peakrdl-markdown, the C header by peakrdl-cheader,
 the IP-XACT of IEEE 1685-2014 by peakrdl-ipxact, a package of SystemVerilog, because no exporter writes one that Icarus
-11 reads, and the JSON that register_map.py reads, because a run then needs no compiler of 40 MB. The Python access layer
-of peakrdl-python goes to build/: it has thousands of lines, most of them its library.
+11 reads, and the JSON that register_map.py reads, because a run then needs no compiler of 40 MB. The Python access
+layer of peakrdl-python goes to build/: it has thousands of lines, most of them its library.
 """
 
 import json

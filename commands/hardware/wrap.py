@@ -2,11 +2,11 @@
 """`make wrap NAME=finger`: a module tactile_depth_finger with every parameter of a configuration inside.
 
 Takes NAME, OUT, TABLES (where simulator and synthesis find the table files) and the variables of `make sim` that choose
-a configuration. The module has the ports of tactile_depth. It and its table files go into the folder OUT; with ZERO
-the table of the zero offset holds what a capture of those frames measures. Modules for
-several configurations fit into one design, if each has its own folder of tables. With CAMERA, and BAYER and WINDOW, the
-module is tactile_sensor_finger: its s_axis takes the words of that camera, and it has the pins of dvp_receive and
-camera_setup.
+a configuration. The module has the ports of tactile_depth. It, its table files, and a C header that loads the same
+tables over the registers go into the folder OUT; with ZERO the table of the zero offset holds what a capture of those
+frames measures. Modules for several configurations fit into one design, if each has its own folder of tables. With
+CAMERA, and BAYER and WINDOW, the module is tactile_sensor_finger: its s_axis takes the words of that camera, and it has
+the pins of dvp_receive and camera_setup.
 """
 
 import os
@@ -15,7 +15,7 @@ import sys
 from commands.common import repository, run_request, variables, wrapper
 from commands.common.zero_offset import untouched, zero_of
 from commands.hardware import synth, synthesis
-from tactile_depth import files
+from tactile_depth import c_header, files
 from tactile_depth.errors import InputError
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
@@ -37,7 +37,9 @@ def main() -> None:
             parameters = top_parameters(config, calibration.pixel_pitch_mm, frames.camera)
             path = wrapper.write(work, name, parameters, tables)
             write_roms(work, calibration, config, zero)
+            count = len(list(work.glob("*.hex")))
+            (work / c_header.FILE).write_text(c_header.c_header(calibration, config, zero))
             names = [file.name for file in work.iterdir()]
             files.replace(work, names, out)
         run_request.announce(request, config)
-        print(f"wrote {os.path.relpath(out / path.name)} and {len(names) - 1} table files beside it")
+        print(f"wrote {os.path.relpath(out / path.name)}, {count} table files and {c_header.FILE} beside it")

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
@@ -25,12 +24,12 @@ from tactile_depth.cores import fastest
 from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tactile_depth.depth.zero_offset import exact_zero, no_zero
 from tactile_depth.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
-from tactile_depth.files import new_files
 from tactile_depth.frames import camera_scale
 from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, pixel_gains, require_light, unit_gains
 from tactile_depth.gradient.light_gains import Light, LightFilter
 from tactile_depth.gradient.reference_capture import largest_log2_frames
 from tactile_depth.grid_sampler import picture_grid
+from tactile_depth.hardware_files import write_hardware
 from tactile_depth.pictures import Picture, Pictures
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presets import SENSOR, Boundary, Model, Solver
@@ -38,23 +37,12 @@ from tactile_depth.reader import Reader, power_of_two_of
 from tactile_depth.result import Recorder, Result
 from tactile_depth.sensor import Sensor
 from tactile_depth.stream import Stream
-from tactile_depth.tactile_depth import (
-    Tables,
-    config_value,
-    light_of,
-    slope_codes,
-    slope_tables,
-    solve,
-    top_parameters,
-    write_roms,
-    zeroed,
-)
+from tactile_depth.tactile_depth import Tables, light_of, slope_codes, slope_tables, solve, zeroed
 
 SYNTHETIC_GRID = (128, 128)
 ARITHMETICS = ("chip", "float")
 Arithmetic = Literal["chip", "float"]
 BOUNDARIES = ("neumann", "dirichlet")
-PARAMETERS = "parameters.json"
 THRESHOLDS = {"THRESHOLD": "on_threshold", "AREA_THRESHOLD": "area_threshold"}  # fields of Settings, by register
 PICTURES, REFERENCE = Argument("pictures"), Argument("reference")
 PIXELS_AT_ONCE = 1 << 16  # pixels of a batch of frames, whose arrays stay in a cache
@@ -374,13 +362,14 @@ class Pipeline:
         self._use_zero(frames)
 
     def hardware(self, folder: str | Path) -> Path:
-        """Write the parameters of the top module and the $readmemh files, with which the RTL computes the same depth.
+        """Write the parameters of the top module and the tables, with which the RTL computes the same depth.
 
         Parameters
         ----------
         folder : path
             Created if it is missing. Its `parameters.json` holds the parameters of hdl/tactile_depth.sv, the fields of
-            Config by name, the contact thresholds for the registers, units, and the names of the tables.
+            Config by name, the contact thresholds for the registers, units, and the names of the $readmemh files.
+            Software in C loads the same tables with its `tactile_depth_tables.h`.
 
         Returns
         -------
@@ -395,24 +384,8 @@ class Pipeline:
             problem = " is for double precision alone"
             remedy = ("make the pipeline with ", Argument("arithmetic", "chip"), " and a grid that it takes")
             raise InputError(Argument("grid", self.grid), problem, remedy=remedy)
-        folder = Path(folder)
-        with new_files(folder, PARAMETERS) as unfinished:
-            write_roms(unfinished, self.sensor, self.config, self._zero, self._gains)
-            fields = top_parameters(self.config, self.pixel_pitch_mm)
-            description = {
-                "parameters": {"Config": config_value(fields)},
-                "fields": fields,
-                "registers": {name: getattr(self._recorder.settings, field) for name, field in THRESHOLDS.items()},
-                "grid": list(self.grid),
-                "depth_lsb_mm": self.depth_lsb_mm,
-                "pixel_pitch_mm": self.pixel_pitch_mm,
-                "gradient_lsb": self.config.gradient_lsb,
-                "calibration": self.sensor.name,
-                "gradient_model": self.config.gradient_model,
-                "tables": sorted(path.name for path in unfinished.iterdir()),
-            }
-            (unfinished / PARAMETERS).write_text(json.dumps(description, indent=1) + "\n")
-        return folder / PARAMETERS
+        thresholds = {name: getattr(self._recorder.settings, field) for name, field in THRESHOLDS.items()}
+        return write_hardware(Path(folder), self.sensor, self.config, self._zero, self._gains, thresholds)
 
     # Arithmetic. Each function returns slopes, and depth in codes before the zero offset, rows in stream order.
 

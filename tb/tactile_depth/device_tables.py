@@ -15,30 +15,18 @@ import numpy as np
 
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
-from tactile_depth.depth.zero_offset import no_zero
-from tactile_depth.gradient.flat_field import pixel_gains, unit_gains
-from tactile_depth.gradient.gradient_lookup import gradient_codes
-from tactile_depth.gradient.polynomial_gradient import coefficient_map, correction_entries, polynomial_words
+from tactile_depth.gradient.flat_field import pixel_gains
+from tactile_depth.gradient.polynomial_gradient import coefficient_map
 from tactile_depth.registers.axil_port import Response
 from tactile_depth.registers.register_map import REGISTERS, TABLES
 from tactile_depth.sensor import CUBIC
+from tactile_depth.table_entries import ONE_WORD, table_entries
 from tactile_depth.tactile_depth import Tables
 from tb.axil import RegisterClient
 
 COMMIT = REGISTERS["TABLE_COMMIT"]
-ONE_WORD = ("coefficients", "reference", "zero")  # tables whose entries have no upper word
 
 changed: set[str] = set()  # tables of the device that differ from the build; only this state outlives a test
-
-
-def one_word(low: np.ndarray) -> np.ndarray:
-    """Return the entries (n, 2) of a table without upper words."""
-    return np.stack([low.ravel(), np.zeros(low.size, np.int64)], axis=-1)
-
-
-def reference_entries(gains: np.ndarray) -> np.ndarray:
-    """Return the entries of the reference table from gains (node rows, node columns, 3), with a fourth channel of 0."""
-    return one_word(np.pad(gains, ((0, 0), (0, 0), (0, 1))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,20 +45,7 @@ class Content:
     @classmethod
     def built(cls, config: Configuration) -> Content:
         """Return the content of the build."""
-        sensor = synthetic(config.bits_per_channel)
-        entries = {}
-        if config.gradient_model == "lut":
-            entries["gradient"] = gradient_codes(sensor, config)
-        else:
-            entries["coefficients"] = one_word(polynomial_words(sensor, config))
-        corrections = correction_entries(sensor, config)
-        if corrections is not None:
-            entries["gradient"] = corrections
-        if config.flat_field:
-            entries["reference"] = reference_entries(unit_gains(config))
-        if config.zero_offset:
-            entries["zero"] = one_word(no_zero(config))
-        return cls(config, entries)
+        return cls(config, table_entries(synthetic(config.bits_per_channel), config))
 
     def with_table(self, name: str, entries: np.ndarray) -> Content:
         """Return this content with one table replaced."""

@@ -12,11 +12,11 @@ from tactile_depth.gradient.flat_field import captured_gains
 from tactile_depth.latency import first_depth_latency
 from tactile_depth.registers.axil_port import Response
 from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.table_entries import one_word, reference_entries
 from tb.axis import broken, video
 from tb.pixels import pack, unpack
 from tb.selection import Level, case
 from tb.tactile_depth.bench import HEAD_CLOCKS, Pipeline, Stream, started
-from tb.tactile_depth.device_tables import one_word, reference_entries
 
 REFERENCE_CAPTURE, ZERO_CAPTURE = REGISTERS["REFERENCE_CAPTURE"], REGISTERS["ZERO_CAPTURE"]
 DARK_LEVEL = 50

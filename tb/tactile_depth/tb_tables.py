@@ -11,10 +11,11 @@ from cocotb.triggers import ClockCycles
 from tactile_depth.configuration import Configuration
 from tactile_depth.registers.axil_port import Response
 from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.table_entries import one_word, reference_entries
 from tb.selection import Level, case, named, up_to
 from tb.stream import MANY, configuration
 from tb.tactile_depth.bench import HEAD_CLOCKS, SKID_WORDS, Pipeline, started
-from tb.tactile_depth.device_tables import Content, one_word, reference_entries
+from tb.tactile_depth.device_tables import Content
 
 COMMIT = REGISTERS["TABLE_COMMIT"]
 BUILT = tuple(Content.built(configuration()).entries)  # names of the tables of this build

@@ -105,7 +105,7 @@ def test_the_c_header(of: registers.Map, tmp_path: Path) -> None:
     assert subprocess.run([tmp_path / "program"]).returncode == 0
 
 
-class Importer(IPXACTImporter):
+class Importer(IPXACTImporter):  # type: ignore[misc]
     """Importer of IP-XACT, which has no word for `external`: a register whose accesses the user defines is external."""
 
     def parse_register(self, register: Any) -> Any:

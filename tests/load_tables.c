@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Loads the tables of a calibration into tests/register_file.c: load_tables [TABLES] [NAME=VALUE ..]
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define TACTILE_DEPTH_POLLS 100
+#include "tactile_depth_tables.h"
+
+uint32_t device_read(void *context, uint32_t address);
+void device_write(void *context, uint32_t address, uint32_t word);
+void device_begin(int count, char **words);
+void device_end(void);
+
+int main(int count, char **words)
+{
+  uint32_t tables = (uint32_t)strtoul(words[1], NULL, 0);
+
+  device_begin(count - 2, words + 2);
+  printf("result %d\n", tactile_depth_load(device_write, device_read, NULL, tables & TACTILE_DEPTH_ALL_TABLES));
+  device_end();
+  return 0;
+}
