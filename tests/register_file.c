@@ -11,112 +11,128 @@
 #include "tactile_depth.h"
 
 #define AT(register) offsetof(tactile_depth_t, register)
-#define FIELD(word, name) (((word) & TACTILE_DEPTH__##name##_bm) >> TACTILE_DEPTH__##name##_bp)
 
-enum { TABLES = 4, ENTRIES = 1 << 15 };
+enum { TABLES = 4, REFERENCE = 2, ENTRIES = 1 << 15 };
 
 struct entry {
   uint32_t high, low;
 };
 
-static uint32_t registers[sizeof(tactile_depth_t) / sizeof(uint32_t)];
-static uint32_t sizes[TABLES], in_use[TABLES], frame_at, capture_reads, commit_reads, refused_from, stored, refusals;
-static struct entry banks[TABLES][2][ENTRIES];
+struct device {
+  union {
+    tactile_depth_t registers;
+    uint32_t words[sizeof(tactile_depth_t) / sizeof(uint32_t)];
+  };
+  uint32_t sizes[TABLES], in_use[TABLES];
+  uint32_t frame_at;       // read of TABLE_COMMIT at which a frame begins; 0: none does
+  uint32_t capture_reads;  // of REFERENCE_CAPTURE until its capture ends
+  uint32_t refused_from;   // write of TABLE_LOW from which on all are refused
+  uint32_t commit_reads, stored, refusals;
+  struct entry banks[TABLES][2][ENTRIES];
+};
 
-static uint32_t *at(uint32_t address)
+static struct device the_device;
+
+static uint32_t selected(const struct device *device)
 {
-  return &registers[address / sizeof(uint32_t)];
+  return device->registers.TABLE_SELECT & TACTILE_DEPTH__TABLE_SELECT__SELECT_bm;
 }
 
-static void begin_frame(void)
+static void begin_frame(struct device *device)
 {
   for (uint32_t table = 0; table < TABLES; table++)
-    in_use[table] ^= *at(AT(TABLE_COMMIT)) >> table & 1;
-  *at(AT(TABLE_COMMIT)) = 0;
+    device->in_use[table] ^= device->registers.TABLE_COMMIT >> table & 1;
+  device->registers.TABLE_COMMIT = 0;
+}
+
+static void store(struct device *device, uint32_t word)
+{
+  uint32_t table = selected(device), index = device->registers.TABLE_INDEX;
+  int closed = (device->registers.TABLE_COMMIT >> table & 1) || (table == REFERENCE && device->capture_reads);
+
+  if (index >= device->sizes[table] || closed || ++device->stored >= device->refused_from) {
+    device->refusals++;
+    return;
+  }
+  device->banks[table][!device->in_use[table]][index] = (struct entry){device->registers.TABLE_HIGH, word};
+  device->registers.TABLE_INDEX = (index + 1) % device->sizes[table];
 }
 
 uint32_t device_read(void *context, uint32_t address)
 {
-  (void)context;
-  if (address == AT(TABLE_COMMIT) && ++commit_reads == frame_at)
-    begin_frame();
-  if (address == AT(TABLE_SIZE))
-    return sizes[FIELD(*at(AT(TABLE_SELECT)), TABLE_SELECT__SELECT)];
-  if (address == AT(REFERENCE_CAPTURE) && capture_reads && --capture_reads == 0) {
-    *at(address) &= ~TACTILE_DEPTH__REFERENCE_CAPTURE__BUSY_bm;
-    *at(AT(TABLE_COMMIT)) |= TACTILE_DEPTH__TABLE_COMMIT__REFERENCE_bm;
-  }
-  return *at(address);
-}
+  struct device *device = context;
 
-static void store(uint32_t word)
-{
-  uint32_t table = FIELD(*at(AT(TABLE_SELECT)), TABLE_SELECT__SELECT), *index = at(AT(TABLE_INDEX));
-  int closed = *at(AT(TABLE_COMMIT)) >> table & 1;
-
-  closed |= table == 2 && *at(AT(REFERENCE_CAPTURE)) & TACTILE_DEPTH__REFERENCE_CAPTURE__BUSY_bm;
-  if (*index >= sizes[table] || closed || ++stored >= refused_from) {
-    refusals++;
-    return;
+  if (address == AT(TABLE_COMMIT) && ++device->commit_reads == device->frame_at)
+    begin_frame(device);
+  if (address == AT(REFERENCE_CAPTURE) && device->capture_reads && --device->capture_reads == 0) {
+    device->registers.REFERENCE_CAPTURE = 0;
+    device->registers.TABLE_COMMIT |= TACTILE_DEPTH__TABLE_COMMIT__REFERENCE_bm;
   }
-  banks[table][!in_use[table]][*index] = (struct entry){*at(AT(TABLE_HIGH)), word};
-  *index = (*index + 1) % sizes[table];
+  return address == AT(TABLE_SIZE) ? device->sizes[selected(device)] : device->words[address / sizeof(uint32_t)];
 }
 
 void device_write(void *context, uint32_t address, uint32_t word)
 {
-  (void)context;
+  struct device *device = context;
+
   printf("write 0x%x 0x%x\n", address, word);
   switch (address) {
   case AT(TABLE_LOW):
-    store(word);
+    store(device, word);
     break;
   case AT(TABLE_COMMIT):
     for (uint32_t table = 0; table < TABLES; table++)
-      if (sizes[table])
-        *at(address) |= word & 1u << table;
+      if (device->sizes[table])
+        device->registers.TABLE_COMMIT |= word & 1u << table;
     break;
   case AT(TABLE_SELECT):
   case AT(TABLE_INDEX):
   case AT(TABLE_HIGH):
   case AT(PITCH):
-    *at(address) = word;
+    device->words[address / sizeof(uint32_t)] = word;
     break;
   default:  // a register that no loader of tables has to write
-    refusals++;
+    device->refusals++;
   }
 }
 
-// Set up the device from words NAME=VALUE; a name that is a number is the address of a register.
-void device_begin(int count, char **words)
+// Return the context of a device that is set up by words NAME=VALUE; a number names the register at that address.
+void *device_begin(int count, char **words)
 {
-  refused_from = UINT32_MAX;
+  struct device *device = &the_device;
+
+  device->refused_from = UINT32_MAX;
   for (int place = 0; place < count; place++) {
-    char *value = strchr(words[place], '=') + 1;
+    const char *name = strtok(words[place], "="), *value = strtok(NULL, "=");
     uint32_t number = (uint32_t)strtoul(value, NULL, 0);
-    if (!strncmp(words[place], "frame=", 6))
-      frame_at = number;
-    else if (!strncmp(words[place], "capture=", 8))
-      capture_reads = number;
-    else if (!strncmp(words[place], "refused=", 8))
-      refused_from = number;
-    else if (!strncmp(words[place], "size", 4))
-      sizes[words[place][4] - '0'] = number;
+
+    if (!strcmp(name, "frame"))
+      device->frame_at = number;
+    else if (!strcmp(name, "capture"))
+      device->capture_reads = number;
+    else if (!strcmp(name, "refused"))
+      device->refused_from = number;
+    else if (!strncmp(name, "size", 4))
+      device->sizes[strtoul(name + 4, NULL, 0)] = number;
     else
-      *at((uint32_t)strtoul(words[place], NULL, 0)) = number;
+      device->words[strtoul(name, NULL, 0) / sizeof(uint32_t)] = number;
   }
-  if (capture_reads)
-    *at(AT(REFERENCE_CAPTURE)) |= TACTILE_DEPTH__REFERENCE_CAPTURE__BUSY_bm;
+  if (device->capture_reads)
+    device->registers.REFERENCE_CAPTURE = TACTILE_DEPTH__REFERENCE_CAPTURE__BUSY_bm;
+  return device;
 }
 
 // Begin a frame, and print the tables that it uses.
-void device_end(void)
+void device_end(void *context)
 {
-  begin_frame();
+  struct device *device = context;
+
+  begin_frame(device);
   for (uint32_t table = 0; table < TABLES; table++)
-    for (uint32_t index = 0; index < sizes[table]; index++) {
-      struct entry entry = banks[table][in_use[table]][index];
+    for (uint32_t index = 0; index < device->sizes[table]; index++) {
+      struct entry entry = device->banks[table][device->in_use[table]][index];
+
       printf("entry %u 0x%x 0x%x\n", table, entry.high, entry.low);
     }
-  printf("refusals %u\npitch %u\n", refusals, *at(AT(PITCH)));
+  printf("refusals %u\n", device->refusals);
 }

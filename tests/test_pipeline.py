@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
+from tactile_depth.c_header import FILE, c_header
 from tactile_depth.contact.contact_events import ContactEvents, Settings
 from tactile_depth.pipeline import default_grid
 from tactile_depth.resampling import resampling
@@ -418,6 +419,9 @@ def test_hardware_writes_what_the_pipeline_computes_with(tmp_path: Path, small: 
     write_tables(tmp_path / "again", small.sensor, small.config, small._zero, small._gains)
     tables = {path.name: path.read_text() for path in (tmp_path / "again").iterdir()}
     assert described["tables"] == sorted(tables)
+    tables[described["c_header"]] = c_header(
+        small.sensor, small.config, small._zero, small._gains, described["registers"]
+    )
     assert {path.name: path.read_text() for path in (tmp_path / "hw").iterdir() if path != index} == tables
 
 
@@ -430,7 +434,7 @@ def test_hardware_removes_the_tables_of_an_earlier_pipeline_and_nothing_else(
     td.Pipeline(ball.sensor, ball.reference, grid=(32, 32), solver="spectral", model="lut").hardware(tmp_path)
     tables = json.loads((tmp_path / "parameters.json").read_text())["tables"]
     left = sorted(path.name for path in tmp_path.iterdir())
-    assert left == sorted([*tables, "notes.txt", "other.hex", "parameters.json"])
+    assert left == sorted([*tables, "notes.txt", "other.hex", "parameters.json", FILE])
     assert "thomas.hex" not in tables
 
 

@@ -14,6 +14,7 @@ import pytest
 from commands.common import repository, wrapper
 from commands.common import simulator as simulation
 from tactile_depth.built_in import synthetic
+from tactile_depth.c_header import FILE, c_header
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_capture import captured_zero
 from tactile_depth.scenes import render
@@ -84,6 +85,8 @@ def test_the_command_writes_the_module_and_its_tables(tmp_path: Path) -> None:
     write_roms(tmp_path / "direct", synthetic(4), Configuration(columns=16, solver="tridiagonal"))
     written = {path.name: path.read_text() for path in tmp_path.glob("*.hex")}
     assert written == {path.name: path.read_text() for path in (tmp_path / "direct").glob("*.hex")}
+    header = c_header(synthetic(4), Configuration(columns=16, solver="tridiagonal"))
+    assert (tmp_path / FILE).read_text() == header
 
 
 def test_the_zero_offset_is_in_its_table(tmp_path: Path) -> None:
@@ -96,6 +99,7 @@ def test_the_zero_offset_is_in_its_table(tmp_path: Path) -> None:
     assert np.abs(zero).max() > 0
     write_roms(tmp_path / "direct", synthetic(4), config, zero)
     assert (tmp_path / "zero_0.hex").read_text() == (tmp_path / "direct" / "zero_0.hex").read_text()
+    assert (tmp_path / FILE).read_text() == c_header(synthetic(4), config, zero)
 
 
 @pytest.mark.parametrize("form", [("CAMERA=raw10_lsb", "BAYER=grbg"), ("CAMERA=yuyv_bytes",)], ids=lambda form: form[0])
