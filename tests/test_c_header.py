@@ -4,7 +4,7 @@
 import re
 import shutil
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,9 @@ from tactile_depth.registers.axil_registers import AxilRegisters, Build, Events
 from tactile_depth.registers.register_map import REGISTERS, TABLES
 from tactile_depth.registers.table_banks import COMMIT
 from tactile_depth.sensor import CUBIC
-from tactile_depth.tactile_depth import top_parameters, write_roms
+from tactile_depth.tactile_depth import hdl_parameters, top_parameters, write_roms
+from tb import tb_c_header
+from tb.structures import Structure
 
 WARNINGS = ("-Wall", "-Wextra", "-Werror", "-pedantic")
 ALL = COMMIT.mask()
@@ -313,3 +315,32 @@ def test_a_name_that_ends_a_string_or_a_comment(tmp_path: Path) -> None:
     loaded = program_of(tmp_path, config, sensor.pixel_pitch_mm).run()
     assert loaded.result == "LOADED"
     assert_same(masked(loaded.tables, config), of_memories(tmp_path, config))
+
+
+OF_POLYNOMIALS: dict[str, Any] = {"columns": 16, "rows": 9, "solver": "tridiagonal", "lanes": 4, "neumann": True}
+OF_POLYNOMIALS |= {"flat_field": True, "gradient_model": "quadratic", "zero_offset": True, "light_gains": True}
+OF_LUT: dict[str, Any] = {"columns": 16, "bits_per_channel": 2, "flat_field": True}
+
+
+@pytest.mark.parametrize("choices", [OF_POLYNOMIALS, OF_LUT], ids=["tridiagonal-quadratic", "spectral-lut"])
+@pytest.mark.parametrize("simulator", ["icarus", pytest.param("verilator", marks=pytest.mark.regress)], indirect=True)
+def test_the_rtl_takes_the_tables(
+    run_tb: Callable[..., None], simulator: str, tmp_path: Path, choices: dict[str, Any]
+) -> None:
+    """Call the function of the header from the testbench, which makes its accesses on the bus of the RTL."""
+    config = Configuration(**choices)
+    (tmp_path / FILE).write_text(c_header(**tb_c_header.calibration(config)))
+    source, library = tmp_path / "load.c", tmp_path / "load.so"
+    source.write_text(
+        f'#include "{FILE}"\n'
+        "int load(tactile_depth_write write, tactile_depth_read read);\n"
+        "int load(tactile_depth_write write, tactile_depth_read read)\n"
+        "{ return tactile_depth_load(write, read, 0, TACTILE_DEPTH_ALL_TABLES); }\n"
+    )
+    compiled(tool("gcc"), "-std=c99", *WARNINGS, "-shared", "-fPIC", source, "-o", library)
+    structure = Structure(
+        hdl_parameters(config),
+        device={"configuration": choices, "library": str(library)},
+        roms=lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
+    )
+    run_tb(structure, toplevel="tactile_depth", test_module="tb.tb_c_header")
