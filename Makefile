@@ -130,7 +130,7 @@ fpga: $(HARDWARE)
 # Count what a configuration takes of an FPGA, by Yosys. TARGET=xczu7ev GRIDS=64,128
 synth: $(TOOLS)
 
-# Write a module with every parameter of a configuration inside, and its table files. NAME=finger OUT=folder
+# Write a module with every parameter of a configuration inside, its table files, and their C header. NAME=finger OUT=folder
 wrap: $(TOOLS)
 
 # Run every core after synthesis through its testbench. CORE=a,b

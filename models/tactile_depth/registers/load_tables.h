@@ -78,10 +78,10 @@ static inline int tactile_depth_write_table(
   return read(context, TACTILE_DEPTH_TABLE_INDEX_ADDRESS) ? TACTILE_DEPTH_REFUSED : TACTILE_DEPTH_LOADED;
 }
 
-/* Load tables, such as TACTILE_DEPTH_ALL_TABLES: the next frame that begins uses all of them. Frames may stream.
+/* Load the tables whose bits of TABLE_COMMIT are in `commit`, such as TACTILE_DEPTH_ALL_TABLES.
 
-   `commit` has the bits of these tables in TABLE_COMMIT. Whatever else is returned than TACTILE_DEPTH_LOADED, frames
-   use the tables that they used before. Do not start a capture meanwhile. */
+   The next frame that begins uses all of them. After another result than TACTILE_DEPTH_LOADED, frames use the tables
+   that they used before. Frames may stream meanwhile. Do not start a capture meanwhile. */
 static inline int tactile_depth_load(
     tactile_depth_write write, tactile_depth_read read, void *context, uint32_t commit)
 {
