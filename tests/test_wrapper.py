@@ -17,6 +17,7 @@ from tactile_depth.built_in import synthetic
 from tactile_depth.c_header import FILE, c_header
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_capture import captured_zero
+from tactile_depth.pipeline import SYNTHETIC_GRID
 from tactile_depth.scenes import render
 from tactile_depth.tactile_depth import tactile_depth, top_parameters, write_roms
 from tb.structures import Structure
@@ -26,6 +27,8 @@ CONFIGURATIONS: dict[str, dict[str, Any]] = {
     "left": {"columns": 16, "rows": 8, "solver": "tridiagonal", "bits_per_channel": 2},
     "right": {"columns": 16, "bits_per_channel": 3, "data_width": 20, "neumann": True},
 }
+
+SENSOR = synthetic(4).scaled(SYNTHETIC_GRID[1] / 16)  # on a grid of 16 columns
 
 
 def test_the_package_has_the_default_configuration() -> None:
@@ -85,7 +88,7 @@ def test_the_command_writes_the_module_and_its_tables(tmp_path: Path) -> None:
     write_roms(tmp_path / "direct", synthetic(4), Configuration(columns=16, solver="tridiagonal"))
     written = {path.name: path.read_text() for path in tmp_path.glob("*.hex")}
     assert written == {path.name: path.read_text() for path in (tmp_path / "direct").glob("*.hex")}
-    header = c_header(synthetic(4), Configuration(columns=16, solver="tridiagonal"))
+    header = c_header(SENSOR, Configuration(columns=16, solver="tridiagonal"))
     assert (tmp_path / FILE).read_text() == header
 
 
@@ -99,7 +102,7 @@ def test_the_zero_offset_is_in_its_table(tmp_path: Path) -> None:
     assert np.abs(zero).max() > 0
     write_roms(tmp_path / "direct", synthetic(4), config, zero)
     assert (tmp_path / "zero_0.hex").read_text() == (tmp_path / "direct" / "zero_0.hex").read_text()
-    assert (tmp_path / FILE).read_text() == c_header(synthetic(4), config, zero)
+    assert (tmp_path / FILE).read_text() == c_header(SENSOR, config, zero)
 
 
 @pytest.mark.parametrize("form", [("CAMERA=raw10_lsb", "BAYER=grbg"), ("CAMERA=yuyv_bytes",)], ids=lambda form: form[0])
