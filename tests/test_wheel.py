@@ -206,7 +206,8 @@ def test_the_version_without_a_tag_or_without_git(archive: Path, tmp_path: Path)
 
 def package_files() -> list[Path]:
     package = ROOT / "models" / "tactile_depth"
-    return [*package.rglob("*.py"), *package.rglob("*.npz"), *package.rglob("*.json"), package / "py.typed"]
+    kinds = ("*.py", "*.npz", "*.json", "*.h")
+    return [*(path for kind in kinds for path in package.rglob(kind)), package / "py.typed"]
 
 
 def test_the_wheel_holds_every_module_and_the_data(wheel: Any) -> None:
