@@ -104,6 +104,7 @@ class LinkDevice:
         self._reply: ReadReply | WriteReply | None = None  # to the last access
         self._reply_due = False
         self._record: Record | None = None  # to be sent
+        self._depth_is_next = False
         self._waiting: tuple[npt.NDArray[np.int32], Record] | None = None  # the newest frame
         self._frame: _Frame | None = None
         self._position = 0  # of the next value of the frame
@@ -189,7 +190,7 @@ class LinkDevice:
     def next_packet(self) -> bytes:
         """Return the bytes of the next packet on the line, none if nothing is to be sent.
 
-        Status and replies go first, then records, then depth.
+        Status and replies go first, then records, then depth. Behind a record depth goes before the next record.
         """
         packet = self._next()
         return b"" if packet is None else to_line(packet.pack())
@@ -201,9 +202,11 @@ class LinkDevice:
         if self._reply_due:
             self._reply_due = False
             return self._reply
-        if self._record is not None:
-            packet, self._record = RecordPacket(self._record), None
+        depth_due = self._frame is not None or self._waiting is not None
+        if self._record is not None and not (self._depth_is_next and depth_due):
+            packet, self._record, self._depth_is_next = RecordPacket(self._record), None, True
             return packet
+        self._depth_is_next = False
         return self._next_of_depth()
 
     def status(self) -> Status:
