@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import tracemalloc
+import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
@@ -259,20 +260,37 @@ def test_numbers_wrap() -> None:
     assert (host.lost, host.resets) == (1, 1)
 
 
+def test_a_frame_that_ends_early_is_lost(frame_packets: list[bytes]) -> None:
+    """Close a frame after its first packet, with the CRC of that."""
+    (depth,) = link.PacketReader().feed(frame_packets[2])
+    assert isinstance(depth, link.Depth)
+    trailer = replace(trailer_of(frame_packets), crc=zlib.crc32(depth.values))
+    host = DepthFrames()
+    assert host.feed(b"".join(frame_packets[:3]) + to_line(trailer.pack())) == []
+    assert host.lost == 1
+
+
+def test_a_status_of_another_grid_drops_the_frame_that_was_begun(frame_packets: list[bytes]) -> None:
+    status = replace(device_of(Build(48, 32, 24, bottom_first=True)).status(), sent=1, sending=True)
+    trailer = replace(trailer_of(frame_packets), rows=48, columns=32)
+    host = DepthFrames()
+    end = to_line(status.pack()) + to_line(trailer.pack())
+    assert host.feed(b"".join(frame_packets[:-2]) + end) == []
+    assert host.lost == 1
+
+
 def test_memory_is_bounded() -> None:
-    """Feed 2 MB of depth that never ends, of records, and without a delimiter."""
+    """Feed a frame that does not end, records, and bytes without a delimiter."""
     host = DepthFrames()
     host.feed(to_line(device_of(BUILD).status().pack()))
-    row = [
-        to_line(link.Depth(DepthFormat.WORDS, 1, *divmod(256 * packet, 48), bytes(768)).pack()) for packet in range(500)
-    ]
     record = to_line(link.RecordPacket(Record(0, 1, 0)).pack()) * 100
     tracemalloc.start()
+    for packet in range(500):
+        depth = link.Depth(DepthFormat.WORDS, 1, *divmod(256 * packet, BUILD.columns), bytes(768))
+        assert host.feed(to_line(depth.pack())) == []
     for _ in range(50):
         assert host.feed(b"\x01" * 20_000) == []
         assert host.feed(b"\0" + record) == []
-        for line in row[:20]:
-            assert host.feed(line) == []
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert peak < 200_000
+    assert peak < 200_000  # a frame has 4,608 bytes

@@ -110,8 +110,6 @@ class DepthFrames:
         columns = sent_shape(packet.depth_format, self.status.rows, self.status.columns)[1]
         size = value_bytes(packet.depth_format, self.status.data_width)
         first = (packet.row * columns + packet.column) * size
-        if first < len(self._values):  # it came twice
-            return
         if (
             packet.depth_format == self._format
             and first == len(self._values)
