@@ -20,13 +20,18 @@ class Rate(NamedTuple):
     line_bytes : int
         Bytes of a frame on the line, with its trailer.
     frames_a_second : float
-    share : float
-        Part of the line's bytes that are depth values.
+    value_bytes : int
+        Bytes of a frame that are depth values.
     """
 
     line_bytes: int
     frames_a_second: float
-    share: float
+    value_bytes: int
+
+    @property
+    def share(self) -> float:
+        """Part of the line's bytes that are depth values."""
+        return self.value_bytes / self.line_bytes
 
 
 def rate(rows: int, columns: int, depth_format: DepthFormat, data_width: int = 24, baud: int = 3_000_000) -> Rate:
@@ -40,4 +45,4 @@ def rate(rows: int, columns: int, depth_format: DepthFormat, data_width: int = 2
     packets, rest = divmod(count, VALUES_A_PACKET)
     line = packets * most_on_line(header + VALUES_A_PACKET * size) + most_on_line(trailer)
     line += most_on_line(header + rest * size) if rest else 0
-    return Rate(line, baud / BITS_A_BYTE / line, count * size / line)
+    return Rate(line, baud / BITS_A_BYTE / line, count * size)
