@@ -91,7 +91,7 @@ def test_a_request_that_is_repeated_is_done_once(device: LinkDevice, registers: 
     assert len(registers.writes) == 2
 
 
-def test_a_new_host_may_use_the_tag_of_the_last_one(device: LinkDevice) -> None:
+def test_a_new_host_may_use_the_number_of_the_last_request(device: LinkDevice) -> None:
     send(device, link.Read(1, (COUNTER,)))
     packets_of(device)
     send(device, link.Ask(), link.Read(1, (COUNTER,)))

@@ -105,8 +105,8 @@ words = st.integers(0, (1 << 32) - 1)
 
 
 @given(st.integers(0, 255), st.lists(st.tuples(st.integers(0, 65535), words), min_size=1, max_size=128).map(tuple))
-def test_register_writes_are_read_as_they_were_sent(tag: int, pairs: tuple[tuple[int, int], ...]) -> None:
-    packet = link.Write(tag, pairs)
+def test_register_writes_are_read_as_they_were_sent(number: int, pairs: tuple[tuple[int, int], ...]) -> None:
+    packet = link.Write(number, pairs)
     assert link.PacketReader().feed(to_line(packet.pack())) == [packet]
 
 

@@ -39,7 +39,7 @@ def sent_shape(depth_format: DepthFormat, rows: int, columns: int) -> tuple[int,
 
 
 def exact_shift(data_width: int) -> int:
-    """Return the least shift that never clips: bits of a depth code beyond 16."""
+    """Return the least shift with which 16 bits have the range of a depth code: its bits beyond 16."""
     return max(data_width - SHORT_BITS, 0)
 
 

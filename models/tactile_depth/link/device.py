@@ -149,7 +149,9 @@ class LinkDevice:
                 self._waiting = None
         elif isinstance(packet, Read | Write):
             expected = ReadReply if isinstance(packet, Read) else WriteReply
-            if not isinstance(self._reply, expected) or self._reply.tag != packet.tag:  # else it was done before
+            if (
+                not isinstance(self._reply, expected) or self._reply.request != packet.request
+            ):  # else it was done before
                 self._reply = self._access(packet)
             self._reply_due = True
         elif isinstance(packet, Picture):
@@ -160,14 +162,14 @@ class LinkDevice:
             done = 0
             while done < len(packet.pairs) and self._write(*packet.pairs[done]):
                 done += 1
-            return WriteReply(packet.tag, done)
+            return WriteReply(packet.request, done)
         values: list[int] = []
         for address in packet.addresses:
             value = self._read(address)
             if value is None:
                 break
             values.append(value)
-        return ReadReply(packet.tag, tuple(values))
+        return ReadReply(packet.request, tuple(values))
 
     def _take_pixels(self, packet: Picture) -> None:
         """Take the pixels if they begin a picture or continue the one that comes; after a loss wait for the next."""

@@ -41,10 +41,10 @@ class Kind(IntEnum):
 
 
 SELECT: Final = Struct("<BBB")  # kind, format, shift
-TAGGED: Final = Struct("<BB")  # kind, tag
+REQUEST: Final = Struct("<BB")  # kind, number of the request
 ADDRESS: Final = Struct("<H")
 ADDRESS_VALUE: Final = Struct("<HI")
-REPLY: Final = Struct("<BBB")  # kind, tag, accesses done
+REPLY: Final = Struct("<BBB")  # kind, request, accesses done
 PICTURE_HEADER: Final = Struct("<BIHH")  # kind, number, row, first column
 STATUS: Final = Struct("<BBHHHBBBBIII")
 DEPTH_HEADER: Final = Struct("<BIHH")  # kind, number, row, first column
@@ -57,7 +57,7 @@ BOTTOM_FIRST, SENDING = 1, 2  # bits of flags
 
 @dataclass(frozen=True)
 class Ask:
-    """Request of a status; the device forgets the tag of the last access."""
+    """Request of a status; the device forgets the number of the last request."""
 
     def pack(self) -> bytes:
         """Return kind and fields."""
@@ -89,19 +89,19 @@ class Read:
 
     Attributes
     ----------
-    tag : int
+    request : int
         Number of the request, 0 to 255, other than that of the request before.
     addresses : tuple of int
         1 to MOST_ACCESSES byte addresses.
     """
 
-    tag: int
+    request: int
     addresses: tuple[int, ...]
 
     def pack(self) -> bytes:
         """Return kind and fields. Raises InputError for no access or too many."""
         _check_count(len(self.addresses))
-        return TAGGED.pack(Kind.READ, self.tag) + b"".join(map(ADDRESS.pack, self.addresses))
+        return REQUEST.pack(Kind.READ, self.request) + b"".join(map(ADDRESS.pack, self.addresses))
 
 
 @dataclass(frozen=True)
@@ -110,19 +110,19 @@ class Write:
 
     Attributes
     ----------
-    tag : int
+    request : int
         Number of the request, 0 to 255, other than that of the request before.
     pairs : tuple of (int, int)
         1 to MOST_ACCESSES byte addresses, each with a value of 32 bits, unsigned.
     """
 
-    tag: int
+    request: int
     pairs: tuple[tuple[int, int], ...]
 
     def pack(self) -> bytes:
         """Return kind and fields. Raises InputError for no access or too many."""
         _check_count(len(self.pairs))
-        return TAGGED.pack(Kind.WRITE, self.tag) + b"".join(ADDRESS_VALUE.pack(*pair) for pair in self.pairs)
+        return REQUEST.pack(Kind.WRITE, self.request) + b"".join(ADDRESS_VALUE.pack(*pair) for pair in self.pairs)
 
 
 @dataclass(frozen=True)
@@ -201,25 +201,25 @@ class Status:
 class ReadReply:
     """Values of register reads; fewer than requested if one was refused, which ended the request."""
 
-    tag: int
+    request: int
     values: tuple[int, ...]
 
     def pack(self) -> bytes:
         """Return kind and fields."""
         values = b"".join(value.to_bytes(4, "little") for value in self.values)
-        return REPLY.pack(Kind.READ_REPLY, self.tag, len(self.values)) + values
+        return REPLY.pack(Kind.READ_REPLY, self.request, len(self.values)) + values
 
 
 @dataclass(frozen=True)
 class WriteReply:
     """Number of register writes done; fewer than requested if one was refused, which ended the request."""
 
-    tag: int
+    request: int
     done: int
 
     def pack(self) -> bytes:
         """Return kind and fields."""
-        return REPLY.pack(Kind.WRITE_REPLY, self.tag, self.done)
+        return REPLY.pack(Kind.WRITE_REPLY, self.request, self.done)
 
 
 @dataclass(frozen=True)
@@ -322,18 +322,18 @@ def _select(body: bytes) -> Packet | None:
 
 
 def _accesses(body: bytes, size: int) -> bool:
-    count, rest = divmod(len(body) - TAGGED.size, size)
+    count, rest = divmod(len(body) - REQUEST.size, size)
     return not rest and 1 <= count <= MOST_ACCESSES
 
 
 def _read(body: bytes) -> Packet | None:
     if not _accesses(body, ADDRESS.size):
         return None
-    return Read(body[1], tuple(address for (address,) in ADDRESS.iter_unpack(body[TAGGED.size :])))
+    return Read(body[1], tuple(address for (address,) in ADDRESS.iter_unpack(body[REQUEST.size :])))
 
 
 def _write(body: bytes) -> Packet | None:
-    return Write(body[1], tuple(ADDRESS_VALUE.iter_unpack(body[TAGGED.size :]))) if _accesses(body, 6) else None
+    return Write(body[1], tuple(ADDRESS_VALUE.iter_unpack(body[REQUEST.size :]))) if _accesses(body, 6) else None
 
 
 def _picture(body: bytes) -> Packet | None:
