@@ -12,7 +12,7 @@ from tactile_depth.link import packets as link
 from tactile_depth.link.depth_formats import DepthFormat, exact_shift
 from tactile_depth.link.depth_frames import DepthFrames
 from tactile_depth.link.device import Build, LinkDevice
-from tactile_depth.link.framing import LONGEST_BODY, LONGEST_ON_LINE, to_line
+from tactile_depth.link.framing import LONGEST_BODY, LONGEST_ON_LINE, most_on_line, to_line
 from tactile_depth.link.rates import rate
 
 PAGE = (ROOT / "docs" / "link.md").read_text()
@@ -92,6 +92,15 @@ def test_the_page_has_the_limits() -> None:
     assert f"1 to {link.MOST_ACCESSES} byte addresses" in PAGE
     assert f"1 to {link.MOST_PIXELS} pixels" in PAGE
     assert f"record | {WORDS} words of 32 bits" in PAGE
+
+
+def test_the_page_has_the_bytes_of_other_packets() -> None:
+    pixels = 128 * 128 // link.MOST_PIXELS * most_on_line(link.PICTURE_HEADER.size + 256 * link.PIXEL_BYTES)
+    assert f"at most {pixels:,} bytes: {300_000 / pixels:.1f} pictures/s" in PAGE
+    record, reply = most_on_line(link.RECORD.size), most_on_line(link.REPLY.size + 4)
+    assert f"record takes at most {record} bytes, and a reply of one register {reply}" in " ".join(PAGE.split())
+    wait = most_on_line(link.DEPTH_HEADER.size + 256 * 3) / 300_000
+    assert f"reply waits at most {1000 * wait:.1f} ms" in PAGE
 
 
 @pytest.mark.parametrize("depth_format", FORMATS)

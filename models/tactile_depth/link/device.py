@@ -148,11 +148,9 @@ class LinkDevice:
             if packet.depth_format == DepthFormat.NONE:
                 self._waiting = None
         elif isinstance(packet, Read | Write):
-            expected = ReadReply if isinstance(packet, Read) else WriteReply
-            if (
-                not isinstance(self._reply, expected) or self._reply.request != packet.request
-            ):  # else it was done before
-                self._reply = self._access(packet)
+            kind = ReadReply if isinstance(packet, Read) else WriteReply
+            repeated = isinstance(self._reply, kind) and self._reply.request == packet.request
+            self._reply = self._reply if repeated else self._access(packet)
             self._reply_due = True
         elif isinstance(packet, Picture):
             self._take_pixels(packet)
