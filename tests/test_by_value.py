@@ -77,6 +77,7 @@ def test_every_public_class_with_arrays_is_compared_by_value() -> None:
 
 def test_the_arrays_of_a_copied_sensor_cannot_be_written() -> None:
     for copied in (pickle.loads(pickle.dumps(td.load("gelsight-mini"))), copy.deepcopy(td.load("gelsight-mini"))):
+        assert copied.cubic is not None
         assert not copied.cubic.flags.writeable
 
 
