@@ -188,7 +188,7 @@ def test_nothing_is_written_when_one_picture_is_bad(tmp_path: Path, inputs: Any,
     Image.new("RGB", (100, 240)).save(narrow)
     printed = depth(pictures=[f"{inputs}/press.png", narrow], out=tmp_path / "out", status=2)
     assert not (tmp_path / "out").exists()
-    assert f"tactile-depth: {narrow}: pictures: 100 x 240 pixels" in printed.err
+    assert f"tactile-depth: {narrow}: 100 x 240 pixels" in printed.err
 
 
 # Choice of the calibration.
@@ -240,7 +240,7 @@ def test_a_named_calibration_with_another_reference_is_used_with_a_warning(
     named = ["--calibration", "gelsight-mini"]
     assert main(["depth", picture, "--reference", picture, "--out", str(tmp_path), *GRID, *named]) == 0
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("tactile-depth: warning: the reference does not look like the sensor of gelsight-mini")
+    assert line.startswith("tactile-depth: warning: --reference: it does not look like the sensor of gelsight-mini")
     assert json.loads((tmp_path / "report.json").read_text())["warnings"] == [line.removeprefix(
         "tactile-depth: warning: "
     )]  # fmt: skip
@@ -256,11 +256,11 @@ def test_a_warning_names_its_picture_and_leaves_out_the_error(
     pictures = [f"{tmp_path}/press.png", "--reference", f"{tmp_path}/background.png", "--out", f"{tmp_path}/out"]
     assert main(["depth", *pictures]) == 0
     printed = capsys.readouterr()
-    assert printed.err.startswith(f"tactile-depth: warning: {tmp_path}/press.png: the picture has light that changes")
+    assert printed.err.startswith(f"tactile-depth: warning: {tmp_path}/press.png: its light changes across it by")
     assert "uncertain, as the warnings say" in printed.out
     assert "+-" not in printed.out
     (described,) = json.loads((tmp_path / "out" / "report.json").read_text())["pictures"]
-    assert described["doubts"][0].startswith("the picture has light that changes across it by")
+    assert described["warnings"][0].startswith(f"{tmp_path}/press.png: its light changes across it by")
 
 
 def test_a_name_that_the_encoding_of_the_terminal_lacks_is_printed_with_replacements(
