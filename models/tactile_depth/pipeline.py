@@ -222,7 +222,7 @@ class Pipeline:
         result = Result(
             codes,
             depth_mm,
-            slopes / (self.sensor.pixel_aspect, 1),
+            slopes if self.sensor.pixel_aspect == 1 else slopes / (self.sensor.pixel_aspect, 1),
             dark,
             None if gains is None else gains * LIGHT_GAIN.lsb,
             dict(monitor.saturations),

@@ -132,12 +132,15 @@ def _settled(ratios: np.ndarray) -> np.ndarray:
     for _ in range(ROUNDS):
         deviations = lit * gains.astype(np.float32)[:, None] - np.float32(1)
         above, below = deviations >= limit, deviations <= -limit
-        net = np.count_nonzero(above, axis=1) - np.count_nonzero(below, axis=1)
-        near = ~np.any(above | below, axis=0)
+        net = np.array(
+            [np.count_nonzero(more) - np.count_nonzero(less) for more, less in zip(above, below, strict=True)]
+        )
+        red, green, blue = above | below
+        near = ~(red | green | blue)
         count = np.count_nonzero(near) + blank
         before = gains
         if 4 * count >= pixels:
-            mean = np.where(near, deviations, 0).sum(axis=1, dtype=np.float64) / count
+            mean = deviations.astype(np.float64) @ near.astype(np.float64) / count  # sums are exact in any order
             gains = gains / (1 + mean)
         gains = np.where(2 * np.abs(net) >= pixels, before - limit * np.sign(net), gains).clip(0.5, 2)
         if np.abs(gains - before).max() < SETTLED:
