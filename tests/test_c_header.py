@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """C header of the tables: a program loads them into registers in memory, which then hold the $readmemh files."""
 
+import json
 import re
 import shutil
 import subprocess
@@ -48,7 +49,7 @@ def compiled(*arguments: Any) -> None:
 
 @dataclass(frozen=True)
 class Loaded:
-    """What the program did to the registers in memory.
+    """Accesses of the program to the registers in memory.
 
     Attributes
     ----------
@@ -282,17 +283,20 @@ def test_tables_with_an_entry_that_was_refused_are_not_committed(program: Progra
 def test_values_for_the_user(tmp_path: Path) -> None:
     """Compare units, grid and thresholds with those of the pipeline, in a program that also reads the register map."""
     ball = td.sample("ball")
-    pipeline = td.Pipeline(ball.sensor, ball.reference, grid=(24, 32), threshold_mm=0.2)
-    pipeline.hardware(tmp_path)
-    names = ("ROWS", "COLUMNS", "DEPTH_LSB_MM", "PIXEL_PITCH_MM", "GRADIENT_LSB", "THRESHOLD", "AREA_THRESHOLD")
+    sensor = replace(ball.sensor, pixel_aspect=1.25)
+    pipeline = td.Pipeline(sensor, ball.reference, grid=(24, 32), threshold_mm=0.2)
+    described = json.loads(pipeline.hardware(tmp_path).read_text())
+    units = ("DEPTH_LSB_MM", "PIXEL_PITCH_MM", "PIXEL_ASPECT", "GRADIENT_LSB")
+    names = ("ROWS", "COLUMNS", *units, "THRESHOLD", "AREA_THRESHOLD")
     text = (tmp_path / FILE).read_text()
     values = dict(re.findall(r"^#define TACTILE_DEPTH_(\w+) (\S+?)u?$", text, re.MULTILINE))
-    rows, columns, depth, pitch, gradient, threshold, area = (
+    rows, columns, depth, pitch, aspect, gradient, threshold, area = (
         float(values[name]) if "." in values[name] else int(values[name], 0) for name in names
     )
     assert (rows, columns) == pipeline.grid
     assert (depth, pitch) == (pipeline.depth_lsb_mm, pipeline.pixel_pitch_mm)
-    assert gradient == pipeline.config.gradient_lsb
+    assert (gradient, aspect) == (pipeline.config.gradient_lsb, 1.25)
+    assert described["pixel_aspect"] == 1.25
     assert threshold == round(0.2 / pipeline.depth_lsb_mm)
     assert area == round(pipeline.area_threshold_mm / pipeline.depth_lsb_mm)
     addresses = {name.removesuffix("_ADDRESS"): value for name, value in values.items() if name.endswith("_ADDRESS")}

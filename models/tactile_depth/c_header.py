@@ -87,11 +87,14 @@ def _units(calibration: Sensor, config: Configuration) -> str:
     name = re.sub(r"[^\w .,()+-]", "_", calibration.name, flags=re.ASCII)
     pitch_mm = calibration.pixel_pitch_mm
     return (
-        "/* A depth in mm is its code * TACTILE_DEPTH_DEPTH_LSB_MM, a slope its code * TACTILE_DEPTH_GRADIENT_LSB. */\n"
+        "/* A depth in mm is its code * TACTILE_DEPTH_DEPTH_LSB_MM, a slope its code * TACTILE_DEPTH_GRADIENT_LSB.\n"
+        "   The pitch is the height of a pixel. Its width is TACTILE_DEPTH_PIXEL_ASPECT times that, and so are the\n"
+        "   slopes along a row. */\n"
         + define("CALIBRATION", f'"{name}"')
         + define("ROWS", config.rows)
         + define("COLUMNS", config.columns)
         + define("PIXEL_PITCH_MM", repr(float(pitch_mm)))
+        + define("PIXEL_ASPECT", repr(float(calibration.pixel_aspect)))
         + define("DEPTH_LSB_MM", repr(float(config.depth_lsb_px * pitch_mm)))
         + define("GRADIENT_LSB", repr(float(config.gradient_lsb)))
     )

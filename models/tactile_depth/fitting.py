@@ -234,10 +234,9 @@ def fit_presses(
 def errors_by_number(
     presses: GridPresses,
     numbers: Iterable[int],
-    model: str = "cubic",
     progress: Callable[[list[int]], Iterable[int]] = list,
 ) -> dict[int, tuple[float, float]]:
-    """Measure fits to so many presses, drawn by chance, on presses in the middle square that are not among them.
+    """Measure `cubic` fitted to so many presses, drawn by chance, on presses in the middle square not among them.
 
     Returns
     -------
@@ -245,7 +244,7 @@ def errors_by_number(
         By number of presses: RMS error of a cap's height over the true one, and height RMS in the contact in mm.
     """
     chance = np.random.default_rng(1)
-    parts = {view.press.name: _parts(view, presses.grid_pitch_mm, (model,), DEFAULT_BITS) for view in presses.views}
+    parts = {view.press.name: _parts(view, presses.grid_pitch_mm, ("cubic",), DEFAULT_BITS) for view in presses.views}
     central = [view for view in presses.views if view.press.is_central(presses.grid)]
     errors = {}
     for number in progress(list(numbers)):
@@ -254,7 +253,7 @@ def errors_by_number(
             left_out = [central[index] for index in chance.choice(len(central), DRAWN_OUT, replace=False)]
             others = [view for view in presses.views if view not in left_out]
             fitted = tuple(others[index] for index in chance.choice(len(others), number, replace=False))
-            scores += scores_of(_fit_models(presses, fitted, "some", parts), presses, left_out, model)
+            scores += scores_of(_fit_models(presses, fitted, "some", parts), presses, left_out, "cubic")
         off = np.array([score.cap_height - 1 for score in scores])
         errors[number] = float(np.sqrt((off**2).mean())), float(np.mean([score.height_rms_mm for score in scores]))
     return errors

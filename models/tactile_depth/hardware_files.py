@@ -52,6 +52,7 @@ def write_hardware(
             "grid": [config.rows, config.columns],
             "depth_lsb_mm": config.depth_lsb_px * sensor.pixel_pitch_mm,
             "pixel_pitch_mm": sensor.pixel_pitch_mm,
+            "pixel_aspect": sensor.pixel_aspect,
             "gradient_lsb": config.gradient_lsb,
             "calibration": sensor.name,
             "gradient_model": config.gradient_model,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What numpy takes as an array, and checks of a file before it is read."""
+"""Objects that numpy takes as arrays, and checks of a file before it is read."""
 
 from __future__ import annotations
 

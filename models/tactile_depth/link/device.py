@@ -42,7 +42,7 @@ from tactile_depth.video.frame_guard import Word
 
 @dataclass(frozen=True)
 class Build:
-    """What of a pipeline the link depends on.
+    """Properties of a pipeline that the link depends on.
 
     Attributes
     ----------

@@ -151,7 +151,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Status:
-    """What the device is and does.
+    """State of the device.
 
     Attributes
     ----------
