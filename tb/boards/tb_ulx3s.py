@@ -25,7 +25,7 @@ from tactile_depth.boards.serial_link import (
     words_of,
     write_packet,
 )
-from tactile_depth.boards.uart import BITS, transmit
+from tactile_depth.link.uart import BITS, transmit
 from tactile_depth.built_in import synthetic
 from tactile_depth.contact.contact_events import ContactEvents, Settings
 from tactile_depth.registers.register_map import REGISTERS

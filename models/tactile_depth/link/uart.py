@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models of boards/ulx3s/uart_receive.sv, bytes from levels of a line, and uart_transmit.sv, levels from bytes."""
+"""Models of hdl/link/uart_receive.sv, bytes from levels of a line, and uart_transmit.sv, levels from bytes."""
 
 from __future__ import annotations
 
