@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     __version__: str
     from tactile_depth.ball_press import BallPress
     from tactile_depth.built_in import identify, load
+    from tactile_depth.device.device import Device
+    from tactile_depth.device.errors import DeviceError
+    from tactile_depth.device.frame import DeviceFrame
     from tactile_depth.errors import InputError, InputWarning
     from tactile_depth.evaluation import Evaluation, evaluate
     from tactile_depth.fitting import fit
@@ -32,6 +35,9 @@ __all__ = [
     "BallPress",
     "Camera",
     "Contact",
+    "Device",
+    "DeviceError",
+    "DeviceFrame",
     "Evaluation",
     "HeightError",
     "InputError",
@@ -50,6 +56,9 @@ __all__ = [
 _MODULES = {
     "ball_press": ("BallPress",),
     "built_in": ("identify", "load"),
+    "device.device": ("Device",),
+    "device.errors": ("DeviceError",),
+    "device.frame": ("DeviceFrame",),
     "errors": ("InputError", "InputWarning"),
     "evaluation": ("Evaluation", "evaluate"),
     "fitting": ("fit",),

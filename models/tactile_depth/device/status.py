@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""State of a device and of the link to it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class DeviceStatus(NamedTuple):
+    """State of a device and of the link to it. Counters of the pipeline stay at 4,294,967,295 rather than wrap.
+
+    Attributes
+    ----------
+    rows, columns : int
+        The grid.
+    data_width : int
+        Bits of a depth code.
+    resets : int
+        Resets since power-up, modulo 2^16.
+    sent : int
+        Number of the last depth frame that the device began to send.
+    skipped : int
+        Depth frames since the reset that a newer one replaced before they were sent.
+    bad_packets_of_device : int
+        Broken packets that the device received since the reset.
+    bad_packets : int
+        Broken packets that the host received since the device was opened.
+    delivered : int
+        Depth frames that came whole since the device was opened.
+    lost : int
+        Depth frames since the device was opened that did not come whole, and pictures that gave no depth.
+    frames_in, frames_out, frames_dropped : int
+        Whole pictures that came in, depth frames that went out, malformed pictures.
+    saturations, dark_pixels : int
+        Values clipped, and dark pixels, in all frames.
+    depth_dropped, records_lost : int
+        Depth frames and records that their sink did not take.
+    touching, busy : bool
+        Something touches; a frame is in the pipeline.
+    """
+
+    rows: int
+    columns: int
+    data_width: int
+    resets: int
+    sent: int
+    skipped: int
+    bad_packets_of_device: int
+    bad_packets: int
+    delivered: int
+    lost: int
+    frames_in: int
+    frames_out: int
+    frames_dropped: int
+    saturations: int
+    dark_pixels: int
+    depth_dropped: int
+    records_lost: int
+    touching: bool
+    busy: bool
