@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Packets of bytes on streams of valid, ready, data and last: a bench with drivers, monitors and resets."""
+
+import os
+import random
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import cocotb
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, RisingEdge
+
+from tb.axis import AxisMonitor, AxisSink, AxisSource, profile
+from tb.stream import CLOCK_NS
+
+BYTE = ("data",)
+FIELDS = ("data", "last")
+
+
+def words(packet: bytes) -> list[tuple[int, int]]:
+    """Return the words of a packet, last with the last of them."""
+    return [(byte, int(place == len(packet) - 1)) for place, byte in enumerate(packet)]
+
+
+def packets(taken: Iterable[tuple[int, int]]) -> list[bytes]:
+    """Return the packets of which the words are; a packet that has not ended is left out."""
+    whole, packet = [], bytearray()
+    for byte, last in taken:
+        packet.append(byte)
+        if last:
+            whole.append(bytes(packet))
+            packet.clear()
+    return whole
+
+
+def random_packet(rng: random.Random, most: int) -> bytes:
+    """Return 1 to `most` bytes; zeros are rare, frequent, or all."""
+    zeros = rng.choice([0.0, 0.01, 0.3, 1.0])
+    return bytes(0 if rng.random() < zeros else rng.randint(1, 255) for _ in range(rng.randint(1, most)))
+
+
+class Bench:
+    """Clock and reset, a source with a monitor for each stream in, a sink with a monitor for the stream out.
+
+    Parameters
+    ----------
+    offers, accepts : str
+        Profiles of the sources and of the sink.
+    inputs : sequence of str
+        Names of the streams in.
+    out_fields : sequence of str
+        Fields of the stream out.
+    """
+
+    def __init__(
+        self,
+        dut: Any,
+        offers: str = "none",
+        accepts: str = "none",
+        inputs: Sequence[str] = ("in",),
+        out_fields: Sequence[str] = FIELDS,
+    ) -> None:
+        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+        self.dut, self.random = dut, random.Random(cocotb.RANDOM_SEED)
+        dut.rst.value = 1
+        self.sources = {
+            name: AxisSource(dut, name, FIELDS, offers=profile(offers, seed)) for seed, name in enumerate(inputs)
+        }
+        for name in inputs:
+            getattr(dut, f"{name}_data").value = 0
+            getattr(dut, f"{name}_last").value = 0
+        AxisSink(dut, "out", accepts=profile(accepts, len(inputs)))
+        self.taken = {name: AxisMonitor(dut, name, FIELDS) for name in inputs}
+        self.left = AxisMonitor(dut, "out", out_fields)
+
+    async def start(self) -> None:
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        await self.reset()
+
+    async def clocks(self, count: int) -> None:
+        await ClockCycles(self.dut.clk, count)
+
+    async def reset(self, clocks: int = 2) -> None:
+        """Reset; what was offered is withdrawn, and what the monitors saw is forgotten."""
+        for source in self.sources.values():
+            source.abort()
+        self.dut.rst.value = 1
+        await self.clocks(clocks)
+        self.dut.rst.value = 0
+        await RisingEdge(self.dut.clk)
+        for monitor in (*self.taken.values(), self.left):
+            monitor.forget()
+
+    async def until_left(self, count: int, quiet: int = 8) -> None:
+        """Wait until so many words have left; after that none may come for some cycles."""
+        while len(self.left.words) < count:
+            await RisingEdge(self.dut.clk)
+        await self.clocks(quiet)
+        assert len(self.left.words) == count, f"{len(self.left.words)} bytes left, {count} expected"
