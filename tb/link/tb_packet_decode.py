@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: Apache-2.0
+"""packet_decode against unpack: every kind, lengths about the limits, fields, stalls, resets."""
+
+import random
+from typing import Any
+
+import cocotb
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, RisingEdge
+
+from tactile_depth.link.packets import SELECT, Ask, Kind, Picture, Read, Select, Write, unpack
+from tb.axis import profile
+from tb.cases import on_bench
+from tb.stream import CLOCK_NS
+
+TO_DEVICE = (Kind.ASK, Kind.SELECT, Kind.READ, Kind.WRITE, Kind.PICTURE)
+LENGTHS = {  # of kind and fields: about the limits, and some between them
+    Kind.ASK: (1, 2, 3),
+    Kind.SELECT: (1, 2, 3, 4, 6),
+    Kind.READ: (1, 2, 3, 4, 5, 6, 7, 10, 257, 258, 259, 260),
+    Kind.WRITE: (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 770, 772, 773, 774, 775, 776),
+    Kind.PICTURE: (1, 2, 8, 9, 10, 11, 12, 13, 14, 15, 777, 778, 779, 780),
+}
+OTHERS = (0x00, 0x06, 0x07, 0x08, 0x0D, 0x11, 0x21, 0x42, *Kind, 0x85, 0xFF)
+SOURCE = ("in_valid", "in_data", "in_last", "in_length", "in_length_mod3")
+Event = tuple[Any, ...]
+
+
+def expected(body: bytes) -> Event:
+    """Return what a packet to the device causes, none for an unknown one.
+
+    With `bad`, the second entry is set if its fields show it; otherwise kind and length do.
+    """
+    if body[0] not in TO_DEVICE:
+        return ()
+    packet = unpack(body)
+    match packet:
+        case Ask():
+            return ("ask",)
+        case Select():
+            return "select", int(packet.depth_format), packet.shift
+        case Read() | Write():
+            return "request", int(isinstance(packet, Write)), body[1:]
+        case Picture():
+            return "picture", body[1:]
+    return "bad", body[0] == Kind.SELECT and len(body) == SELECT.size
+
+
+class Bench:
+    """Source of packets as packet_store is one, both sinks, and a check of every output in every clock.
+
+    Attributes
+    ----------
+    seen : set of str
+        What happened.
+    """
+
+    def __init__(self, dut: Any, offers: str, accepts: str, resets: float) -> None:
+        self.dut, self.resets = dut, resets
+        self.random = random.Random(cocotb.RANDOM_SEED)
+        self.offers, self.request, self.picture = profile(offers), profile(accepts, 1), profile(accepts, 2)
+        self.pulse: Event = ()  # due in this clock
+        self.seen: set[str] = set()
+
+    async def start(self) -> None:
+        """Start the clock and reset."""
+        dut = self.dut
+        dut.rst.value = 1
+        for pin in (*SOURCE, "request_ready", "picture_ready"):
+            getattr(dut, pin).value = 0
+        Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        self.edge = RisingEdge(dut.clk)
+        await ClockCycles(dut.clk, 3)
+
+    async def clock(self, word: tuple[int, ...] | None, event: Event, place: int) -> tuple[bool, bool]:
+        """Offer a byte, or none; return whether it was taken, and whether the clock was in a reset.
+
+        `event` is what its packet causes, `place` that of the byte in the packet.
+        """
+        dut, reset = self.dut, self.random.random() < self.resets
+        ready = {"request": int(next(self.request)), "picture": int(next(self.picture))}
+        dut.rst.value, dut.in_valid.value = int(reset), int(word is not None)
+        for pin, value in zip(SOURCE[1:], word or [self.random.randint(0, 1) for _ in SOURCE[1:]], strict=True):
+            getattr(dut, pin).value = value
+        for name, value in ready.items():
+            getattr(dut, f"{name}_ready").value = value
+        await self.edge
+        self.check_pulses()
+        kind = event[0] if event else ""
+        for name in ready:
+            valid = int(getattr(dut, f"{name}_valid").value)
+            assert valid == int(word is not None and kind == name and place > 0), f"{name}_valid at byte {place}"
+            if valid and word is not None:
+                assert int(getattr(dut, f"{name}_data").value) == word[0], f"{name}_data at byte {place}"
+                assert int(getattr(dut, f"{name}_last").value) == word[1], f"{name}_last at byte {place}"
+                assert name == "picture" or int(dut.request_write.value) == event[1]
+        if word is None:
+            self.pulse = ()
+            return False, reset
+        taken = ready[kind] if kind in ready and place else 1
+        last = bool(word[1])
+        selects = event[0] == "select" if event else False
+        drops = place == 0 and not (kind in ("select", *ready) or (kind == "bad" and event[1]))
+        assert int(dut.in_ready.value) == taken, f"in_ready at byte {place}"
+        assert int(dut.in_drop.value) == int(drops), f"in_drop at byte {place}"
+        due = drops or (last and (selects or kind == "bad"))
+        self.pulse = event if due and not reset else ()
+        return bool(taken), reset
+
+    def check_pulses(self) -> None:
+        """Compare the pulses with the one that is due."""
+        dut, due = self.dut, self.pulse[0] if self.pulse else ""
+        for name in ("bad", "ask", "select"):
+            assert int(getattr(dut, name).value) == int(name == due), f"{name}: due is {due or 'nothing'}"
+        if due == "select":
+            assert (int(dut.select_format.value), int(dut.select_shift.value)) == self.pulse[1:]
+
+    async def send(self, body: bytes) -> None:
+        """Send a packet up to the byte with which the rest is dropped, or to a reset."""
+        event = expected(body)
+        for place, byte in enumerate(body):
+            word = (byte, int(place == len(body) - 1), len(body), len(body) % 3)
+            while not next(self.offers):
+                if (await self.clock(None, event, place))[1]:
+                    return
+            taken = False
+            while not taken:
+                taken, reset = await self.clock(word, event, place)
+                if reset:
+                    return
+            if int(self.dut.in_drop.value):
+                break
+        self.seen.add(event[0] if event else "unknown")
+
+    async def finish(self) -> None:
+        """Check the pulse of the last packet."""
+        for _ in range(3):
+            await self.clock(None, (), 0)
+
+
+def body(kind: int, length: int, chance: random.Random) -> bytes:
+    """Return a packet with random fields; those of a select are good."""
+    if kind == Kind.SELECT:
+        return bytes((kind, chance.randrange(4), chance.randrange(17), *chance.randbytes(length)))[:length]
+    return bytes((kind, *chance.randbytes(length - 1)))
+
+
+@on_bench(Bench, resets=0.0)
+@cocotb.parametrize(offers=["none", "random"], accepts=["none", "random"])
+async def lengths(bench: Bench) -> None:
+    """Give packets of every kind, with lengths about the limits, in any order."""
+    packets = [body(kind, length, bench.random) for kind, some in LENGTHS.items() for length in some]
+    packets += [body(kind, length, bench.random) for kind in OTHERS for length in (1, 2, 3, 5, 10)]
+    bench.random.shuffle(packets)
+    for packet in packets:
+        await bench.send(packet)
+    assert bench.seen == {"ask", "select", "request", "picture", "bad", "unknown"}, "the test is void"
+
+
+@on_bench(Bench, offers="none", accepts="none", resets=0.0)
+async def selects(bench: Bench) -> None:
+    """Give selects with each format, and each bit of both fields."""
+    fields = {*range(20), *(1 << bit for bit in range(8)), 31, 255}
+    for field in sorted(fields):
+        for packet in ((Kind.SELECT, field, 16), (Kind.SELECT, 1, field), (Kind.SELECT, 3 - field % 4, field)):
+            await bench.send(bytes(packet))
+
+
+@on_bench(Bench, offers="random", accepts="random", resets=0.02)
+async def reset(bench: Bench) -> None:
+    """Reset at any time: the next packet begins with its kind."""
+    for _ in range(300):
+        kind = bench.random.choice(TO_DEVICE)
+        await bench.send(
+            body(kind, bench.random.choice([length for length in LENGTHS[kind] if length < 20]), bench.random)
+        )
