@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// depth_store: keeps the newest whole depth frame with its record for a reader, while the next one comes.
+//
+// Stream in, always taken: depth as on m_axis of tactile_depth, tuser with the first beat of a frame, Rows * Columns /
+// Lanes beats; what comes before the first tuser is dropped, and a tuser inside a frame begins it again. s_event: the
+// record of each frame, 12 words, behind its last depth and before the last depth of the next; the record of a frame
+// that did not come whole is dropped. frame_valid: a frame with its record waits. frame_take, only while frame_valid,
+// takes it; from the next clock up to frame_done its values and words can be read: value_data 2 clocks after value_read
+// with value_address, record_data 1 clock after record_word. value_read is low in the clock of frame_done.
+// A frame that comes whole replaces one that waits. `skipped`: a whole frame is lost so. While keep is low
+// no frame waits, and none is counted. Memory: two banks of a frame, interleaved. Model of the banks:
+// models/tactile_depth/link/bank_choice.py.
+
+`default_nettype none
+
+module depth_store
+  import td_link_pkg::*;
+#(
+  parameter int Rows      = 128,
+  parameter int Columns   = 128,  // a power of two
+  parameter int DataWidth = 24,
+  parameter int Lanes     = 1,    // depths in a beat, a power of two
+  localparam int LaneBits = 8 * ((DataWidth + 7) / 8),
+  localparam int PlaceWidth = $clog2(Rows * Columns)
+) (
+  input  wire                         clk,
+  input  wire                         rst,
+  input  wire                         keep,
+  input  wire  [Lanes*LaneBits-1:0]   s_axis_tdata,
+  input  wire                         s_axis_tvalid,
+  input  wire                         s_axis_tlast,
+  input  wire                         s_axis_tuser,
+  input  wire  [31:0]                 s_event_tdata,
+  input  wire                         s_event_tvalid,
+  input  wire                         s_event_tlast,
+  output logic                        skipped,
+  output logic                        frame_valid,
+  input  wire                         frame_take,
+  input  wire                         frame_done,
+  input  wire                         value_read,
+  input  wire  [PlaceWidth-1:0]       value_address,  // in the order in which values came
+  output logic signed [DataWidth-1:0] value_data,
+  input  wire  [3:0]                  record_word,
+  output logic [31:0]                 record_data
+);
+
+  localparam int Beats = Rows * Columns / Lanes;
+  localparam int BeatWidth = $clog2(Beats);
+
+  // Beats in. A frame has ended, and awaits its record, in bank ended_bank.
+
+  logic in_frame, begins, ends, write_bank, read_bank, reading, awaited, ended_bank, word_comes, record_ends;
+  logic [BeatWidth-1:0] next_beat, beat;
+  logic [Lanes*DataWidth-1:0] values;
+  logic unused_tlast;
+  assign unused_tlast = s_axis_tlast;
+  assign begins = s_axis_tvalid & s_axis_tuser;
+  assign ends = s_axis_tvalid & in_frame & ~s_axis_tuser & next_beat == BeatWidth'(Beats - 1);
+  assign beat = s_axis_tuser ? '0 : next_beat;
+  bank_choice u_banks (
+    .clk, .rst, .keep, .write_begin(begins), .write_end(ends), .publish(record_ends), .write_bank,
+    .waiting(frame_valid), .take(frame_take), .done(frame_done), .reading, .read_bank, .replaced(skipped)
+  );
+  for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
+    assign values[lane*DataWidth+:DataWidth] = s_axis_tdata[lane*LaneBits+:DataWidth];
+    if (LaneBits > DataWidth) begin : g_sign
+      logic unused_sign;
+      assign unused_sign = ^s_axis_tdata[lane*LaneBits+DataWidth+:LaneBits-DataWidth];
+    end
+  end
+
+  logic [3:0] word;
+  assign word_comes = s_event_tvalid & awaited;
+  assign record_ends = word_comes & s_event_tlast;
+  always_ff @(posedge clk) begin
+    if (begins || ends) in_frame <= begins;
+    if (s_axis_tvalid) next_beat <= beat + BeatWidth'(1);
+    if (ends) ended_bank <= write_bank;
+    if (s_event_tvalid) word <= s_event_tlast ? '0 : word + 4'd1;
+    awaited <= ends | (awaited & ~record_ends);
+    if (rst) begin
+      in_frame <= 1'b0;
+      awaited <= 1'b0;
+      word <= '0;
+    end
+  end
+
+  td_ram #(.Width(32), .Depth(2 * RecordWords)) u_records (
+    .clk, .write_en(word_comes), .write_address({word, ended_bank}), .write_data(s_event_tdata),
+    .read_en(reading), .read_address({record_word, read_bank}), .read_data(record_data)
+  );
+
+  // Values out: the beat, then the lane.
+
+  logic [BeatWidth-1:0] read_beat;
+  logic [Lanes-1:0][DataWidth-1:0] read_values;
+  logic signed [DataWidth-1:0] read_value;
+  td_ram #(.Width(Lanes * DataWidth), .Depth(2 * Beats)) u_values (
+    .clk, .write_en(s_axis_tvalid & (s_axis_tuser | in_frame)), .write_address({beat, write_bank}),
+    .write_data(values), .read_en(value_read), .read_address({read_beat, read_bank}), .read_data(read_values)
+  );
+  if (Lanes == 1) begin : g_one
+    assign read_beat = value_address;
+    assign read_value = read_values;
+  end else begin : g_many
+    localparam int LaneWidth = $clog2(Lanes);
+    logic [LaneWidth-1:0] lane_q;
+    assign read_beat = value_address[PlaceWidth-1:LaneWidth];
+    assign read_value = read_values[lane_q];
+    always_ff @(posedge clk) if (value_read) lane_q <= value_address[LaneWidth-1:0];
+  end
+  always_ff @(posedge clk) value_data <= read_value;
+
+  if (Columns < 2 || Columns != (1 << $clog2(Columns))) begin : g_refused_0
+    Columns_must_be_a_power_of_two_at_least_2 u_refused ();
+  end
+  if (Lanes < 1 || Columns % Lanes != 0) begin : g_refused_1
+    Lanes_must_divide_Columns u_refused ();
+  end
+  if (Rows < 2) begin : g_refused_2
+    Rows_must_be_at_least_2 u_refused ();
+  end
+  if (DataWidth < 2) begin : g_refused_3
+    DataWidth_must_be_at_least_2 u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire
