@@ -273,7 +273,8 @@ class Result(ByValue):
         """Mean of the depths that are not above the threshold, of each frame, in mm; NaN without such a pixel."""
         untouched = ~self.mask
         count = untouched.sum(axis=(-2, -1))
-        total = np.where(untouched, self.depth_mm, 0).sum(axis=(-2, -1))
+        depths_mm = np.where(untouched, self.depth_mm, 0).reshape(*untouched.shape[:-2], -1)  # added in one order
+        total = depths_mm.sum(axis=-1)
         return np.where(count, total / np.maximum(count, 1), np.nan)
 
     @cached_property

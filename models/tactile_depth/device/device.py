@@ -3,16 +3,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, MutableMapping
-from contextlib import AbstractContextManager
+from collections.abc import Iterable, Iterator, MutableMapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from typing import cast
 
+import numpy as np
+import numpy.typing as npt
+
+from tactile_depth.checks.blocks import Rest
+from tactile_depth.checks.doubts import UnusablePicture
+from tactile_depth.checks.picture_check import check_picture
+from tactile_depth.checks.reference_check import check_reference
+from tactile_depth.contact.contact_events import Settings
+from tactile_depth.depth.zero_capture import LARGEST_LOG2
+from tactile_depth.device import captures
+from tactile_depth.device.addresses import open_transport
+from tactile_depth.device.errors import DeviceError
+from tactile_depth.device.exchange import Exchange, camera_frames
 from tactile_depth.device.frame import DeviceFrame
-from tactile_depth.device.status import DeviceStatus
+from tactile_depth.device.line import Arrival, Line
+from tactile_depth.device.registers import Registers, read_words, write_words
+from tactile_depth.device.status import COUNTERS, DeviceStatus
+from tactile_depth.device.tables import load_tables, require_same, wait_in_use
+from tactile_depth.errors import Argument, InputError, InputWarning, Part, is_number, warn
+from tactile_depth.frames import GREY
+from tactile_depth.gradient.flat_field import captured_gains, reference_gains, require_light
+from tactile_depth.gradient.reference_capture import largest_log2_frames
+from tactile_depth.npy import is_array
 from tactile_depth.pictures import Picture, Pictures
-from tactile_depth.pipeline import Pipeline
+from tactile_depth.pipeline import PICTURES, Pipeline
+from tactile_depth.reader import Reader, power_of_two_of
+from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.result import Recorder
 
 CAPTURED = 8
 """Pictures of the device's camera that a capture takes the mean of."""
+THRESHOLDS = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD")
+"""Registers of the thresholds, in the order of the fields of Settings."""
 
 
 class Device(AbstractContextManager["Device"]):
@@ -49,17 +77,31 @@ class Device(AbstractContextManager["Device"]):
         The port is in use or cannot be opened, the device does not answer, or pyserial or the simulator is missing.
     """
 
-    registers: MutableMapping[str, int]
-
     def __init__(self, address: str, pipeline: Pipeline) -> None:
-        raise NotImplementedError
+        if not isinstance(pipeline, Pipeline):
+            problem = f" is a {type(pipeline).__name__}"
+            raise InputError(Argument("pipeline"), problem, accepted="a Pipeline, as Pipeline(sensor, ..) makes it")
+        if pipeline.arithmetic != "chip":
+            arithmetic = Argument("arithmetic", pipeline.arithmetic)
+            remedy = ("make the pipeline with ", Argument("arithmetic", "chip"))
+            raise InputError(arithmetic, ": a device has the arithmetic of the hardware", remedy=remedy)
+        self.address, self.pipeline = address, pipeline
+        self.registers: MutableMapping[str, int] = Registers(self._open_line)
+        self._reader = Reader(pipeline.sensor, pipeline.grid)
+        self._codes = {name: self._code(mm) for name, mm in _thresholds_of(pipeline).items()}
+        self._reference_gains: npt.NDArray[np.int64] | None = None  # of the device, if they are known
+        self._is_closed = False
+        self._line: Line | None = self._connect()
 
     def __exit__(self, *raised: object) -> None:
         self.close()
 
     def close(self) -> None:
         """Close the link. Further calls raise DeviceError; closing twice does nothing."""
-        raise NotImplementedError
+        self._is_closed = True
+        line, self._line = self._line, None
+        if line is not None:
+            line.close()
 
     def load(self) -> None:
         """Write calibration, reference, zero offset and thresholds of the pipeline, and wait until they are in use.
@@ -73,7 +115,18 @@ class Device(AbstractContextManager["Device"]):
             The device has another configuration than the pipeline.
         DeviceError
         """
-        raise NotImplementedError
+        config = self.pipeline.config
+        with self._open_line() as line:
+            require_same(line, self.pipeline)
+            with Exchange(line) as exchange:
+
+                def untouched() -> None:
+                    exchange.depth_of(self._untouched)
+
+                load_tables(line, self.pipeline, untouched)
+                write_words(line, list(self._codes.items()))
+                wait_in_use(line, untouched)
+        self._reference_gains = reference_gains(self.pipeline.sensor, config) if config.flat_field else None
 
     def capture_reference(self, pictures: Pictures | None = None, *, frames: int = CAPTURED) -> None:
         """Take the mean of pictures without contact as the reference, in the device.
@@ -94,14 +147,42 @@ class Device(AbstractContextManager["Device"]):
             The number of pictures is not accepted, they are no reference, or the pipeline takes colours as sent.
         DeviceError
         """
-        raise NotImplementedError
+        config = self.pipeline.config
+        if not config.flat_field:
+            problem = ": this pipeline takes colours as sent"
+            raise InputError(PICTURES, problem, remedy=("make it with ", Argument("reference", "<picture>")))
+        largest = largest_log2_frames(config)
+        if pictures is None:
+            self._capture_of_camera("reference", frames, largest)
+            self._reference_gains = None
+            return
+        images, taken = self._reader.reference(pictures, PICTURES, largest)
+        check_reference(self._reader.sensor, images, PICTURES)
+        gains = captured_gains(taken, config)
+        require_light(gains, config, PICTURES)
+        with self._open_line() as line:
+            captures.capture_of_pictures(line, "reference", taken)
+        self._reference_gains = gains
 
     def capture_zero(self, pictures: Pictures | None = None, *, frames: int = CAPTURED) -> None:
         """Take the depth of pictures without contact as the zero offset, in the device.
 
         For parameters and errors see `capture_reference`.
         """
-        raise NotImplementedError
+        config = self.pipeline.config
+        if not config.zero_offset:
+            problem = ": this pipeline has no zero offset"
+            raise InputError(PICTURES, problem, remedy=("make it with ", Argument("zero_offset", True)))
+        if pictures is None:
+            self._capture_of_camera("zero", frames, LARGEST_LOG2)
+            return
+        taken = np.stack([frame for _, frame in self._reader.pictures(pictures, PICTURES)[0]])
+        power_of_two_of(len(taken), LARGEST_LOG2, PICTURES)
+        gains = None
+        if config.light_gains and self._reference_gains is not None:
+            gains = captures.gains_of(taken, self._reference_gains, config)
+        with self._open_line() as line:
+            captures.capture_of_pictures(line, "zero", taken, gains)
 
     def set_thresholds(
         self, touch_mm: float | None = None, release_mm: float | None = None, area_mm: float | None = None
@@ -124,7 +205,24 @@ class Device(AbstractContextManager["Device"]):
             A threshold is not accepted.
         DeviceError
         """
-        raise NotImplementedError
+        release_mm = touch_mm if release_mm is None else release_mm
+        given = {"THRESHOLD": ("touch_mm", touch_mm), "OFF_THRESHOLD": ("release_mm", release_mm)}
+        given["AREA_THRESHOLD"] = ("area_mm", area_mm)
+        codes = dict(self._codes)
+        for register, (name, depth_mm) in given.items():
+            if depth_mm is None:
+                continue
+            lowest = 1 if name == "touch_mm" else 0
+            if not is_number(depth_mm) or not lowest <= self._code(depth_mm) < self._limit:
+                accepted = f"a depth above 0, up to {self._limit * self.pipeline.depth_lsb_mm:.3g} mm"
+                raise InputError(Argument(name, depth_mm), accepted=accepted)
+            codes[register] = self._code(depth_mm)
+        if codes["OFF_THRESHOLD"] > codes["THRESHOLD"]:
+            touch = codes["THRESHOLD"] * self.pipeline.depth_lsb_mm
+            raise InputError(Argument("release_mm", release_mm), accepted=f"at most touch_mm, {touch:.3g}")
+        with self._open_line() as line:
+            write_words(line, list(codes.items()))
+        self._codes = codes
 
     def depth(self, pictures: Pictures | Iterable[Picture] | None = None) -> Iterator[DeviceFrame]:
         """Send pictures and give the depth frame of each; without pictures, give what the device's camera gives.
@@ -144,8 +242,133 @@ class Device(AbstractContextManager["Device"]):
             A picture is not accepted.
         DeviceError
         """
-        raise NotImplementedError
+        if pictures is None:
+            yield from self._depth_of_camera()
+            return
+        with self._open_line() as line, Exchange(line) as exchange:
+            if self.pipeline.config.light_gains:
+                captures.write_gains(line, [captures.UNITY] * len(captures.GAINS))
+            for index, pixels in self._usable(pictures, line):
+                arrival = exchange.depth_of(pixels)
+                if arrival is not None:
+                    yield self._frame(arrival, index)
 
     def status(self) -> DeviceStatus:
         """Return the state of the device and of the link."""
-        raise NotImplementedError
+        with self._open_line() as line:
+            status = line.ask()
+            words = read_words(line, [*COUNTERS, "STATUS"])
+            counts = line.bad_packets, line.delivered, line.lost
+        levels = REGISTERS["STATUS"].unpack(words.pop("STATUS"))
+        grid = status.rows, status.columns, status.data_width
+        sent = status.resets, status.sent, status.skipped, status.bad_packets
+        return DeviceStatus._make(
+            (*grid, *sent, *counts, *words.values(), bool(levels["touching"]), bool(levels["busy"]))
+        )
+
+    # The line.
+
+    def _connect(self) -> Line:
+        """Open the line, and compare the device with the pipeline."""
+        line = Line(open_transport(self.address, self.pipeline))
+        try:
+            grid = line.status.rows, line.status.columns
+            if grid != tuple(self.pipeline.grid):
+                problem = f", but the device has {grid}, rows and columns"
+                remedy = ("make the pipeline with ", Argument("grid", grid), ", or build the device for it")
+                raise InputError(Argument("grid", tuple(self.pipeline.grid)), problem, remedy=remedy)
+            require_same(line, self.pipeline)
+        except BaseException:
+            line.close()
+            raise
+        return line
+
+    @contextmanager
+    def _open_line(self) -> Iterator[Line]:
+        """Give the line, opened anew if it was gone; raise what has happened since the last call."""
+        if self._is_closed:
+            raise DeviceError(f"{self.address} is closed", remedy="open it with Device(..)")
+        if self._line is None:
+            self._line = self._connect()
+        line = self._line
+        try:
+            line.check()
+            yield line
+        except Exception:
+            if line.broken:
+                self._line = None
+                line.close()
+            raise
+
+    # Pictures.
+
+    @property
+    def _untouched(self) -> npt.NDArray[np.uint8]:
+        """Picture of the untouched sensor on the grid, uint8 (rows, columns, 3); grey for a pipeline without one."""
+        reference = self.pipeline.sensor.reference
+        if reference is None:
+            return np.full((*self.pipeline.grid, 3), GREY, np.uint8)
+        return reference.reshape(-1, *self.pipeline.grid, 3)[-1]
+
+    def _usable(
+        self, pictures: Pictures | Iterable[Picture], line: Line
+    ) -> Iterator[tuple[int, npt.NDArray[np.uint8]]]:
+        """Give pictures on the grid, each with its number; leave out and count what gives no right depth."""
+        reference = self.pipeline.sensor.reference
+        rest = None if reference is None else Rest.of(reference.reshape(-1, *self.pipeline.grid, 3))
+        failed = False
+        for index, (name, frame) in enumerate(self._on_grid(pictures)):
+            try:
+                check_picture(frame, rest, name)
+            except UnusablePicture as error:
+                if not failed:
+                    warn(InputWarning("left out and counted: ", *error.parts))
+                failed = True
+                line.count_lost()
+                continue
+            yield index, frame
+
+    def _on_grid(self, pictures: Pictures | Iterable[Picture]) -> Iterator[tuple[Part, npt.NDArray[np.uint8]]]:
+        """Give pictures on the grid, each with its name; those of an iterable one by one."""
+        if is_array(pictures) or isinstance(pictures, str | Path | Sequence) or not isinstance(pictures, Iterable):
+            yield from self._reader.pictures(cast(Pictures, pictures), PICTURES)[0]
+            return
+        for index, picture in enumerate(pictures):
+            yield from self._reader.pictures(picture, f"picture {index}")[0]
+
+    def _depth_of_camera(self) -> Iterator[DeviceFrame]:
+        with self._open_line() as line:
+            for arrival in camera_frames(line):
+                yield self._frame(arrival, None)
+
+    def _capture_of_camera(self, table: str, count: int, largest_log2: int) -> None:
+        accepted = [1 << power for power in range(largest_log2 + 1)]
+        if count not in accepted:
+            raise InputError(Argument("frames", count), accepted=[str(number) for number in accepted])
+        with self._open_line() as line:
+            captures.capture_of_camera(line, table, count, lambda: line.send(self._untouched))
+
+    def _frame(self, arrival: Arrival, picture: int | None) -> DeviceFrame:
+        pipeline, frame = self.pipeline, arrival.frame
+        touch, release, area = (self._codes[name] for name in THRESHOLDS)
+        settings = Settings(touch, release, area, minimum_area=1, debounce=1)
+        recorder = Recorder(settings, pipeline.config.data_width, pipeline.config.solver == "tridiagonal")
+        units = pipeline.depth_lsb_mm, pipeline.pixel_pitch_mm, pipeline.sensor.pixel_aspect
+        counts = frame.number, arrival.time_s, arrival.lost
+        return DeviceFrame(frame.codes, frame.record, *counts, picture, recorder, *units)
+
+    # Thresholds.
+
+    def _code(self, depth_mm: float) -> int:
+        return round(depth_mm / self.pipeline.depth_lsb_mm)
+
+    @property
+    def _limit(self) -> int:
+        """Depth code beyond the range."""
+        return 1 << self.pipeline.config.data_width - 1
+
+
+def _thresholds_of(pipeline: Pipeline) -> dict[str, float]:
+    """Return the depth in mm of each register of a threshold."""
+    depths_mm = pipeline.threshold_mm, pipeline.threshold_mm, pipeline.area_threshold_mm
+    return dict(zip(THRESHOLDS, depths_mm, strict=True))

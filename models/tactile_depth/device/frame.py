@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,67 +11,100 @@ import numpy as np
 import numpy.typing as npt
 
 from tactile_depth.by_value import ByValue
-from tactile_depth.result import Contact, Result
+from tactile_depth.contact.contact_events import Record
+from tactile_depth.result import Contact, Recorder, Result
 
 
 @dataclass(frozen=True, eq=False)
 class DeviceFrame(ByValue):
     """Depth frame of a device. Rows are in the order of the picture; depth is positive where the gel is pressed in.
 
-    Heights, depths and the mask are those that `Result` of the same codes and threshold has. Two frames are equal if
+    Heights, depths and the mask are those that a `Result` of the same codes and threshold has. Two frames are equal if
     all their values are.
 
     Attributes
     ----------
-    result : Result
-        Depth codes and the record of the device, with the units of the pipeline; without slopes, `dark` and warnings.
+    codes : int32 array (rows, columns)
+        Depth codes.
+    record : Record
+        Contact record that the device made, with the frame's number and time in the pipeline.
     number : int
-        Number of the frame on the link, from 1 at power-up, modulo 2^32. Frames that are lost have numbers too.
+        Number of the frame on the link, from 1 at power-up, modulo 2^32. A frame that is lost has a number too.
     time_s : float
         Time at which the last bytes of the frame came, in seconds since the epoch, as `time.time` gives it.
     lost : int
-        Frames lost since the device was opened: as `DeviceStatus.lost`, at this frame.
+        Frames lost from the opening of the device to this frame, as `DeviceStatus.lost`.
     picture : int or None
         Number of its picture among those that `Device.depth` was given, from 0; None for a picture of the device's
         camera.
+    recorder : Recorder
+        Holds the thresholds.
+    depth_lsb_mm, pixel_pitch_mm : float
+        Depth of code 1, and height of a grid pixel, in mm.
+    pixel_aspect : float
+        Width of a grid pixel over its height.
     """
 
-    result: Result
+    codes: npt.NDArray[np.int32]
+    record: Record
     number: int
     time_s: float
     lost: int
-    picture: int | None = None
+    picture: int | None
+    recorder: Recorder
+    depth_lsb_mm: float
+    pixel_pitch_mm: float
+    pixel_aspect: float
 
     def __repr__(self) -> str:
         rows, columns = self.codes.shape
         return f"DeviceFrame({self.number}, {columns}x{rows}, height up to {self.height_mm.max():.3g} mm)"
 
-    @property
-    def codes(self) -> npt.NDArray[np.int32]:
-        """Depth codes, int32 (rows, columns)."""
-        return self.result.codes
-
-    @property
-    def depth_mm(self) -> npt.NDArray[np.float64]:
-        """Depth in mm, float64 (rows, columns)."""
-        return self.result.depth_mm
+    @cached_property
+    def _result(self) -> Result:
+        """Result of the codes, with the record of the device; without slopes."""
+        return Result(
+            self.codes,
+            self.codes * self.depth_lsb_mm,
+            np.broadcast_to(np.full(2, np.nan), (*self.codes.shape, 2)),
+            np.broadcast_to(np.False_, self.codes.shape),
+            None,
+            {},
+            self.recorder,
+            self.depth_lsb_mm,
+            self.pixel_pitch_mm,
+            math.inf,
+            None,
+            (self.record,),
+            pixel_aspect=self.pixel_aspect,
+        )
 
     @cached_property
     def height_mm(self) -> npt.NDArray[np.float32]:
         """Height above the untouched surface in mm, float32 (rows, columns): `Result.height_mm`, rounded once."""
-        return self.result.height_mm.astype(np.float32)
+        return self._result.height_mm.astype(np.float32)
+
+    @property
+    def depth_mm(self) -> npt.NDArray[np.float64]:
+        """Depth in mm, float64 (rows, columns)."""
+        return self._result.depth_mm
 
     @property
     def untouched_mm(self) -> float:
         """Mean of the depths that are not above the threshold, in mm; NaN without such a pixel."""
-        return float(self.result.untouched_mm)
+        return float(self._result.untouched_mm)
+
+    @property
+    def threshold_mm(self) -> float:
+        """Depth above which a pixel touches, in mm."""
+        return self._result.threshold_mm
 
     @property
     def mask(self) -> npt.NDArray[np.bool_]:
         """Pixels whose depth is above the threshold, bool (rows, columns)."""
-        return self.result.mask
+        return self._result.mask
 
-    @property
+    @cached_property
     def contact(self) -> Contact:
         """Contact, with the record that the device made."""
-        return self.result.contact
+        return self._result.contact

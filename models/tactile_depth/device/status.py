@@ -58,3 +58,7 @@ class DeviceStatus(NamedTuple):
     records_lost: int
     touching: bool
     busy: bool
+
+
+COUNTERS = tuple(name.upper() for name in DeviceStatus._fields[10:17])
+"""Registers of the counters of the pipeline, in the order of the fields."""

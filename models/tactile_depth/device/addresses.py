@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Addresses of devices: the transport, and where its line is."""
+
+from __future__ import annotations
+
+from tactile_depth.device.serial_line import SerialLine, port_of
+from tactile_depth.device.simulator import Simulator
+from tactile_depth.device.transport import Transport
+from tactile_depth.errors import Argument, InputError
+from tactile_depth.pipeline import Pipeline
+
+BAUD = 3_000_000
+SERIAL, SIM, PINS = "serial", "sim", "pins"
+ACCEPTED = ("serial:PATH", "serial:PATH@BAUD", "serial:USB-SERIAL-NUMBER", "sim", "sim:pins")
+
+
+def open_transport(address: str, pipeline: Pipeline) -> Transport:
+    """Open the line of an address.
+
+    Raises
+    ------
+    InputError
+        There is no such transport or no such port.
+    DeviceError
+        The line cannot be opened.
+    """
+    named = Argument("address", address)
+    if not isinstance(address, str):
+        raise InputError(named, " is no text", accepted=ACCEPTED)
+    kind, _, place = (f"{SERIAL}:{address}" if address.startswith("/dev/") else address).partition(":")
+    if kind == SERIAL and place:
+        path, baud = _split(place, named)
+        return SerialLine(port_of(path), baud)
+    if kind == SIM and place in ("", PINS):
+        return Simulator(pipeline, place == PINS)
+    raise InputError(named, " is no address of a device", accepted=ACCEPTED)
+
+
+def _split(place: str, named: Argument) -> tuple[str, int]:
+    """Return path or serial number, and baud rate."""
+    path, at, rate = place.rpartition("@")
+    if not at:
+        return place, BAUD
+    if not path or not (rate.isascii() and rate.isdecimal()) or not int(rate):
+        raise InputError(named, " has no baud rate behind @", accepted=f"{SERIAL}:PATH@{BAUD}, for example")
+    return path, int(rate)

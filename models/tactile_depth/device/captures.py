@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Captures of reference and zero offset in a device."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from tactile_depth.configuration import LIGHT_GAIN, Configuration
+from tactile_depth.cores import fastest
+from tactile_depth.device.errors import DeviceError
+from tactile_depth.device.exchange import CAMERA_S, Exchange
+from tactile_depth.device.line import Line
+from tactile_depth.device.registers import read_words, write_words
+from tactile_depth.device.tables import wait_in_use
+from tactile_depth.gradient.flat_field import pixel_gains
+from tactile_depth.registers.axil_registers import GAINS
+from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.registers.table_banks import CAPTURES
+from tactile_depth.tactile_depth import Tables, light_of
+
+ATTEMPTS = 3
+LIGHT = REGISTERS["LIGHT"]
+UNITY = 1 << LIGHT_GAIN.width - 1
+
+
+def write_gains(line: Line, gains: Sequence[int]) -> None:
+    """Write the light gains of the next frame, of red, green and blue."""
+    write_words(line, list(zip(GAINS, gains, strict=True)))
+
+
+def gains_of(frames: npt.NDArray[np.uint8], reference: npt.NDArray[np.int64], config: Configuration) -> list[list[int]]:
+    """Return the light gains of pictures that stand for themselves, (pictures, 3).
+
+    Parameters
+    ----------
+    frames : uint8 array (pictures, rows, columns, 3)
+    reference : int64 array (node rows, node columns, 3)
+        Gains of the reference that the device has.
+    """
+    tables = Tables(pixel_gains(reference, config), np.empty(0, np.int64))
+    gains = light_of(frames, tables, config, cores=fastest())
+    assert gains is not None
+    return gains.tolist()
+
+
+def capture_of_pictures(
+    line: Line, table: str, frames: npt.NDArray[np.uint8], gains: Sequence[Sequence[int]] | None = None
+) -> None:
+    """Capture a table from pictures that are sent, and wait until it is in use.
+
+    Parameters
+    ----------
+    table : str
+        `reference` or `zero`.
+    frames : uint8 array (2**k, rows, columns, 3)
+        Pictures on the grid.
+    gains : sequence of (red, green, blue), optional
+        Light gains of each; by default they follow the light.
+
+    Raises
+    ------
+    DeviceError
+        Too many pictures get lost, or the device does not answer.
+    """
+    with Exchange(line) as exchange:
+        _capture(line, exchange, table, frames, gains)
+
+
+def _capture(
+    line: Line,
+    exchange: Exchange,
+    table: str,
+    frames: npt.NDArray[np.uint8],
+    gains: Sequence[Sequence[int]] | None,
+) -> None:
+    def untouched() -> None:
+        exchange.depth_of(frames[0])
+
+    wait_in_use(line, untouched)
+    light = read_words(line, [LIGHT.name])[LIGHT.name]
+    if gains is not None:
+        write_words(line, [(LIGHT.name, light & ~LIGHT.field("follow").mask)])
+    try:
+        for _ in range(ATTEMPTS):
+            _start(line, table, len(frames))
+            if _all_sent(line, exchange, frames, gains) and _has_ended(line, table):
+                break
+        else:
+            raise DeviceError(f"{ATTEMPTS} captures lost pictures on the line", remedy="check cable and baud rate")
+    finally:
+        if gains is not None:
+            write_words(line, [(LIGHT.name, light)])
+    wait_in_use(line, untouched)
+
+
+def _all_sent(
+    line: Line, exchange: Exchange, frames: npt.NDArray[np.uint8], gains: Sequence[Sequence[int]] | None
+) -> bool:
+    """Send the pictures of a capture; return False as soon as one gets lost."""
+    for index, frame in enumerate(frames):
+        if gains is not None:
+            write_gains(line, gains[index])
+        if exchange.depth_of(frame) is None:
+            return False
+    return True
+
+
+def capture_of_camera(line: Line, table: str, count: int, give_picture: Callable[[], None]) -> None:
+    """Capture a table from the next pictures of the device's camera, and wait until it is in use.
+
+    Parameters
+    ----------
+    table : str
+        `reference` or `zero`.
+    count : int
+        2**k pictures.
+    give_picture : function
+        Sends a picture without contact.
+
+    Raises
+    ------
+    DeviceError
+        The camera gives no pictures, or the device does not answer.
+    """
+    wait_in_use(line, give_picture)
+    _start(line, table, count)
+    last, came = time.monotonic(), -1
+    while _busy(line, table):
+        taken = read_words(line, ["FRAMES_IN"])["FRAMES_IN"]
+        if taken != came:
+            last, came = time.monotonic(), taken
+        elif time.monotonic() - last > line.picture_s + CAMERA_S:
+            problem = f"no picture came from the camera of the device in {line.picture_s + CAMERA_S:.1f} s"
+            raise DeviceError(problem, remedy="let it send pictures of the grid, or give pictures")
+    wait_in_use(line, give_picture)
+
+
+def _start(line: Line, table: str, count: int) -> None:
+    register = CAPTURES[table]
+    write_words(line, [(register.name, register.pack(log2_frames=count.bit_length() - 1, start=1))])
+
+
+def _busy(line: Line, table: str) -> bool:
+    register = CAPTURES[table]
+    return bool(read_words(line, [register.name])[register.name] & register.field("busy").mask)
+
+
+def _has_ended(line: Line, table: str) -> bool:
+    """Wait for the end of a capture whose pictures have all come; return False if it waits for more."""
+    end = time.monotonic() + line.picture_s
+    while _busy(line, table):
+        if time.monotonic() > end:
+            return False
+    return True

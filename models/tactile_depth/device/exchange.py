@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Exchange of pictures and depth frames with a device: one picture at a time, or the frames of its camera."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
+
+import numpy as np
+import numpy.typing as npt
+
+from tactile_depth.device.errors import DeviceError
+from tactile_depth.device.line import Arrival, Line
+from tactile_depth.device.registers import read_words
+from tactile_depth.link.depth_frames import NUMBERS
+
+ROUNDS = 3  # times that a picture waits for its depth while the device still has it
+MISSED = 3  # pictures without depth in a row after which the line is given up
+CAMERA_S = 2.0  # the slowest camera gives a picture in this time
+
+
+class Exchange(AbstractContextManager["Exchange"]):
+    """Sends pictures, and waits for the depth of each before the next one; ends with its context.
+
+    A depth frame belongs to a picture by its number in the pipeline. So depth that comes late goes to no other picture.
+    """
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+        line.ask()  # frames up to now are delivered or lost
+        line.collect(True)
+        self._made, self._taken = self._counts()
+        self._missed = 0
+
+    def __exit__(self, *raised: object) -> None:
+        self._line.collect(False)
+
+    def depth_of(self, pixels: npt.NDArray[np.uint8]) -> Arrival | None:
+        """Return the depth of a picture; None, and count it as lost, if a part of either got lost on the line.
+
+        Parameters
+        ----------
+        pixels : uint8 array (rows, columns, 3)
+            A picture on the grid.
+
+        Raises
+        ------
+        DeviceError
+            The device does not answer or was reset, or `MISSED` pictures in a row gave no depth.
+        """
+        line = self._line
+        line.check()
+        lost, number = line.lost, (self._made + 1) % NUMBERS
+        line.send(pixels)
+        for _ in range(ROUNDS):
+            end = time.monotonic() + line.picture_s
+            while (arrival := line.frame(end - time.monotonic(), lost)) is not None:
+                if arrival.frame.record.frame == number:
+                    self._made, self._missed = number, 0
+                    self._taken += 1
+                    return arrival
+            if self._is_missing(lost):
+                self._missed += 1
+                if self._missed == MISSED:
+                    raise self._lossy()
+                return None
+        remedy = "reset the device, then call load()"
+        raise DeviceError(f"the depth of a picture has not come in {ROUNDS * line.picture_s:.1f} s", remedy=remedy)
+
+    def _is_missing(self, lost: int) -> bool:
+        """Ask the device what became of the picture; return True if its depth will not come, which is then counted."""
+        line = self._line
+        line.ask()  # a frame that got lost is then counted
+        made, taken = self._counts()
+        if made == self._made and taken == self._taken:  # the picture did not come whole
+            line.count_lost()
+            return True
+        if made != self._made and line.lost != lost:
+            self._made, self._taken = made, taken
+            return True
+        return False
+
+    def _counts(self) -> tuple[int, int]:
+        """Return the number of the last frame that was made, and of pictures that came in."""
+        words = read_words(self._line, ["RECORD_FRAME", "FRAMES_IN"])
+        return words["RECORD_FRAME"], words["FRAMES_IN"]
+
+    def _lossy(self) -> DeviceError:
+        line = self._line
+        counts = f"{line.bad_packets} broken packets came to this host, {line.status.bad_packets} to the device"
+        return DeviceError(f"{MISSED} pictures in a row gave no depth: {counts}", remedy="check cable and baud rate")
+
+
+def camera_frames(line: Line) -> Iterator[Arrival]:
+    """Give the depth frames of the device's camera as they come.
+
+    Raises
+    ------
+    DeviceError
+        No frame comes, the device does not answer, or it was reset.
+    """
+    line.collect(True)
+    try:
+        yield from _camera_frames(line)
+    finally:
+        line.collect(False)
+
+
+def _camera_frames(line: Line) -> Iterator[Arrival]:
+    patience_s = line.picture_s + CAMERA_S
+    last, bad = time.monotonic(), line.bad_packets
+    while True:
+        line.check()
+        arrival = line.frame(patience_s, line.lost)
+        if arrival is not None:
+            yield arrival
+            last, bad = time.monotonic(), line.bad_packets
+        elif time.monotonic() - last > patience_s:
+            line.ask()
+            if line.bad_packets != bad:
+                problem = (
+                    f"no depth frame came whole in {patience_s:.1f} s: {line.bad_packets - bad} packets are broken"
+                )
+                raise DeviceError(problem, remedy="check cable and baud rate")
+            problem = f"the device has sent no depth for {patience_s:.1f} s"
+            raise DeviceError(problem, remedy="let its camera send pictures of its grid, or give pictures")

@@ -1,0 +1,367 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The host's side of the link over a transport: requests, pictures, and the depth frames that come meanwhile."""
+
+from __future__ import annotations
+
+import random
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from tactile_depth.device.errors import DeviceError
+from tactile_depth.device.transport import Transport
+from tactile_depth.errors import InputError
+from tactile_depth.link.depth_formats import DepthFormat, exact_shift
+from tactile_depth.link.depth_frames import DepthFrame, DepthFrames
+from tactile_depth.link.framing import most_on_line, to_line
+from tactile_depth.link.packets import (
+    LARGEST_SHIFT,
+    MOST_ACCESSES,
+    MOST_PIXELS,
+    PICTURE_HEADER,
+    PIXEL_BYTES,
+    Ask,
+    Packet,
+    Picture,
+    Read,
+    ReadReply,
+    Select,
+    Status,
+    Write,
+    WriteReply,
+)
+from tactile_depth.link.rates import rate
+
+KEPT = 8  # frames that wait for the program; the oldest is dropped and counted
+READ_S = 0.1
+REQUESTS = 256  # numbers of requests
+Found = TypeVar("Found")
+Reply = TypeVar("Reply", ReadReply, WriteReply)
+
+
+class Arrival(NamedTuple):
+    """A depth frame.
+
+    Attributes
+    ----------
+    frame : DepthFrame
+    time_s : float
+        When its last bytes came, as `time.time`.
+    lost : int
+        Frames lost before it.
+    """
+
+    frame: DepthFrame
+    time_s: float
+    lost: int
+
+
+class Line:
+    """Device at the end of a transport. A thread takes what the device sends; one thread calls the methods.
+
+    The device is told a shift of 16-bit depth that it does not have after a reset, although words of depth have none:
+    a status with another shift shows a reset or a power-up.
+
+    Parameters
+    ----------
+    transport : Transport
+        It is closed with the line, and if the device does not answer.
+
+    Attributes
+    ----------
+    status : Status
+        The last one.
+    broken : bool
+        The transport is gone: the line must be opened anew.
+
+    Raises
+    ------
+    InputError
+        The device speaks another version of the link.
+    DeviceError
+        It does not answer.
+    """
+
+    def __init__(self, transport: Transport) -> None:
+        self.broken = False
+        self._transport, self._pace = transport, transport.pace
+        self._frames = DepthFrames()
+        self._changed = threading.Condition()
+        self._arrivals: deque[Arrival] = deque()
+        self._reply: ReadReply | WriteReply | None = None
+        self._statuses = 0
+        self._bytes = 0
+        self._dropped = 0  # frames that the program did not take, and pictures without depth
+        self._trouble: Exception | None = None  # to be raised once
+        self._resets: int | None = None  # those that are known; None: they are not watched
+        self._mark: tuple[DepthFormat, int] | None = None  # format and shift that were selected
+        self._request = random.randrange(REQUESTS)
+        self._picture = random.randrange(1 << 32)
+        self._collects = self._ends = False
+        self._thread = threading.Thread(target=self._listen, daemon=True)
+        self._thread.start()
+        try:
+            self.ask()
+            self._select()
+        except BaseException:
+            self.close()
+            raise
+
+    # What comes in, in the thread.
+
+    def _listen(self) -> None:
+        while not self._ends:
+            try:
+                data = self._transport.read(READ_S)
+            except Exception as error:
+                with self._changed:
+                    self._trouble, self.broken = error, True
+                    self._changed.notify_all()
+                return
+            if data:
+                with self._changed:
+                    self._feed(data)
+                    self._changed.notify_all()
+
+    def _feed(self, data: bytes) -> None:
+        self._bytes += len(data)
+        try:
+            for packet in self._frames.reader.feed(data):
+                self._take(packet)
+        except InputError as error:  # another version of the link
+            self._trouble = error
+
+    def _take(self, packet: Packet) -> None:
+        frame = self._frames.take(packet)
+        if isinstance(packet, ReadReply | WriteReply):
+            self._reply = packet
+        elif isinstance(packet, Status):
+            self._statuses += 1
+        if frame is not None and self._collects:
+            if len(self._arrivals) == KEPT:
+                self._arrivals.popleft()
+                self._dropped += 1
+            self._arrivals.append(Arrival(frame, time.time(), self.lost))
+        has_mark = not isinstance(packet, Status) or (packet.depth_format, packet.shift) == self._mark
+        if self._resets is None:
+            if isinstance(packet, Status) and has_mark:
+                self._resets = self._frames.resets
+        elif not has_mark or self._frames.resets != self._resets:
+            self._resets = self._mark = None
+            remedy = "its settings are those of power-up: call load() again"
+            self._trouble = DeviceError(
+                f"{self._transport.name}: the device was reset or lost its power", remedy=remedy
+            )
+
+    # Waiting.
+
+    def _wait(self, found: Callable[[], Found | None], timeout_s: float) -> Found | None:
+        """Return what is found, None at the time-out; raise what happens meanwhile."""
+        end = time.monotonic() + timeout_s
+        with self._changed:
+            while True:
+                self._raise_trouble()
+                result = found()
+                left = end - time.monotonic()
+                if result is not None or left <= 0:
+                    return result
+                self._changed.wait(left)
+
+    def _raise_trouble(self) -> None:
+        trouble, self._trouble = self._trouble, None
+        if trouble is not None:
+            raise trouble
+        if self.broken:
+            raise DeviceError(f"{self._transport.name} is gone", remedy="call again, which opens it anew")
+
+    def _repeat(self, line: bytes, found: Callable[[], Found | None], what: str) -> Found:
+        """Send a packet until its answer is found."""
+        end = time.monotonic() + self._pace.limit_s
+        bytes_before, bad_before = self._bytes, self.bad_packets
+        while True:
+            self._write_line(line)
+            result = self._wait(found, self._pace.repeat_s)
+            if result is not None:
+                return result
+            if time.monotonic() > end:
+                raise self._silent(what, self._bytes - bytes_before, self.bad_packets - bad_before)
+
+    def _silent(self, what: str, count: int, bad: int) -> DeviceError:
+        """Return the error of an answer that did not come, although `count` bytes came with `bad` broken packets."""
+        came = "nothing came"
+        if count:
+            came = f"{count} bytes came, with {bad} broken packets" if bad else f"{count} bytes came that are no answer"
+        problem = f"{self._transport.name}: no answer to {what} in {self._pace.limit_s:.1f} s: {came}"
+        return DeviceError(problem, remedy=self._transport.silence)
+
+    # Requests.
+
+    def check(self) -> None:
+        """Raise what has happened since the last call, once; select the format of depth again after a reset."""
+        with self._changed:
+            self._raise_trouble()
+        if self._resets is None:
+            self._select()
+
+    def ask(self) -> Status:
+        """Return the status of the device.
+
+        Raises
+        ------
+        InputError
+            The device speaks another version of the link.
+        DeviceError
+            It does not answer.
+        """
+        before = self._statuses
+        return self._repeat(to_line(Ask().pack()), lambda: self._status_after(before), "a request of its status")
+
+    def _status_after(self, count: int) -> Status | None:
+        return self._frames.status if self._statuses > count else None
+
+    def _select(self) -> None:
+        """Select depth in words, and watch for resets from then on."""
+        after_reset = exact_shift(self.ask().data_width)
+        mark = DepthFormat.WORDS, LARGEST_SHIFT if after_reset != LARGEST_SHIFT else 0
+        with self._changed:
+            self._resets, self._mark = None, mark
+        self._repeat(
+            to_line(Select(*mark).pack()), lambda: None if self._resets is None else True, "the choice of depth"
+        )
+
+    def read(self, addresses: Sequence[int]) -> list[int]:
+        """Return the words of registers at byte addresses; fewer if one was refused.
+
+        Raises
+        ------
+        DeviceError
+            The device does not answer.
+        """
+        words: list[int] = []
+        for first in range(0, len(addresses), MOST_ACCESSES):
+            part = tuple(addresses[first : first + MOST_ACCESSES])
+            reply = self._access(Read(self._next_request(), part), ReadReply)
+            words += reply.values
+            if len(reply.values) < len(part):
+                break
+        return words
+
+    def write(self, pairs: Sequence[tuple[int, int]]) -> int:
+        """Write pairs of byte address and word, and return the number of those done: fewer if one was refused.
+
+        Raises
+        ------
+        DeviceError
+            The device does not answer.
+        """
+        done = 0
+        for first in range(0, len(pairs), MOST_ACCESSES):
+            part = tuple(pairs[first : first + MOST_ACCESSES])
+            reply = self._access(Write(self._next_request(), part), WriteReply)
+            done += reply.done
+            if reply.done < len(part):
+                break
+        return done
+
+    def _next_request(self) -> int:
+        self._request = (self._request + 1) % REQUESTS
+        return self._request
+
+    def _access(self, packet: Read | Write, kind: type[Reply]) -> Reply:
+        self._reply = None
+
+        def answer() -> Reply | None:
+            reply = self._reply
+            return reply if isinstance(reply, kind) and reply.request == packet.request else None
+
+        return self._repeat(to_line(packet.pack()), answer, "an access to its registers")
+
+    def _write_line(self, line: bytes) -> None:
+        try:
+            self._transport.write(line)
+        except DeviceError:
+            self.broken = True
+            raise
+
+    # Pictures and frames.
+
+    def send(self, pixels: npt.NDArray[np.uint8]) -> None:
+        """Send a picture of the grid, uint8 (rows, columns, 3). Raises DeviceError if the line is gone."""
+        self._picture = (self._picture + 1) % (1 << 32)
+        for packet in _packets(self._picture, pixels):
+            self._write_line(to_line(packet.pack()))
+
+    def frame(self, timeout_s: float, lost: int) -> Arrival | None:
+        """Return the next depth frame; None at the time-out, or as soon as another number than `lost` are lost.
+
+        Raises
+        ------
+        DeviceError
+            The line is gone, or the device was reset.
+        """
+        changed = self._wait(lambda: True if self._arrivals or self.lost != lost else None, timeout_s)
+        with self._changed:
+            return self._arrivals.popleft() if changed and self._arrivals else None
+
+    def collect(self, on: bool) -> None:
+        """Begin or end to keep frames; those that wait are dropped."""
+        with self._changed:
+            self._collects = on
+            self._arrivals.clear()
+
+    def count_lost(self) -> None:
+        """Count a picture that gave no depth as lost."""
+        with self._changed:
+            self._dropped += 1
+
+    @property
+    def picture_s(self) -> float:
+        """Longest time from the first byte of a picture to the last of its depth."""
+        status = self._frames.status
+        assert status is not None
+        depth = rate(status.rows, status.columns, DepthFormat.WORDS, status.data_width).line_bytes
+        pixels = status.rows * status.columns
+        packets = -(-pixels // MOST_PIXELS)
+        picture = packets * most_on_line(PICTURE_HEADER.size + PIXEL_BYTES * MOST_PIXELS)
+        return 2 * (depth + picture) * self._pace.byte_s + self._pace.limit_s
+
+    @property
+    def status(self) -> Status:
+        assert self._frames.status is not None
+        return self._frames.status
+
+    @property
+    def bad_packets(self) -> int:
+        """Broken packets that came."""
+        return self._frames.reader.bad_packets
+
+    @property
+    def delivered(self) -> int:
+        """Depth frames that came whole."""
+        return self._frames.delivered
+
+    @property
+    def lost(self) -> int:
+        """Depth frames that did not come whole or were not taken in time, and pictures without depth."""
+        return self._frames.lost + self._dropped
+
+    def close(self) -> None:
+        """Close the transport; closing twice does nothing."""
+        self._ends = True
+        if self._thread is not threading.current_thread():
+            self._thread.join(10 * READ_S)
+        self._transport.close()
+
+
+def _packets(number: int, pixels: npt.NDArray[np.uint8]) -> Iterator[Picture]:
+    """Give the packets of a picture."""
+    rows, columns, _ = pixels.shape
+    data = np.ascontiguousarray(pixels).tobytes()
+    for first in range(0, rows * columns, MOST_PIXELS):
+        row, column = divmod(first, columns)
+        yield Picture(number, row, column, data[PIXEL_BYTES * first :][: PIXEL_BYTES * MOST_PIXELS])

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Configuration and tables of a device: compared with those of a pipeline, written, and taken into use."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from tactile_depth.device.errors import DeviceError
+from tactile_depth.device.line import Line
+from tactile_depth.device.registers import read_words, write_words
+from tactile_depth.errors import InputError
+from tactile_depth.pipeline import Pipeline
+from tactile_depth.registers.axil_registers import Build
+from tactile_depth.registers.register_map import REGISTERS, TABLES, Field
+from tactile_depth.registers.table_banks import CAPTURES, COMMIT
+from tactile_depth.table_entries import ONE_WORD, table_entries
+from tactile_depth.tactile_depth import top_parameters
+
+DESCRIPTION = ("GRID", "FORMAT", "DEVICE", "DEPTH_UNIT", "SLOPE_UNIT")
+BUSY = tuple(capture.name for capture in CAPTURES.values())
+QUIET_S = 0.2  # a camera that gives no picture in this time is not waited for
+REMEDY = "make the pipeline with the configuration of the device, or build the device for the pipeline"
+
+
+def build_of(pipeline: Pipeline) -> Build:
+    """Return the build of a device that fits a pipeline."""
+    return Build(top_parameters(pipeline.config, pipeline.pixel_pitch_mm))
+
+
+def require_same(line: Line, pipeline: Pipeline) -> None:
+    """Raise InputError, which names what differs, unless a device has the configuration of a pipeline.
+
+    The lanes may differ. Raises DeviceError if the device is no tactile_depth, or does not answer.
+    """
+    words = read_words(line, ["ID", *DESCRIPTION])
+    if words["ID"] != REGISTERS["ID"].reset:
+        raise DeviceError(
+            f"the device has another ID, {words['ID']:#010x}", remedy="build it with hdl/tactile_depth.sv"
+        )
+    expected = build_of(pipeline).description
+    differing = [
+        f"{name}.{field.name} is {_shown(words[name], field)}, that of the pipeline {_shown(expected[name], field)}"
+        for name in DESCRIPTION
+        for field in REGISTERS[name].fields
+        if (words[name] ^ expected[name]) & field.mask and (name, field.name) != ("DEVICE", "lanes")
+    ]
+    if differing:
+        raise InputError(f"the device has another configuration: {'; '.join(differing)}", remedy=REMEDY)
+
+
+def _shown(word: int, field: Field) -> str:
+    value = (word & field.mask) >> field.low
+    names = {code: name for name, code in field.values.items()}
+    return names.get(value, str(value))
+
+
+def load_tables(line: Line, pipeline: Pipeline, give_picture: Callable[[], None]) -> None:
+    """Write all tables and the pitch of a pipeline into a device, and commit them together.
+
+    Parameters
+    ----------
+    give_picture : function
+        Sends a picture without contact, which takes earlier tables into use and ends an earlier capture.
+
+    Raises
+    ------
+    InputError
+        The device has other tables.
+    DeviceError
+        It refuses an entry, earlier tables stay pending, or it does not answer.
+    """
+    entries = table_entries(pipeline.sensor, pipeline.config, pipeline.zero_codes)
+    for name, words in entries.items():
+        write_words(line, [_select(name)])
+        size = read_words(line, ["TABLE_SIZE"])["TABLE_SIZE"]
+        if size != len(words):
+            problem = f"the device has {size} entries in its table {name}, the pipeline {len(words)}"
+            raise InputError(problem, remedy=REMEDY)
+    wait_in_use(line, give_picture, also_captures=True)
+    for name, words in entries.items():
+        _write_table(line, name, words)
+    pitch = build_of(pipeline).parameters["PitchNm"]
+    write_words(line, [("PITCH", pitch), (COMMIT.name, COMMIT.pack(**dict.fromkeys(entries, 1)))])
+
+
+def _select(name: str) -> tuple[str, int]:
+    return "TABLE_SELECT", REGISTERS["TABLE_SELECT"].pack(select=TABLES[name])
+
+
+def _write_table(line: Line, name: str, entries: np.ndarray) -> None:
+    """Write the entries (n, 2) of a table, lower and upper word, into its free bank."""
+    accesses = [_select(name), ("TABLE_INDEX", 0)]
+    for low, high in entries.tolist():
+        if name not in ONE_WORD:
+            accesses.append(("TABLE_HIGH", high))
+        accesses.append(("TABLE_LOW", low))
+    write_words(line, accesses)
+    if read_words(line, ["TABLE_INDEX"])["TABLE_INDEX"]:
+        raise DeviceError(f"the device did not take every entry of its table {name}", remedy="call load() again")
+
+
+def wait_in_use(line: Line, give_picture: Callable[[], None], also_captures: bool = False) -> None:
+    """Wait until frames use all tables that are committed, and until captures have ended if `also_captures` is set.
+
+    Raises DeviceError if they stay pending.
+    """
+    quiet_ends, pictures = time.monotonic() + QUIET_S, 0
+    most = 2 + (1 << 8) * also_captures  # pictures of a capture, one that takes its table, and one that was malformed
+    ends = time.monotonic() + line.picture_s
+    while pending := _pending(line, also_captures):
+        if time.monotonic() < quiet_ends:
+            continue
+        if pictures < most:
+            pictures += 1
+            give_picture()
+            ends = time.monotonic() + line.picture_s
+        elif time.monotonic() > ends:
+            problem = f"tables of the device stay pending ({', '.join(pending)}), although pictures were sent"
+            raise DeviceError(problem, remedy="reset the device, then call load()")
+
+
+def _pending(line: Line, also_captures: bool) -> list[str]:
+    """Return the tables that are not in use yet, and the captures under way."""
+    words = read_words(line, [*BUSY, COMMIT.name])  # the captures first: the end of one sets a bit of TABLE_COMMIT
+    busy = [name for name in BUSY if also_captures and words[name] & REGISTERS[name].field("busy").mask]
+    return busy + [name for name, bit in COMMIT.unpack(words[COMMIT.name]).items() if bit]

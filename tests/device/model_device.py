@@ -1,0 +1,322 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Model of a device for tests: the link, the registers with their tables, and the pipeline, on bytes of a line.
+
+    python -m tests.device.model_device FILE [FOLDER] [--pins]
+
+The process speaks as the simulator of the RTL does: bytes of the line on standard input and output, SIGUSR1 is a reset,
+SIGUSR2 a power-up. FILE is a pickle of `Setup`. Tables hold zeros at first, so that a test sees what is loaded.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import select
+import signal
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.contact.contact_events import ContactEvents, Settings
+from tactile_depth.depth.zero_capture import captured_zero
+from tactile_depth.gradient.flat_field import captured_gains, pixel_gains
+from tactile_depth.gradient.light_gains import Light, LightFilter
+from tactile_depth.gradient.polynomial_gradient import coefficient_map
+from tactile_depth.link import device as link
+from tactile_depth.link.device import LinkDevice
+from tactile_depth.poisson.divergence import divergence
+from tactile_depth.registers.axil_port import Response
+from tactile_depth.registers.axil_registers import AxilRegisters, Build, Events, Live
+from tactile_depth.registers.register_map import REGISTERS, TABLES
+from tactile_depth.registers.table_banks import CAPTURES
+from tactile_depth.sensor import CUBIC
+from tactile_depth.table_entries import one_word, reference_entries
+from tactile_depth.tactile_depth import Tables, slope_codes, solve, top_parameters, zeroed
+from tactile_depth.video.frame_guard import Word
+
+SETTINGS = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
+SIGNED = 1 << 31
+
+
+@dataclass
+class Setup:
+    """Device that a process models, and what its line does to packets of the device.
+
+    Attributes
+    ----------
+    camera : uint8 array (frames, rows, columns, 3), or None
+        Pictures of its camera, one after another without end.
+    camera_s : float
+        Time between two of them.
+    damage : dict
+        Chances that a packet is lost (`drop`), has a wrong byte (`flip`) or comes twice (`double`), each way.
+    says : str
+        Lines on standard error before `ready`.
+    """
+
+    config: Configuration
+    pitch_mm: float
+    camera: np.ndarray | None = None
+    camera_s: float = 0.02
+    damage: dict[str, float] = field(default_factory=dict)
+    says: str = ""
+
+
+def signed(word: int) -> int:
+    return (word ^ SIGNED) - SIGNED
+
+
+class ModelDevice:
+    """Device with the pipeline of a configuration. Bytes of the host go to `link.receive`.
+
+    Attributes
+    ----------
+    link : LinkDevice
+    registers : AxilRegisters
+    tables : dict
+        Name to the two banks, int64 (2, entries, 2): lower and upper word.
+    """
+
+    def __init__(self, config: Configuration, pitch_mm: float) -> None:
+        self.config = config
+        build = Build(top_parameters(config, pitch_mm))
+        self.registers = AxilRegisters(build, self._entry)
+        sizes = {name: build.table_sizes[code] for name, code in TABLES.items()}
+        self.tables = {name: np.zeros((2, size, 2), np.int64) for name, size in sizes.items() if size}
+        bottom_first = config.solver == "tridiagonal"
+        shape = link.Build(config.rows, config.columns, config.data_width, bottom_first)
+        self.link = LinkDevice(shape, self._read, self._write)
+        self.events = ContactEvents(config.rows, config.columns, config.data_width, bottom_first)
+        self._begin()
+
+    def _begin(self) -> None:
+        self.light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
+        self.record = (0,) * 12
+        self.captures: dict[str, list[np.ndarray]] = {}  # frames that are taken, by table
+        self.wanted: dict[str, int] = {}  # frames of each capture
+        self._frame: list[int] = []
+
+    def reset(self) -> None:
+        self.link.reset()
+        self.registers.reset()
+        self.events.reset()
+        self._begin()
+
+    # Registers.
+
+    def _live(self) -> Live:
+        gains = (0, 0, 0) if self.light is None else tuple(self.light.gains.tolist())
+        banks, capturing = self.registers.banks, frozenset(self.captures)
+        touching = self.events.touching
+        return Live(in_use=banks.bank, capturing=capturing, record=self.record, light_gains=gains, touching=touching)
+
+    def _free(self, code: int) -> int:
+        return 1 - (self.registers.banks.bank >> code & 1)
+
+    def _entry(self, code: int, index: int) -> tuple[int, int]:
+        name = next(name for name, number in TABLES.items() if number == code)
+        low, high = self.tables[name][self._free(code), index].tolist()
+        return high & 0xFFFF_FFFF, low & 0xFFFF_FFFF
+
+    def _read(self, address: int) -> int | None:
+        word, response = self.registers.read(address, self._live())
+        return word if response == Response.OKAY else None
+
+    def _write(self, address: int, value: int) -> bool:
+        registers = self.registers
+        if registers.write(address, value, live=self._live()) != Response.OKAY:
+            return False
+        names = {code: name for name, code in TABLES.items()}
+        for code, index, high, low in registers.table_writes:
+            self.tables[names[code]][self._free(code), index] = signed(low), signed(high)
+        for name in registers.captures:
+            log2 = registers.values[CAPTURES[name].name] & 0xF
+            self.captures[name], self.wanted[name] = [], 1 << min(log2, 8)
+        for colour, gain in registers.gains_written:
+            if self.light is not None:
+                self.light.gains = self.light.light.limited(self.light.gains)
+                self.light.gains[colour] = max(gain, self.light.light.unity >> 1)
+        for done in (registers.table_writes, registers.captures, registers.gains_written):
+            done.clear()
+        registers.clock(Events())
+        return True
+
+    # Pictures.
+
+    def take(self, word: Word) -> None:
+        """Take a pixel; a whole picture gives a depth frame."""
+        rows, columns = self.config.rows, self.config.columns
+        if word.user:
+            if self._frame:
+                self._fault("start_early")
+            self._frame = []
+            self.registers.clock(Events(frame_start=True))
+        elif not self._frame:
+            self._fault("start_missing")
+            return
+        self._frame.append(word.data)
+        if len(self._frame) == rows * columns:
+            words = np.array(self._frame).reshape(rows, columns)
+            self._frame = []
+            self._picture(np.stack([words >> 16 & 0xFF, words & 0xFF, words >> 8 & 0xFF], axis=-1).astype(np.uint8))
+
+    def show(self, picture: np.ndarray) -> None:
+        """Take a picture of the camera, uint8 (rows, columns, 3)."""
+        for row, pixels in enumerate(picture.astype(int)):
+            for column, (red, green, blue) in enumerate(pixels):
+                last = int(column == self.config.columns - 1)
+                self.take(Word(red << 16 | blue << 8 | green, last, int(not row and not column)))
+
+    def _fault(self, name: str) -> None:
+        if "reference" in self.captures:
+            self.captures["reference"] = []
+        for events in (Events(flags=frozenset({name})), Events()):
+            self.registers.clock(events)
+
+    def _picture(self, picture: np.ndarray) -> None:
+        config, monitor, tables = self.config, Monitor(), self._tables()
+        if self.light is not None:
+            light = self.registers.values["LIGHT"]
+            self.light.follow, self.light.rate = bool(light & 1), light >> 4 & 7
+        slopes = slope_codes(picture[None], None, config, monitor, tables=tables, light=self.light)  # type: ignore[arg-type]
+        depth = solve(divergence(slopes, config.neumann), config, monitor)
+        self._capture("reference", picture)
+        self._capture("zero", depth[0])
+        zero = self._zero() if config.zero_offset else None
+        codes = zeroed(depth, config, monitor, zero)[0]
+        settings = Settings(*(signed(self.registers.values[name]) for name in SETTINGS))
+        record = self.events.whole_frame(codes, settings, time=int(time.monotonic() * 1e6) % (1 << 32))
+        self.record = record.words
+        flags = frozenset({"frame_in", "frame_out", "record_valid"})
+        for events in (Events(flags, saturations=sum(monitor.saturations.values())), Events()):
+            self.registers.clock(events)
+        self.link.offer(codes.astype(np.int32), record)
+
+    def _capture(self, name: str, frame: np.ndarray) -> None:
+        if name not in self.captures:
+            return
+        self.captures[name].append(frame)
+        if len(self.captures[name]) < self.wanted[name]:
+            return
+        frames = np.stack(self.captures.pop(name))
+        reference = name == "reference"
+        entries = (
+            reference_entries(captured_gains(frames, self.config))
+            if reference
+            else one_word(captured_zero(frames, self.config))
+        )
+        self.tables[name][self._free(TABLES[name])] = entries
+        self.registers.clock(Events(captured=frozenset({name})))
+
+    def _used(self, name: str) -> np.ndarray:
+        return self.tables[name][1 - self._free(TABLES[name])]
+
+    def _zero(self) -> np.ndarray:
+        return self._used("zero")[:, 0].reshape(self.config.reference_nodes)
+
+    def _tables(self) -> Tables:
+        """Return the tables that frames use."""
+        config, gains, corrections = self.config, None, None
+        if config.flat_field:
+            nodes = self._used("reference")[:, 0].reshape(*config.reference_nodes, 4)
+            gains = pixel_gains(nodes[..., :3], config)
+        if not config.polynomials:
+            return Tables(gains, self._used("gradient"))
+        if config.gradient_model == "cubic":
+            corrections = self._used("gradient")
+        words = self._used("coefficients")[:, 0].reshape(CUBIC)
+        return Tables(gains, coefficient_map(words, config), corrections)
+
+
+class Serving:
+    """Model device between two file descriptors, such as those of a process or of a pty.
+
+    Attributes
+    ----------
+    device : ModelDevice
+    """
+
+    def __init__(self, setup: Setup, source: int, sink: int) -> None:
+        self.setup, self.source, self.sink = setup, source, sink
+        self.device = ModelDevice(setup.config, setup.pitch_mm)
+        self.wanted: set[str] = set()  # `reset`, `power_up` or `end`, from signals and other threads
+        self._random = np.random.default_rng(1)
+        self._shown, self._next = 0, time.monotonic()
+
+    def run(self) -> None:
+        """Serve until the source ends or `end` is wanted."""
+        while "end" not in self.wanted:
+            self._act()
+            ready, *_ = select.select([self.source], [], [], 0.002)
+            if ready:
+                try:
+                    data = os.read(self.source, 1 << 16)
+                except OSError:
+                    return
+                if not data:
+                    return
+                self._receive(data)
+            self._camera()
+            while packet := self.device.link.next_packet():
+                for copy in self._damaged(packet):
+                    self._send(copy)
+
+    def _act(self) -> None:
+        if "reset" in self.wanted:
+            self.wanted.discard("reset")
+            self.device.reset()
+        if "power_up" in self.wanted:
+            self.wanted.discard("power_up")
+            self.device = ModelDevice(self.setup.config, self.setup.pitch_mm)
+
+    def _receive(self, data: bytes) -> None:
+        for piece in data.split(b"\0"):
+            for copy in self._damaged(b"\0" + piece) if len(piece) > 20 else [b"\0" + piece]:
+                self.device.link.receive(copy)
+        words, self.device.link.pixels = self.device.link.pixels, []
+        for word in words:
+            self.device.take(word)
+
+    def _camera(self) -> None:
+        camera = self.setup.camera
+        if camera is not None and time.monotonic() > self._next:
+            self._next = time.monotonic() + self.setup.camera_s
+            self.device.show(camera[self._shown % len(camera)])
+            self._shown += 1
+
+    def _damaged(self, packet: bytes) -> list[bytes]:
+        """Return the packets that come of one."""
+        chances = self.setup.damage
+        if self._random.random() < chances.get("drop", 0):
+            return []
+        if self._random.random() < chances.get("flip", 0):
+            at = int(self._random.integers(len(packet)))
+            packet = packet[:at] + bytes((packet[at] ^ 0x55,)) + packet[at + 1 :]
+        return [packet] * (1 + (self._random.random() < chances.get("double", 0)))
+
+    def _send(self, data: bytes) -> None:
+        while data and "end" not in self.wanted:
+            if select.select([], [self.sink], [], 0.1)[1]:
+                try:
+                    data = data[os.write(self.sink, data[:512]) :]
+                except OSError:
+                    return
+
+
+def main() -> None:
+    setup: Any = pickle.loads(Path(sys.argv[1]).read_bytes())
+    serving = Serving(setup, 0, 1)
+    signal.signal(signal.SIGUSR1, lambda *_: serving.wanted.add("reset"))
+    signal.signal(signal.SIGUSR2, lambda *_: serving.wanted.add("power_up"))
+    print(setup.says + "ready", file=sys.stderr, flush=True)
+    serving.run()
+
+
+if __name__ == "__main__":
+    main()
