@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: Apache-2.0
+"""depth_packets against the packets of the models: every format, sinks of every kind, resets.
+
+The testbench is the store: it holds a frame, and answers reads as depth_store does.
+"""
+
+import os
+import random
+import zlib
+from typing import Any
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.contact.contact_events import WORDS, record
+from tactile_depth.link.depth_formats import DepthFormat, sent_shape, to_bytes, value_bytes
+from tactile_depth.link.packets import LARGEST_SHIFT, Depth, Trailer
+from tb.axis import PROFILES, profile
+from tb.cases import on_bench
+from tb.stream import CLOCK_NS, MANY, parameters
+
+FORMATS = (DepthFormat.WORDS, DepthFormat.SHORT, DepthFormat.AVERAGED)
+LONGEST_SILENCE = 8  # clocks
+
+
+class Bench:
+    """Store of a frame, and sink of the packets."""
+
+    def __init__(self, dut: Any, accepts: str = "none") -> None:
+        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+        self.dut, self.ready = dut, profile(accepts)
+        self.chance = random.Random(cocotb.RANDOM_SEED)
+        names = "Rows", "Columns", "DataWidth", "BottomFirst", "Values"
+        self.rows, self.columns, self.width, self.bottom_first, self.values = parameters(dut, *names)
+        self.codes = np.zeros((self.rows, self.columns), np.int32)
+        self.words: tuple[int, ...] = (0,) * WORDS
+        self.resets = self.sent = 0
+        self.many = MANY if self.codes.size < 64 else 0  # frames of a large grid take long
+
+    async def start(self) -> None:
+        dut = self.dut
+        Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        for pin in ("frame_valid", "format", "shift", "depth_ready", "value_data", "record_data", "cold_rst", "resets"):
+            getattr(dut, pin).value = 0
+        await self.reset(cold=True)
+
+    async def reset(self, cold: bool = False, offered: bool = False) -> None:
+        """Reset for a clock, with or without a frame that waits in it."""
+        dut = self.dut
+        dut.rst.value, dut.cold_rst.value, dut.frame_valid.value = 1, int(cold), int(offered)
+        dut.format.value, dut.depth_ready.value = 1, self.chance.randrange(2)
+        await RisingEdge(dut.clk)
+        self.resets = self.chance.getrandbits(16)
+        dut.rst.value, dut.cold_rst.value, dut.frame_valid.value, dut.resets.value = 0, 0, 0, self.resets
+        self.packets: list[bytes] = []
+        self.packet = b""
+        self.reading, self.silent = False, 0
+        self.held: tuple[int, bool] | None = None  # a byte that was offered and not taken
+        self.pending: int | None = None  # a value that was read in the clock before
+        self.sent = 0 if cold else self.sent
+
+    def offer(self, depth_format: DepthFormat, shift: int) -> list[bytes]:
+        """Let a frame wait; return its packets. Codes are any, the extremes, or near a tie."""
+        low, high = -(1 << self.width - 1), (1 << self.width - 1) - 1
+        shape = (self.rows, self.columns)
+        numbers = np.random.default_rng(self.chance.getrandbits(32))
+        halves = numbers.integers(-3, 4, shape) * (1 << shift) // 2 + numbers.integers(-1, 2, shape)
+        kinds = [np.clip(halves, low, high), numbers.integers(low, high + 1, shape), numbers.choice([low, high], shape)]
+        self.codes = np.choose(numbers.integers(0, 3, shape), kinds).astype(np.int32)
+        self.words = tuple(self.chance.getrandbits(32) for _ in range(WORDS))
+        self.dut.frame_valid.value, self.dut.format.value, self.dut.shift.value = 1, int(depth_format), shift
+        return self.expected(depth_format, 0 if depth_format == DepthFormat.WORDS else shift)
+
+    def expected(self, depth_format: DepthFormat, shift: int) -> list[bytes]:
+        """Return the packets of the frame, the next one to be numbered."""
+        self.sent = (self.sent + 1) % (1 << 32)
+        values = to_bytes(self.codes, depth_format, self.width, shift)
+        rows, columns = sent_shape(depth_format, self.rows, self.columns)
+        size = value_bytes(depth_format, self.width)
+        packets = [
+            Depth(depth_format, self.sent, *divmod(first, columns), values[first * size :][: self.values * size]).pack()
+            for first in range(0, rows * columns, self.values)
+        ]
+        words, crc, from_bottom = record(self.words), zlib.crc32(values), bool(self.bottom_first)
+        trailer = Trailer(self.sent, self.resets, depth_format, shift, rows, columns, from_bottom, crc, words)
+        return [*packets, trailer.pack()]
+
+    async def clock(self) -> None:
+        """Run a clock: take a byte, answer reads."""
+        dut = self.dut
+        ready = int(next(self.ready))
+        dut.depth_ready.value = ready
+        await RisingEdge(dut.clk)
+        valid = bool(dut.depth_valid.value)
+        if valid:
+            byte = int(dut.depth_data.value), bool(dut.depth_last.value)
+            assert self.held in (None, byte), "a byte changed before it was taken"
+            self.held = None if ready else byte
+            if ready:
+                self.packet += bytes((byte[0],))
+                if byte[1]:
+                    self.packets, self.packet = [*self.packets, self.packet], b""
+        else:
+            assert self.held is None, "valid fell before ready came"
+        self.silent = 0 if valid or not dut.sending.value else self.silent + 1
+        assert self.silent <= LONGEST_SILENCE, f"a byte waits for more than {LONGEST_SILENCE} clocks"
+        self.store()
+
+    def store(self) -> None:
+        """Do as depth_store does in the clock that ends: a value stands until the next one that is read."""
+        dut = self.dut
+        take, done, read = (bool(pin.value) for pin in (dut.frame_take, dut.frame_done, dut.value_read))
+        if self.pending is not None:
+            dut.value_data.value, self.pending = self.pending % (1 << self.width), None
+        if self.reading:
+            dut.record_data.value = self.words[int(dut.record_word.value) % WORDS]
+        if read:
+            assert self.reading and not done, "no frame is taken"
+            self.pending = int(self.codes.flat[int(dut.value_address.value)])
+        if take:
+            assert dut.frame_valid.value and not self.reading
+            dut.frame_valid.value = 0
+            dut.format.value, dut.shift.value = self.chance.randrange(4), self.chance.randrange(LARGEST_SHIFT + 1)
+        assert not done or self.reading
+        self.reading = take or (self.reading and not done)
+
+    async def clocks(self, count: int) -> None:
+        for _ in range(count):
+            await self.clock()
+
+    async def play(self, depth_format: DepthFormat, shift: int) -> None:
+        """Send a frame, and compare its packets, and what the core says of it."""
+        dut = self.dut
+        want = self.offer(depth_format, shift)
+        await self.clock()
+        assert bool(dut.frame_take.value), "a frame waits"
+        self.packets = []
+        await self.clock()
+        while bool(dut.sending.value):
+            assert int(dut.sent.value) == self.sent
+            await self.clock()
+        assert not self.packet
+        assert self.packets == want, f"{[p.hex() for p in self.packets]}, expected {[p.hex() for p in want]}"
+        assert not self.reading, "the frame was not given back"
+
+
+@on_bench(Bench, milliseconds=20)
+@cocotb.parametrize(accepts=[*PROFILES])
+async def frames(bench: Bench) -> None:
+    """Send frames of every format with several shifts."""
+    for depth_format in FORMATS:
+        some = [bench.chance.randrange(LARGEST_SHIFT + 1) for _ in range(1 + bench.many)]
+        for shift in [0, LARGEST_SHIFT, *some] if bench.many else some:
+            await bench.play(depth_format, shift)
+            await bench.clocks(bench.chance.randrange(3))
+
+
+@on_bench(Bench, milliseconds=20)
+async def not_taken(bench: Bench) -> None:
+    """Let a frame wait with format 0: it is not taken until there is another format."""
+    dut = bench.dut
+    bench.offer(DepthFormat.SHORT, 2)
+    dut.format.value = 0
+    bench.sent -= 1
+    for _ in range(5):
+        await bench.clock()
+        assert not dut.frame_take.value and not dut.sending.value and not dut.depth_valid.value
+    await bench.play(DepthFormat.AVERAGED, 3)
+
+
+@on_bench(Bench, milliseconds=20, accepts="one_in_4")
+async def resets(bench: Bench) -> None:
+    """Reset at any byte of a frame: it is given up, the number stays, and the next frame is whole."""
+    dut = bench.dut
+    for index in range(4 + 12 * bench.many):
+        depth_format = bench.chance.choice(FORMATS)
+        await bench.play(depth_format, 1)
+        bytes_of = sum(map(len, bench.offer(depth_format, 4)))
+        await bench.clocks(bench.chance.randrange(2, 4 * bytes_of))
+        cold = index % 4 == 3
+        await bench.reset(cold, offered=index % 2 == 1)
+        for _ in range(10):
+            await bench.clock()
+            assert not dut.sending.value and not dut.depth_valid.value and not dut.frame_take.value
+            assert int(dut.sent.value) == bench.sent
