@@ -98,6 +98,11 @@ def test_a_new_host_may_use_the_number_of_the_last_request(device: LinkDevice) -
     assert packets_of(device)[1:] == [link.ReadReply(1, (2,))]
 
 
+def test_each_request_is_answered(device: LinkDevice) -> None:
+    send(device, link.Read(1, (COUNTER,)), link.Read(1, (COUNTER,)), link.Ask(), link.Read(1, (COUNTER,)))
+    assert packets_of(device)[1:] == [link.ReadReply(1, (value,)) for value in (1, 1, 2)]
+
+
 def test_a_refused_access_ends_a_request(device: LinkDevice, registers: Registers) -> None:
     send(device, link.Read(1, (COUNTER, REFUSED, COUNTER)))
     assert packets_of(device) == [link.ReadReply(1, (1,))]
@@ -189,3 +194,17 @@ def test_a_picture_stops_where_a_packet_is_lost(device: LinkDevice, lost: int) -
 def test_packets_of_two_pictures_are_not_joined(device: LinkDevice) -> None:
     send(device, picture(1, 0, 256), picture(2, 256, 256))
     assert len(device.pixels) == 256
+
+
+def test_pixels_behind_the_end_of_a_picture_are_dropped(device: LinkDevice) -> None:
+    send(device, picture(1, 0, 256), picture(1, 256, 200), picture(1, 456, 100), picture(1, 512, 1))
+    assert len(device.pixels) == 512
+    assert (device.pixels[-1].last, device.pixels[-1].user) == (1, 0)
+
+
+@pytest.mark.parametrize(("row", "column"), [(0, 64), (1, 32), (3, 0), (2, 1)])
+def test_a_picture_goes_on_with_row_and_column_of_the_next_pixel(device: LinkDevice, row: int, column: int) -> None:
+    send(device, picture(1, 0, 64), link.Picture(1, row, column, bytes(3)))
+    assert len(device.pixels) == 64
+    send(device, picture(1, 64, 1))
+    assert len(device.pixels) == 65

@@ -101,14 +101,14 @@ class LinkDevice:
         self._depth_format = DepthFormat.WORDS
         self._shift = exact_shift(self.build.data_width)
         self._status_due = True
-        self._reply: ReadReply | WriteReply | None = None  # to the last access
-        self._reply_due = False
+        self._reply: ReadReply | WriteReply | None = None  # to the last request, unless forgotten
+        self._replies: list[ReadReply | WriteReply] = []  # to be sent
         self._record: Record | None = None  # to be sent
         self._depth_is_next = False
         self._waiting: tuple[npt.NDArray[np.int32], Record] | None = None  # the newest frame
         self._frame: _Frame | None = None
         self._position = 0  # of the next value of the frame
-        self._picture: tuple[int, int] | None = None  # number and next pixel of the picture that comes
+        self._picture: tuple[int, int, int] | None = None  # its number, and its next row and column
         self.pixels: list[Word] = []
         self.skipped = 0
 
@@ -149,9 +149,10 @@ class LinkDevice:
                 self._waiting = None
         elif isinstance(packet, Read | Write):
             kind = ReadReply if isinstance(packet, Read) else WriteReply
-            repeated = isinstance(self._reply, kind) and self._reply.request == packet.request
-            self._reply = self._reply if repeated else self._access(packet)
-            self._reply_due = True
+            reply = self._reply
+            if not isinstance(reply, kind) or reply.request != packet.request:
+                reply = self._reply = self._access(packet)
+            self._replies.append(reply)
         elif isinstance(packet, Picture):
             self._take_pixels(packet)
 
@@ -170,20 +171,22 @@ class LinkDevice:
         return ReadReply(packet.request, tuple(values))
 
     def _take_pixels(self, packet: Picture) -> None:
-        """Take the pixels if they begin a picture or continue the one that comes; after a loss wait for the next."""
-        columns, count = self.build.columns, len(packet.pixels) // PIXEL_BYTES
+        """Take the pixels if they begin a picture or continue the one that comes; after a loss wait for the next.
+
+        Pixels behind the end of the picture are dropped.
+        """
+        rows, columns, count = self.build.rows, self.build.columns, len(packet.pixels) // PIXEL_BYTES
+        begins = packet.row == packet.column == 0
+        if not begins and self._picture != (packet.number, packet.row, packet.column):
+            return
         first = packet.row * columns + packet.column
-        if first and self._picture != (packet.number, first):
-            return
-        if first + count > self.build.rows * columns:
-            return
-        for position in range(count):
-            red, green, blue = packet.pixels[PIXEL_BYTES * position :][:PIXEL_BYTES]
-            index = first + position
+        end = min(first + count, rows * columns)
+        for index in range(first, end):
+            red, green, blue = packet.pixels[PIXEL_BYTES * (index - first) :][:PIXEL_BYTES]
             self.pixels.append(
                 Word(red << 16 | blue << 8 | green, int(index % columns == columns - 1), int(index == 0))
             )
-        self._picture = packet.number, first + count
+        self._picture = packet.number, *divmod(end, columns)
 
     # Bytes out.
 
@@ -199,9 +202,8 @@ class LinkDevice:
         if self._status_due:
             self._status_due = False
             return self.status()
-        if self._reply_due:
-            self._reply_due = False
-            return self._reply
+        if self._replies:
+            return self._replies.pop(0)
         depth_due = self._frame is not None or self._waiting is not None
         if self._record is not None and not (self._depth_is_next and depth_due):
             packet, self._record, self._depth_is_next = RecordPacket(self._record), None, True

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: Apache-2.0
+"""register_access: RTL against the model of the device; tests/link/test_device.py tests that."""
+
+from tb.structures import BOTH, ICARUS, of_parameters
+from tests.rtl import test_rtl as test_rtl
+
+built = of_parameters("AddressWidth Accesses")
+STRUCTURES = (
+    built(10, 128, on=BOTH),
+    built(4, 3, on=ICARUS, mutants=True),
+    built(16, 128),
+)
+REFUSED = {
+    "AddressWidth=1": "AddressWidth_must_be_2_to_16",
+    "AddressWidth=17": "AddressWidth_must_be_2_to_16",
+    "Accesses=1": "Accesses_must_be_2_to_128",
+    "Accesses=129": "Accesses_must_be_2_to_128",
+}
