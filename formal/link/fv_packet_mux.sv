@@ -30,7 +30,9 @@ module fv_packet_mux (
   packet_mux dut (.*);
 
   logic allowed, started;
-  protocol_packet_mux u_protocol (.*, .holds(allowed));
+  protocol_packet_mux u_protocol (
+    .*, .holds(allowed), .counts_out_data(), .counts_out_last(), .counts()
+  );
   assumed u_assumed (.clk, .rst, .allowed, .started);
 
   logic [3:0] valid, ready, turn, owner;  // a bit for each stream; whose packet begins, or passes
@@ -73,7 +75,7 @@ module fv_packet_mux (
         others_wait: cover (owner[3] && leaves && out_last && valid == '1 && !whole);
         record_again: cover (owner[2] && leaves && out_last && behind_record && !whole);
       end
-      if (stalled) stable: assert (out_valid && out_data == stalled_data && out_last == stalled_last);
+      if (stalled && !rst) stable: assert (out_valid && out_data == stalled_data && out_last == stalled_last);
       depth_first: cover (!passes && valid == 4'b1100 && turn[3]);
     end
   end

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from formal.entries import Proof
 from tactile_depth.link.framing import RUN, cobs_encode
 from tb.link.tb_cobs_encode import cases, on_line
-from tb.structures import BOTH, ICARUS, VERILATOR, of_parameters
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 
 built = of_parameters("Run")
@@ -20,6 +20,7 @@ REFUSED = {
     "Run=1": "Run_is_2_to_254",
     "Run=255": "Run_is_2_to_254",
 }
+MUTANTS = Mutants(repeats=2)
 PROOFS = tuple(
     Proof(
         "the line, decoded, has each packet as it came, between two zeros; no other zero, no code that is not needed; "

@@ -4,10 +4,11 @@
 from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.link.framing import cobs_decode, to_line
 from tb.link.tb_crc_append import with_crc
-from tb.structures import BOTH, Structure
+from tb.structures import BOTH, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 
 STRUCTURES = (Structure(on=BOTH, mutants=True),)
+MUTANTS = Mutants(repeats=2)
 PROOFS = (
     Proof(
         "bytes pass unchanged and at once, then the CRC-32 over them, last with its fourth byte; stable under stall",

@@ -8,10 +8,11 @@ from hypothesis import strategies as st
 
 from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.link.packet_mux import DEPTH, RECORD, PacketMux
-from tb.structures import BOTH, Structure
+from tb.structures import BOTH, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 
 STRUCTURES = (Structure(on=BOTH, mutants=True),)
+MUTANTS = Mutants(repeats=2)
 PROOFS = (
     Proof(
         "packets pass whole and unchanged, each chosen by its turn; depth before the next record; stable under stall",
