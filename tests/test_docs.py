@@ -15,6 +15,7 @@ import tactile_depth as td
 from commands.common import repository
 from commands.common.run_request import ACCEPTED, CAMERA
 from commands.study import architecture
+from tactile_depth.device.status import DeviceStatus
 
 ROOT = repository.ROOT
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "hdl").rglob("*.md")])
@@ -78,9 +79,12 @@ def test_the_page_of_make_sim_lists_every_variable() -> None:
 def test_the_page_of_the_python_api_lists_every_argument_and_attribute() -> None:
     page = (ROOT / "docs" / "python.md").read_text()
     names = [*inspect.signature(td.Pipeline).parameters, *inspect.signature(td.fit).parameters]
-    for kind in (td.Result, td.Contact):
+    for call in (td.Device, td.Device.capture_zero, td.Device.set_thresholds, td.Device.depth):
+        names += [name for name in inspect.signature(call).parameters if name != "self"]
+    for kind in (td.Result, td.Contact, td.DeviceFrame):
         names += [field.name for field in fields(kind)]
         names += [name for name in vars(kind) if not name.startswith("_")]
+    names += [name for kind in (td.Device, DeviceStatus) for name in vars(kind) if not name.startswith("_")]
     # In codes, by model, and what makes the records: threshold_mm, outside and records are for users.
     internal = ("threshold", "fitted_slope", "recorder", "streamed")
     assert [name for name in names if not re.search(rf"\b{name}\b", page) and name not in internal] == []

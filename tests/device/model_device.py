@@ -33,7 +33,7 @@ from tactile_depth.link.device import LinkDevice
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.registers.axil_port import Response
 from tactile_depth.registers.axil_registers import AxilRegisters, Build, Events, Live
-from tactile_depth.registers.register_map import REGISTERS, TABLES
+from tactile_depth.registers.register_map import TABLES
 from tactile_depth.registers.table_banks import CAPTURES
 from tactile_depth.sensor import CUBIC
 from tactile_depth.table_entries import one_word, reference_entries
@@ -55,7 +55,7 @@ class Setup:
     camera_s : float
         Time between two of them.
     damage : dict
-        Chances that a packet is lost (`drop`), has a wrong byte (`flip`) or comes twice (`double`), each way.
+        Chances that a packet is lost (`drop`), has a wrong byte (`flip`) or has a byte twice (`double`), each way.
     says : str
         Lines on standard error before `ready`.
     """
@@ -97,7 +97,7 @@ class ModelDevice:
 
     def _begin(self) -> None:
         self.light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
-        self.record = (0,) * 12
+        self.record: tuple[int, ...] = (0,) * 12
         self.captures: dict[str, list[np.ndarray]] = {}  # frames that are taken, by table
         self.wanted: dict[str, int] = {}  # frames of each capture
         self._frame: list[int] = []
@@ -264,8 +264,7 @@ class Serving:
                 self._receive(data)
             self._camera()
             while packet := self.device.link.next_packet():
-                for copy in self._damaged(packet):
-                    self._send(copy)
+                self._send(self._damaged(packet))
 
     def _act(self) -> None:
         if "reset" in self.wanted:
@@ -276,9 +275,10 @@ class Serving:
             self.device = ModelDevice(self.setup.config, self.setup.pitch_mm)
 
     def _receive(self, data: bytes) -> None:
-        for piece in data.split(b"\0"):
-            for copy in self._damaged(b"\0" + piece) if len(piece) > 20 else [b"\0" + piece]:
-                self.device.link.receive(copy)
+        first, *pieces = data.split(b"\0")
+        self.device.link.receive(first)
+        for piece in pieces:
+            self.device.link.receive(self._damaged(b"\0" + piece) if piece else b"\0")
         words, self.device.link.pixels = self.device.link.pixels, []
         for word in words:
             self.device.take(word)
@@ -290,15 +290,16 @@ class Serving:
             self.device.show(camera[self._shown % len(camera)])
             self._shown += 1
 
-    def _damaged(self, packet: bytes) -> list[bytes]:
-        """Return the packets that come of one."""
-        chances = self.setup.damage
+    def _damaged(self, packet: bytes) -> bytes:
+        """Return what comes of a packet."""
+        chances, at = self.setup.damage, int(self._random.integers(len(packet)))
         if self._random.random() < chances.get("drop", 0):
-            return []
+            return b""
         if self._random.random() < chances.get("flip", 0):
-            at = int(self._random.integers(len(packet)))
             packet = packet[:at] + bytes((packet[at] ^ 0x55,)) + packet[at + 1 :]
-        return [packet] * (1 + (self._random.random() < chances.get("double", 0)))
+        if self._random.random() < chances.get("double", 0):
+            packet = packet[: at + 1] + packet[at:]
+        return packet
 
     def _send(self, data: bytes) -> None:
         while data and "end" not in self.wanted:

@@ -80,12 +80,12 @@ def _capture(
     def untouched() -> None:
         exchange.depth_of(frames[0])
 
-    wait_in_use(line, untouched)
     light = read_words(line, [LIGHT.name])[LIGHT.name]
     if gains is not None:
         write_words(line, [(LIGHT.name, light & ~LIGHT.field("follow").mask)])
     try:
         for _ in range(ATTEMPTS):
+            wait_in_use(line, untouched)
             _start(line, table, len(frames))
             if _all_sent(line, exchange, frames, gains) and _has_ended(line, table):
                 break
@@ -133,8 +133,8 @@ def capture_of_camera(line: Line, table: str, count: int, give_picture: Callable
         taken = read_words(line, ["FRAMES_IN"])["FRAMES_IN"]
         if taken != came:
             last, came = time.monotonic(), taken
-        elif time.monotonic() - last > line.picture_s + CAMERA_S:
-            problem = f"no picture came from the camera of the device in {line.picture_s + CAMERA_S:.1f} s"
+        elif time.monotonic() - last > line.limit_s + CAMERA_S:
+            problem = f"no picture came from the camera of the device in {line.limit_s + CAMERA_S:.1f} s"
             raise DeviceError(problem, remedy="let it send pictures of the grid, or give pictures")
     wait_in_use(line, give_picture)
 
@@ -151,7 +151,7 @@ def _busy(line: Line, table: str) -> bool:
 
 def _has_ended(line: Line, table: str) -> bool:
     """Wait for the end of a capture whose pictures have all come; return False if it waits for more."""
-    end = time.monotonic() + line.picture_s
+    end = time.monotonic() + line.limit_s
     while _busy(line, table):
         if time.monotonic() > end:
             return False

@@ -212,9 +212,9 @@ class Device(AbstractContextManager["Device"]):
         for register, (name, depth_mm) in given.items():
             if depth_mm is None:
                 continue
-            lowest = 1 if name == "touch_mm" else 0
-            if not is_number(depth_mm) or not lowest <= self._code(depth_mm) < self._limit:
-                accepted = f"a depth above 0, up to {self._limit * self.pipeline.depth_lsb_mm:.3g} mm"
+            lowest_mm = self.pipeline.depth_lsb_mm if name == "touch_mm" else 0.0
+            if not is_number(depth_mm) or not lowest_mm <= depth_mm < self._limit_mm:
+                accepted = f"a depth above 0, up to {self._limit_mm:.3g} mm"
                 raise InputError(Argument(name, depth_mm), accepted=accepted)
             codes[register] = self._code(depth_mm)
         if codes["OFF_THRESHOLD"] > codes["THRESHOLD"]:
@@ -363,9 +363,9 @@ class Device(AbstractContextManager["Device"]):
         return round(depth_mm / self.pipeline.depth_lsb_mm)
 
     @property
-    def _limit(self) -> int:
-        """Depth code beyond the range."""
-        return 1 << self.pipeline.config.data_width - 1
+    def _limit_mm(self) -> float:
+        """Largest depth code in mm."""
+        return ((1 << self.pipeline.config.data_width - 1) - 1) * self.pipeline.depth_lsb_mm
 
 
 def _thresholds_of(pipeline: Pipeline) -> dict[str, float]:

@@ -15,8 +15,7 @@ from tactile_depth.device.line import Arrival, Line
 from tactile_depth.device.registers import read_words
 from tactile_depth.link.depth_frames import NUMBERS
 
-ROUNDS = 3  # times that a picture waits for its depth while the device still has it
-MISSED = 3  # pictures without depth in a row after which the line is given up
+MISSED = 5  # pictures without depth in a row after which the line is given up
 CAMERA_S = 2.0  # the slowest camera gives a picture in this time
 
 
@@ -53,8 +52,10 @@ class Exchange(AbstractContextManager["Exchange"]):
         line.check()
         lost, number = line.lost, (self._made + 1) % NUMBERS
         line.send(pixels)
-        for _ in range(ROUNDS):
-            end = time.monotonic() + line.picture_s
+        limit_s = line.limit_s
+        last = time.monotonic() + limit_s
+        while time.monotonic() < last:
+            end = time.monotonic() + line.depth_s
             while (arrival := line.frame(end - time.monotonic(), lost)) is not None:
                 if arrival.frame.record.frame == number:
                     self._made, self._missed = number, 0
@@ -66,7 +67,7 @@ class Exchange(AbstractContextManager["Exchange"]):
                     raise self._lossy()
                 return None
         remedy = "reset the device, then call load()"
-        raise DeviceError(f"the depth of a picture has not come in {ROUNDS * line.picture_s:.1f} s", remedy=remedy)
+        raise DeviceError(f"the depth of a picture has not come in {limit_s:.1f} s", remedy=remedy)
 
     def _is_missing(self, lost: int) -> bool:
         """Ask the device what became of the picture; return True if its depth will not come, which is then counted."""
@@ -108,7 +109,7 @@ def camera_frames(line: Line) -> Iterator[Arrival]:
 
 
 def _camera_frames(line: Line) -> Iterator[Arrival]:
-    patience_s = line.picture_s + CAMERA_S
+    patience_s = line.depth_s + CAMERA_S
     last, bad = time.monotonic(), line.bad_packets
     while True:
         line.check()

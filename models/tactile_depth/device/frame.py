@@ -65,8 +65,8 @@ class DeviceFrame(ByValue):
         """Result of the codes, with the record of the device; without slopes."""
         return Result(
             self.codes,
-            self.codes * self.depth_lsb_mm,
-            np.broadcast_to(np.full(2, np.nan), (*self.codes.shape, 2)),
+            np.multiply(self.codes, self.depth_lsb_mm, dtype=np.float64),
+            np.full((*self.codes.shape, 2), np.nan),
             np.broadcast_to(np.False_, self.codes.shape),
             None,
             {},

@@ -18,12 +18,11 @@ from tactile_depth.device.transport import Transport
 from tactile_depth.errors import InputError
 from tactile_depth.link.depth_formats import DepthFormat, exact_shift
 from tactile_depth.link.depth_frames import DepthFrame, DepthFrames
-from tactile_depth.link.framing import most_on_line, to_line
+from tactile_depth.link.framing import to_line
 from tactile_depth.link.packets import (
     LARGEST_SHIFT,
     MOST_ACCESSES,
     MOST_PIXELS,
-    PICTURE_HEADER,
     PIXEL_BYTES,
     Ask,
     Packet,
@@ -103,6 +102,7 @@ class Line:
         self._request = random.randrange(REQUESTS)
         self._picture = random.randrange(1 << 32)
         self._collects = self._ends = False
+        self._idle_at = 0.0  # when the line has carried all that was sent
         self._thread = threading.Thread(target=self._listen, daemon=True)
         self._thread.start()
         try:
@@ -181,11 +181,11 @@ class Line:
 
     def _repeat(self, line: bytes, found: Callable[[], Found | None], what: str) -> Found:
         """Send a packet until its answer is found."""
-        end = time.monotonic() + self._pace.limit_s
+        end = time.monotonic() + self._backlog_s + self._pace.limit_s
         bytes_before, bad_before = self._bytes, self.bad_packets
         while True:
             self._write_line(line)
-            result = self._wait(found, self._pace.repeat_s)
+            result = self._wait(found, self._backlog_s + self._pace.repeat_s)
             if result is not None:
                 return result
             if time.monotonic() > end:
@@ -282,6 +282,7 @@ class Line:
         return self._repeat(to_line(packet.pack()), answer, "an access to its registers")
 
     def _write_line(self, line: bytes) -> None:
+        self._idle_at = max(time.monotonic(), self._idle_at) + len(line) * self._pace.byte_s
         try:
             self._transport.write(line)
         except DeviceError:
@@ -320,15 +321,21 @@ class Line:
             self._dropped += 1
 
     @property
-    def picture_s(self) -> float:
-        """Longest time from the first byte of a picture to the last of its depth."""
-        status = self._frames.status
-        assert status is not None
+    def _backlog_s(self) -> float:
+        """Time in which the line carries what is sent and is still on its way."""
+        return max(0.0, self._idle_at - time.monotonic())
+
+    @property
+    def depth_s(self) -> float:
+        """Time in which the depth of a picture that was sent comes, as a rule."""
+        status = self.status
         depth = rate(status.rows, status.columns, DepthFormat.WORDS, status.data_width).line_bytes
-        pixels = status.rows * status.columns
-        packets = -(-pixels // MOST_PIXELS)
-        picture = packets * most_on_line(PICTURE_HEADER.size + PIXEL_BYTES * MOST_PIXELS)
-        return 2 * (depth + picture) * self._pace.byte_s + self._pace.limit_s
+        return self._backlog_s + 1.5 * depth * self._pace.byte_s + 2 * self._pace.repeat_s
+
+    @property
+    def limit_s(self) -> float:
+        """Time after which the depth of a picture that was sent, or an effect of it, does not come any more."""
+        return self.depth_s + 3 * self._pace.limit_s
 
     @property
     def status(self) -> Status:

@@ -109,14 +109,14 @@ def wait_in_use(line: Line, give_picture: Callable[[], None], also_captures: boo
     """
     quiet_ends, pictures = time.monotonic() + QUIET_S, 0
     most = 2 + (1 << 8) * also_captures  # pictures of a capture, one that takes its table, and one that was malformed
-    ends = time.monotonic() + line.picture_s
+    ends = time.monotonic() + line.limit_s
     while pending := _pending(line, also_captures):
         if time.monotonic() < quiet_ends:
             continue
         if pictures < most:
             pictures += 1
             give_picture()
-            ends = time.monotonic() + line.picture_s
+            ends = time.monotonic() + line.limit_s
         elif time.monotonic() > ends:
             problem = f"tables of the device stay pending ({', '.join(pending)}), although pictures were sent"
             raise DeviceError(problem, remedy="reset the device, then call load()")

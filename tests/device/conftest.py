@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pipelines, and devices that fit them, for tests of the host's side."""
+
+from __future__ import annotations
+
+import pickle
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tactile_depth as td
+from commands.common.repository import ROOT
+from tactile_depth.device import simulator
+from tests.device.cable import Cable, setup_of
+from tests.device.model_device import Setup
+
+GRID = (12, 16)
+Plug = Callable[..., Cable]
+
+
+@pytest.fixture(scope="session")
+def sample() -> td.Sample:
+    return td.sample("ball")
+
+
+@pytest.fixture(scope="session")
+def pipeline(sample: td.Sample) -> td.Pipeline:
+    """Pipeline that all tests use and none changes."""
+    return td.Pipeline(sample.sensor, reference=sample.reference, grid=GRID)
+
+
+@pytest.fixture(scope="session")
+def steady(sample: td.Sample) -> td.Pipeline:
+    """Pipeline without light gains: the depth of a picture does not depend on those before it."""
+    return td.Pipeline(sample.sensor, reference=sample.reference, grid=GRID, light_gains=False)
+
+
+@pytest.fixture(scope="session")
+def pictures(sample: td.Sample) -> list[np.ndarray]:
+    """Pictures with the contact at several places, uint8 (rows, columns, 3)."""
+    return [sample.image, sample.reference, sample.image[:, ::-1].copy()[:, ::-1], sample.image]
+
+
+@pytest.fixture
+def plug(tmp_path: Path) -> Iterator[Plug]:
+    """Return a function that plugs a device which fits a pipeline into a serial port of its own."""
+    cables: list[Cable] = []
+
+    def plug(pipeline: td.Pipeline | None, **wanted: object) -> Cable:
+        setup = None if pipeline is None else setup_of(pipeline, **wanted)
+        cables.append(Cable(tmp_path / f"port{len(cables)}", setup))
+        return cables[-1]
+
+    yield plug
+    for cable in cables:
+        cable.unplug()
+
+
+@pytest.fixture
+def simulate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Setup], None]:
+    """Return a function after which `sim` starts the model of a device in place of the simulator of the RTL."""
+
+    def simulate(setup: Setup) -> None:
+        file = tmp_path / "setup"
+        file.write_bytes(pickle.dumps(setup))
+        command = [sys.executable, "-m", "tests.device.model_device", str(file)]
+        monkeypatch.setattr(simulator, "command_of", lambda folder, pins: (command, ROOT))
+
+    return simulate

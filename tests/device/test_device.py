@@ -1,0 +1,303 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A device on a host: tables, captures, thresholds and depth, as the package computes them."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tactile_depth as td
+from tactile_depth.registers.register_map import TABLES
+from tactile_depth.table_entries import table_entries
+from tests.device.cable import Cable
+from tests.device.conftest import GRID, Plug
+
+CONFIGURATIONS: Mapping[str, Mapping[str, Any]] = {
+    "cubic": {},
+    "quadratic": {"model": "quadratic"},
+    "colours": {"model": "lut"},
+    "spectral": {"solver": "spectral", "boundary": "dirichlet", "grid": (16, 16)},
+    "without zero offset": {"zero_offset": False},
+    "without light gains": {"light_gains": False, "data_width": 20},
+}
+
+
+@pytest.fixture
+def cable(pipeline: td.Pipeline, plug: Plug) -> Cable:
+    return plug(pipeline)
+
+
+@pytest.fixture
+def device(cable: Cable, pipeline: td.Pipeline) -> Iterator[td.Device]:
+    """Device with the calibration."""
+    with td.Device(cable.address, pipeline) as device:
+        device.load()
+        yield device
+
+
+def require_equal(frames: list[td.DeviceFrame], results: list[td.Result]) -> None:
+    """Require that frames of a device are what the package computes."""
+    assert [frame.picture for frame in frames] == list(range(len(results)))
+    for frame, result in zip(frames, results, strict=True):
+        np.testing.assert_array_equal(frame.codes, result.codes)
+        np.testing.assert_array_equal(frame.depth_mm, result.depth_mm)
+        assert frame.height_mm.dtype == np.float32
+        np.testing.assert_array_equal(frame.height_mm, result.height_mm.astype(np.float32))
+        assert frame.untouched_mm == result.untouched_mm
+        np.testing.assert_array_equal(frame.mask, result.mask)
+        assert frame.contact.touching == result.contact.touching
+        assert frame.contact.record[3:] == result.contact.record[3:]
+        assert frame.contact.peak_mm == result.contact.peak_mm
+        assert frame.threshold_mm == result.threshold_mm
+
+
+@pytest.mark.parametrize("name", CONFIGURATIONS)
+def test_depth_is_that_of_the_package(name: str, sample: td.Sample, pictures: list[np.ndarray], plug: Plug) -> None:
+    pipeline = td.Pipeline(sample.sensor, reference=sample.reference, **{"grid": GRID, **CONFIGURATIONS[name]})
+    with td.Device(plug(pipeline).address, pipeline) as device:
+        device.load()
+        require_equal(list(device.depth(pictures)), list(pipeline.stream(pictures)))
+
+
+def test_a_sensor_without_reference(plug: Plug) -> None:
+    pipeline = td.Pipeline(td.load("synthetic"), grid=(16, 16))
+    picture = np.full((16, 16, 3), 128, np.uint8)
+    with td.Device(plug(pipeline).address, pipeline) as device:
+        device.load()
+        require_equal(list(device.depth(picture)), [pipeline(picture)])
+        with pytest.raises(td.InputError, match="takes colours as sent"):
+            device.capture_reference(picture)
+
+
+def test_load_writes_every_table(cable: Cable, device: td.Device, pipeline: td.Pipeline) -> None:
+    model = cable.serving.device
+    for name, entries in table_entries(pipeline.sensor, pipeline.config, pipeline.zero_codes).items():
+        np.testing.assert_array_equal(model.tables[name][model.registers.banks.bank >> TABLES[name] & 1], entries)
+    assert device.registers["TABLE_COMMIT"] == 0
+    assert device.registers["PITCH"] == round(pipeline.pixel_pitch_mm * 1e6)
+
+
+def test_each_call_of_depth_begins_a_stream(
+    device: td.Device, pipeline: td.Pipeline, pictures: list[np.ndarray]
+) -> None:
+    """The light gains that pictures in other light have moved do not act on the next stream."""
+    dim = [(0.9 * picture).astype(np.uint8) for picture in pictures]
+    for _ in range(2):
+        require_equal(list(device.depth(dim)), list(pipeline.stream(dim)))
+
+
+@pytest.mark.parametrize("kind", ["array", "generator", "path", "single"])
+def test_pictures_are_those_of_a_pipeline(
+    kind: str, device: td.Device, pipeline: td.Pipeline, sample: td.Sample, tmp_path: Any
+) -> None:
+    stack = np.stack([sample.reference, sample.image])
+    np.save(tmp_path / "stack.npy", stack)
+    given: Any = {"array": stack, "generator": iter(stack), "path": tmp_path / "stack.npy", "single": sample.image}
+    wanted = [sample.image] if kind == "single" else stack
+    require_equal(list(device.depth(given[kind])), list(pipeline.stream(wanted)))
+
+
+def test_a_picture_that_gives_no_depth_is_left_out_and_counted(device: td.Device, sample: td.Sample) -> None:
+    pictures = [sample.image, np.zeros_like(sample.image), sample.image]
+    with pytest.warns(td.InputWarning, match="left out and counted"):
+        frames = list(device.depth(pictures))
+    assert [(frame.picture, frame.lost) for frame in frames] == [(0, 0), (2, 1)]
+    assert device.status().lost == 1
+
+
+def test_captures_are_those_of_the_package(device: td.Device, sample: td.Sample, pictures: list[np.ndarray]) -> None:
+    """Capture the reference and the zero offset in another light than that of the calibration's reference."""
+    levels = np.array([0.93, 0.95, 0.97, 0.96])
+    untouched = [(level * sample.reference.astype(float)).astype(np.uint8) for level in levels]
+    expected = td.Pipeline(sample.sensor, reference=sample.reference, grid=GRID)
+    expected.capture_reference(untouched)
+    device.capture_reference(untouched)
+    require_equal(list(device.depth(pictures)), list(expected.stream(pictures)))
+    expected.capture_zero(untouched[:2])
+    device.capture_zero(untouched[:2])
+    require_equal(list(device.depth(pictures)), list(expected.stream(pictures)))
+    assert device.registers["LIGHT.follow"] == 1
+
+
+def test_load_replaces_captures(
+    device: td.Device, pipeline: td.Pipeline, sample: td.Sample, pictures: list[np.ndarray]
+) -> None:
+    device.capture_reference((0.9 * sample.reference).astype(np.uint8))
+    device.load()
+    require_equal(list(device.depth(pictures)), list(pipeline.stream(pictures)))
+
+
+def test_load_ends_a_capture_that_was_left(device: td.Device, pipeline: td.Pipeline, sample: td.Sample) -> None:
+    device.registers["REFERENCE_CAPTURE"] = 1 << 8 | 2
+    device.registers["ZERO_CAPTURE"] = 1 << 8 | 3
+    device.load()
+    require_equal(list(device.depth([sample.image])), list(pipeline.stream([sample.image])))
+
+
+@pytest.mark.parametrize("count", [0, 3])
+def test_a_capture_takes_a_power_of_two_of_pictures(count: int, device: td.Device, sample: td.Sample) -> None:
+    for capture in (device.capture_reference, device.capture_zero):
+        with pytest.raises(td.InputError):
+            capture([sample.reference] * count)
+        with pytest.raises(td.InputError, match="frames"):
+            capture(frames=count)
+
+
+def test_thresholds(device: td.Device, sample: td.Sample) -> None:
+    device.set_thresholds(touch_mm=0.05, release_mm=0.03, area_mm=0.2)
+    expected = td.Pipeline(
+        sample.sensor, reference=sample.reference, grid=GRID, threshold_mm=0.05, area_threshold_mm=0.2
+    )
+    codes = {name: device.registers[name] for name in ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD")}
+    assert list(codes.values()) == [round(mm / expected.depth_lsb_mm) for mm in (0.05, 0.03, 0.2)]
+    require_equal(list(device.depth([sample.image])), list(expected.stream([sample.image])))
+    device.load()
+    assert {name: device.registers[name] for name in codes} == codes, "load keeps them"
+    device.set_thresholds(0.08)
+    assert device.registers["OFF_THRESHOLD"] == device.registers["THRESHOLD"]
+    device.set_thresholds(release_mm=0.02)
+    assert device.registers["THRESHOLD"] == round(0.08 / expected.depth_lsb_mm)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "message"),
+    [
+        ({"touch_mm": 0}, "touch_mm=0: accepted is a depth above 0"),
+        ({"touch_mm": 100}, "touch_mm=100"),
+        ({"touch_mm": "1"}, "touch_mm=1"),
+        ({"touch_mm": float("nan")}, "touch_mm=nan"),
+        ({"touch_mm": 0.05, "release_mm": 0.06}, "release_mm=0.06: accepted is at most touch_mm, 0.05"),
+        ({"release_mm": 0.2}, "release_mm=0.2"),
+        ({"touch_mm": 0.04, "release_mm": -1}, "release_mm=-1"),
+        ({"area_mm": -0.1}, "area_mm=-0.1"),
+    ],
+)
+def test_thresholds_that_are_refused(wanted: dict[str, Any], message: str, device: td.Device) -> None:
+    before = device.registers["THRESHOLD"]
+    with pytest.raises(td.InputError, match=message):
+        device.set_thresholds(**wanted)
+    assert device.registers["THRESHOLD"] == before
+
+
+def test_frames_have_numbers_and_times(device: td.Device, sample: td.Sample) -> None:
+    began = time.time()
+    frames = list(device.depth([sample.image] * 3))
+    assert np.diff([frame.number for frame in frames]).tolist() == [1, 1]
+    times = [began, *(frame.time_s for frame in frames), time.time()]
+    assert times == sorted(times)
+    assert [frame.lost for frame in frames] == [0, 0, 0]
+    assert frames[1] == frames[1]
+    assert frames[1] != frames[2]
+    assert repr(frames[0]).startswith(f"DeviceFrame({frames[0].number}, 16x12, height up to ")
+
+
+def test_a_loop_that_is_left_disturbs_nothing(
+    device: td.Device, pipeline: td.Pipeline, pictures: list[np.ndarray]
+) -> None:
+    for frame in device.depth(itertools.cycle(pictures)):
+        if frame.picture == 2:
+            break
+    require_equal(list(device.depth(pictures)), list(pipeline.stream(pictures)))
+    assert device.status().lost == 0
+
+
+def test_registers_between_the_frames_of_a_loop(device: td.Device, pictures: list[np.ndarray]) -> None:
+    counts = [device.registers["FRAMES_OUT"] for _ in device.depth(pictures)]
+    assert np.diff(counts).tolist() == [1, 1, 1]
+
+
+def test_status(device: td.Device, sample: td.Sample) -> None:
+    before = device.status()
+    assert len(list(device.depth([sample.image] * 2))) == 2
+    status = device.status()
+    assert (status.rows, status.columns, status.data_width) == (*GRID, 24)
+    assert [after - past for past, after in zip(before[4:17], status[4:17], strict=True)] == [
+        *(2, 0, 0, 0, 2, 0),
+        *(2, 2, 0, 0, 0, 0, 0),
+    ]
+    assert status.touching
+    assert not status.busy
+
+
+def test_pictures_of_the_camera(pipeline: td.Pipeline, plug: Plug, sample: td.Sample, steady: td.Pipeline) -> None:
+    """Frames of a device's camera come without end; its own reference and zero offset are taken from it."""
+    untouched, touched = grid_picture(steady, sample.reference), grid_picture(steady, sample.image)
+    cable = plug(steady, camera=untouched[None], camera_s=0.002)
+    with td.Device(cable.address, steady) as device:
+        device.load()
+        device.capture_reference(frames=4)
+        device.capture_zero(frames=2)
+        cable.setup.camera = touched[None]  # type: ignore[union-attr]
+        frames = list(itertools.islice(device.depth(), 8))
+    assert [frame.picture for frame in frames] == [None] * 8
+    np.testing.assert_array_equal(frames[-1].codes, steady(sample.image).codes)
+
+
+def grid_picture(pipeline: td.Pipeline, picture: np.ndarray) -> np.ndarray:
+    """Return a picture on the grid of a pipeline."""
+    return next(pipeline._reader.pictures(picture, "picture")[0])[1]
+
+
+def test_a_device_without_camera_gives_no_frames(
+    device: td.Device, sample: td.Sample, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tactile_depth.device.exchange.CAMERA_S", 0.1)
+    monkeypatch.setattr("tactile_depth.device.captures.CAMERA_S", -2.9)
+    with pytest.raises(td.DeviceError, match=r"has sent no depth for .* let its camera send pictures"):
+        next(device.depth())
+    with pytest.raises(td.DeviceError, match="no picture came from the camera"):
+        device.capture_reference()
+    device.load()
+    assert len(list(device.depth([sample.image]))) == 1
+
+
+def test_pipelines_that_are_refused(sample: td.Sample, cable: Cable) -> None:
+    exact = td.Pipeline(sample.sensor, reference=sample.reference, grid=GRID, arithmetic="float")
+    with pytest.raises(td.InputError, match="arithmetic=float: a device has the arithmetic of the hardware"):
+        td.Device(cable.address, exact)
+    with pytest.raises(td.InputError, match="pipeline is a str"):
+        td.Device(cable.address, "gelsight-mini")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("other", "message"),
+    [
+        ({"grid": (24, 32)}, r"grid=\(24, 32\), but the device has \(12, 16\), rows and columns: make the pipeline"),
+        ({"solver": "spectral", "grid": (16, 16)}, "grid=.*but the device has"),
+        ({"boundary": "dirichlet"}, "DEVICE.boundary is neumann, that of the pipeline dirichlet"),
+        ({"light_gains": False}, "DEVICE.light_gains is 1, that of the pipeline 0"),
+        ({"data_width": 20}, "FORMAT.data_width is 24, that of the pipeline 20"),
+        ({"depth_range_mm": 1.0}, "DEPTH_UNIT"),
+    ],
+)
+def test_a_device_of_another_configuration(
+    other: dict[str, Any], message: str, sample: td.Sample, cable: Cable
+) -> None:
+    pipeline = td.Pipeline(sample.sensor, reference=sample.reference, **{"grid": GRID, **other})
+    with pytest.raises(td.InputError, match=message):
+        td.Device(cable.address, pipeline)
+
+
+def test_several_devices_at_once(
+    pipeline: td.Pipeline, steady: td.Pipeline, plug: Plug, pictures: list[np.ndarray]
+) -> None:
+    one, other = td.Device(plug(pipeline).address, pipeline), td.Device(plug(steady).address, steady)
+    with one, other:
+        one.load()
+        other.load()
+        pairs = list(zip(one.depth(pictures), other.depth(pictures), strict=True))
+    require_equal([frame for frame, _ in pairs], list(pipeline.stream(pictures)))
+    require_equal([frame for _, frame in pairs], list(steady.stream(pictures)))
+
+
+def test_a_closed_device(device: td.Device) -> None:
+    device.close()
+    device.close()
+    for call in (device.status, device.load, lambda: device.registers["ID"], lambda: next(device.depth())):
+        with pytest.raises(td.DeviceError, match="is closed"):
+            call()
