@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ball presses drawn with known slopes and colours, for the tests of calibrations."""
+"""Ball presses drawn with known slopes and colours, for the tests of calibrations.
+
+    python -m tests.ball_presses FOLDER [COUNT]
+
+writes background.png, COUNT pictures of presses (12 by default) and presses.csv: `tactile-depth calibrate FOLDER`.
+"""
 
 import csv
+import sys
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -73,11 +79,13 @@ def write_table(folder: Path, rows: list[dict], columns: list[str] = COLUMNS) ->
         table.writerows(rows)
 
 
-def write_folder(folder: Path) -> Path:
+def write_folder(folder: Path, count: int | None = None) -> Path:
+    """Write the pictures and the table of so many presses, by default of all."""
     folder.mkdir()
-    for name, picture in pictures().items():
-        Image.fromarray(picture).save(folder / name)
-    write_table(folder, table_rows())
+    rows = table_rows()[:count]
+    for name in ("background.png", *(row["frame"] for row in rows)):
+        Image.fromarray(pictures()[name]).save(folder / name)
+    write_table(folder, rows)
     return folder
 
 
@@ -92,3 +100,7 @@ def real_folder() -> Path:
     if not real_data.PRESENT:
         pytest.skip("TACTILE_DATA names no folder with gelslam/")
     return real_data.FOLDER / "gelslam"
+
+
+if __name__ == "__main__":
+    write_folder(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 12)

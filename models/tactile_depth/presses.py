@@ -319,8 +319,9 @@ def to_grid(
     compare_circles: bool = False,
     choice: CameraChoice | None = None,
     aspect: float = 1.0,
+    grid: tuple[int, int] | None = None,
 ) -> GridPresses:
-    """Resample presses to `picture_grid`, which covers their pictures; `notes` names the presses left out and why.
+    """Resample presses to a grid; `notes` names the presses left out and why.
 
     Parameters
     ----------
@@ -334,6 +335,8 @@ def to_grid(
         Pictures are converted to what this camera sends, and then taken as its hardware takes them.
     aspect : float
         Width of a pixel over its height.
+    grid : (rows, columns), optional
+        By default `picture_grid`, which covers the pictures.
 
     Raises
     ------
@@ -344,7 +347,7 @@ def to_grid(
     background = pictures.background
     camera = background.shape[:2]
     least = 1 if choice is None else FORMATS[choice.pixel_format].least_ratio
-    grid = picture_grid((camera[0], camera[1]), least_ratio=least)
+    grid = grid or picture_grid((camera[0], camera[1]), least_ratio=least)
     if min(grid) < SMALLEST_GRID:
         raise InputError(BACKGROUND, f": {camera[0]} x {camera[1]} pixels", accepted=f"{SMALLEST_GRID} x or more")
     if find_circles or compare_circles or any(press.circle is None for press in pictures.presses):

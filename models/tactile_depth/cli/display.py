@@ -16,6 +16,7 @@ from tactile_depth.cli.failure import Failure
 from tactile_depth.cli.overview import colours
 from tactile_depth.cli.ply import triangles, vertices_mm
 from tactile_depth.cli.source import INSTALL
+from tactile_depth.device.frame import DeviceFrame
 from tactile_depth.errors import InputError
 from tactile_depth.result import Result
 
@@ -47,7 +48,7 @@ class Display(AbstractContextManager["Display"]):
 
     Entities, at the time `frame`:
 
-        camera                the picture as sent, JPEG
+        camera                the picture as sent, JPEG; not of a device's own camera
         height                height_mm, float32
         surface               a mesh in mm: x to the right, y up the picture from its upper left corner, z the height
         contact/touching      0 or 1
@@ -99,15 +100,16 @@ class Display(AbstractContextManager["Display"]):
         self._stream.flush()
         self._stream.disconnect()
 
-    def show(self, index: int, picture: np.ndarray, result: Result) -> None:
+    def show(self, index: int, picture: np.ndarray | None, result: Result | DeviceFrame) -> None:
         """Show one frame.
 
         Parameters
         ----------
         index : int
             Time on the timeline `frame`.
-        picture : uint8 array (rows, columns, 3), RGB
-        result : Result
+        picture : uint8 array (rows, columns, 3), RGB, or None
+            Camera picture, if it is there.
+        result : Result or DeviceFrame
             Of that picture.
         """
         rerun, stream, contact = self._rerun, self._stream, result.contact
@@ -116,14 +118,15 @@ class Display(AbstractContextManager["Display"]):
             self._begin(height.shape)
         self._highest_mm = max(self._highest_mm, float(height.max()))
         stream.set_time(TIMELINE, sequence=index)
-        stream.log("camera", rerun.Image(picture).compress(jpeg_quality=JPEG_QUALITY))
+        if picture is not None:
+            stream.log("camera", rerun.Image(picture).compress(jpeg_quality=JPEG_QUALITY))
         depth_range = [0.0, self._highest_mm]
         stream.log("height", rerun.DepthImage(height, meter=MM_PER_M, colormap="viridis", depth_range=depth_range))
         stream.log(
             "surface",
             rerun.Mesh3D.from_fields(
                 vertex_positions=vertices_mm(height, result.pixel_pitch_mm, result.pixel_aspect),
-                vertex_normals=_normals(result.slopes),
+                vertex_normals=_normals(_slopes(result)),
                 vertex_colors=colours(height, *depth_range).reshape(-1, 3),
             ),
         )
@@ -142,6 +145,15 @@ class Display(AbstractContextManager["Display"]):
         stream.log("surface", rerun.Transform3D(scale=[1.0, 1.0, TIMES_AS_TALL]), static=True)
         stream.log("surface", rerun.Mesh3D.from_fields(triangle_indices=triangles(*shape)), static=True)
         stream.log("contact/centroid_mm", rerun.SeriesLines(names=["x", "y"]), static=True)
+
+
+def _slopes(result: Result | DeviceFrame) -> np.ndarray:
+    """Return dz/dx and dz/dy, float64 (rows, columns, 2); a device gives none, so they are those of its heights."""
+    if isinstance(result, Result):
+        return result.slopes
+    pitch_mm, aspect = result.pixel_pitch_mm, result.pixel_aspect
+    down, right = np.gradient(result.height_mm.astype(np.float64), pitch_mm, pitch_mm * aspect)
+    return np.stack((right, down), axis=-1)
 
 
 def _normals(slopes: np.ndarray) -> np.ndarray:

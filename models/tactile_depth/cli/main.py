@@ -17,8 +17,9 @@ from importlib.metadata import version
 from typing import NoReturn
 
 from tactile_depth import interruption
-from tactile_depth.cli import depth, live
+from tactile_depth.cli import calibrate, depth, live
 from tactile_depth.cli.failure import Failure
+from tactile_depth.device.errors import DeviceError
 from tactile_depth.errors import Argument, InputError, InputWarning
 from tactile_depth.files import cause
 
@@ -28,18 +29,30 @@ DESCRIPTION = "Depth in millimetres from visuotactile fingertips, bit for bit as
 
 # Arguments of the package, and the options that a user of the command gave; {} is the value.
 OPTIONS = {
+    "address": "device:{}",
     "arithmetic": "--arithmetic {}",
+    "background": "--background {}",
+    "bits": "--bits {}",
     "calibration": "--calibration {}",
     "camera_size": "--camera-size {}",
     "columns": "--grid {}x..",
+    "diameter_mm": "--diameter-mm {}",
+    "exposure_us": "--exposure-us {}",
     "folder": "--out {}",
     "gradient_model": "--model {}",
     "grid": "--grid {}",
     "light_gains": "--no-light-gains",
+    "pitch_mm": "--pitch-mm {}",
     "reference": "--reference {}",
     "rows": "--grid ..x{}",
     "threshold_mm": "--threshold-mm {}",
     "area_threshold_mm": "--area-threshold-mm {}",
+    "solver": "--solver {}",
+    "boundary": "--boundary {}",
+    "data_width": "--data-width {}",
+    "coefficient_width": "--coefficient-width {}",
+    "gain_width": "--gain-width {}",
+    "depth_range_mm": "--depth-range-mm {}",
 }
 
 
@@ -69,7 +82,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = _Parser(prog=PROGRAM, description=DESCRIPTION, allow_abbrev=False)
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for command in (depth, live):
+    for command in (depth, live, calibrate):
         command.add_arguments(
             commands.add_parser(command.NAME, help=command.HELP, description=command.HELP, allow_abbrev=False)
         )
@@ -107,6 +120,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         print(f"{PROGRAM}: {error.text(named)}", file=sys.stderr)
         return BAD_INPUT
+    except DeviceError as error:
+        print(f"{PROGRAM}: {error.text(named)}", file=sys.stderr)
+        return FAILED
     except Failure as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return FAILED

@@ -5,15 +5,17 @@ from __future__ import annotations
 
 import argparse
 import re
+from typing import Any, get_args
 
 import numpy as np
 
 from tactile_depth.built_in import identify, load
 from tactile_depth.calibration_file import BUILT_IN
-from tactile_depth.configuration import GRADIENT_MODELS
+from tactile_depth.configuration import GRADIENT_MODELS, Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.frames import read_stack
 from tactile_depth.pipeline import ARITHMETICS, Pipeline
+from tactile_depth.presets import SENSOR, Boundary, Solver
 from tactile_depth.sensor import Sensor
 
 
@@ -55,12 +57,44 @@ def add_pipeline_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--model", choices=GRADIENT_MODELS, default="", help="gradient model; by default the better of the calibration"
     )
+    add_light_and_zero_arguments(parser)
+
+
+def add_light_and_zero_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options that leave out the zero offset and the light gains."""
     parser.add_argument(
         "--no-zero-offset", action="store_true", help="keep what depth reads without contact, do not subtract it"
     )
     parser.add_argument(
         "--no-light-gains", action="store_true", help="take the light of the pictures to be that of the reference"
     )
+
+
+def add_build_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add choices that a device is built with, which the pipeline of its host must share."""
+    build = parser.add_argument_group("build of a device that has others than the defaults")
+    build.add_argument("--solver", choices=get_args(Solver), default=SENSOR.solver, help=f"default {SENSOR.solver}")
+    build.add_argument(
+        "--boundary", choices=get_args(Boundary), default=SENSOR.boundary, help=f"default {SENSOR.boundary}"
+    )
+    for name, width, what in (
+        ("data", Configuration.data_width, "stored word"),
+        ("coefficient", Configuration.coefficient_width, "coefficient"),
+        ("gain", Configuration.gain_width, "gain of the flat field"),
+    ):
+        help_text = f"bits of a {what} (default {width})"
+        build.add_argument(f"--{name}-width", type=int, default=width, metavar="BITS", help=help_text)
+    build.add_argument("--depth-range-mm", type=float, metavar="MM", help="depth that the formats are sized for")
+
+
+def build_choices(options: argparse.Namespace) -> dict[str, Any]:
+    """Return the arguments of `Pipeline` that `add_build_arguments` and `add_light_and_zero_arguments` give."""
+    names = ("solver", "boundary", "data_width", "coefficient_width", "gain_width", "depth_range_mm")
+    return {
+        **{name: getattr(options, name) for name in names if hasattr(options, name)},
+        "zero_offset": not options.no_zero_offset,
+        "light_gains": False if options.no_light_gains else None,
+    }
 
 
 def read_reference(path: str) -> np.ndarray:
@@ -86,7 +120,7 @@ def choose_sensor(options: argparse.Namespace, reference: np.ndarray) -> Sensor:
     return sensor
 
 
-def make_pipeline(options: argparse.Namespace, sensor: Sensor, reference: np.ndarray) -> Pipeline:
+def make_pipeline(options: argparse.Namespace, sensor: Sensor, reference: np.ndarray | None) -> Pipeline:
     """Return the pipeline that the options describe.
 
     Raises
@@ -98,8 +132,7 @@ def make_pipeline(options: argparse.Namespace, sensor: Sensor, reference: np.nda
         reference,
         grid=options.grid,
         model=options.model,
-        zero_offset=not options.no_zero_offset,
-        light_gains=False if options.no_light_gains else None,
+        **build_choices(options),
         arithmetic=options.arithmetic,
         threshold_mm=options.threshold_mm,
         area_threshold_mm=options.area_threshold_mm,

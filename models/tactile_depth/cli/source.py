@@ -45,7 +45,7 @@ class Frame:
 
 @dataclass
 class Counts:
-    """Numbers of frames by outcome; `read` is the sum of captured, shown, dropped, failed and unfinished.
+    """Numbers of frames by outcome; `read` is the sum of all others but `taken`, and of `unfinished`.
 
     Attributes
     ----------
@@ -58,6 +58,8 @@ class Counts:
         The camera was faster than the pipeline.
     failed : int
         Could not be read or processed.
+    lost : int
+        Got lost on the line to a device or from it.
     """
 
     taken: int = 0
@@ -65,6 +67,7 @@ class Counts:
     shown: int = 0
     dropped: int = 0
     failed: int = 0
+    lost: int = 0
 
     @property
     def read(self) -> int:
@@ -74,7 +77,7 @@ class Counts:
     @property
     def unfinished(self) -> int:
         """Frames that were in work when the user ended it: at most one."""
-        return self.taken - self.captured - self.shown - self.failed
+        return self.taken - self.captured - self.shown - self.failed - self.lost
 
     def fail(self, reason: InputError) -> None:
         """Count a frame that could not be read or processed; say why for the first."""

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`tactile-depth calibrate`: fits a calibration to ball presses, and measures it through a device if one is named."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from tactile_depth import files
+from tactile_depth.cli.measure import DEVICE, address_of, grid_of, measure
+from tactile_depth.cli.options import add_build_arguments, add_light_and_zero_arguments, build_choices, size
+from tactile_depth.errors import Argument, InputError, InputWarning, warn
+from tactile_depth.fitting import DEFAULT_BITS, Fit, check_arguments, fit_presses, pixel_size
+from tactile_depth.frames import read_pictures
+from tactile_depth.pipeline import Pipeline
+from tactile_depth.press_folder import BACKGROUND, TABLE, background_path
+from tactile_depth.presses import (
+    SMALLEST_GRID,
+    BallPress,
+    GridPresses,
+    PressPictures,
+    View,
+    camera_pitch_mm,
+    gather,
+    to_grid,
+)
+from tactile_depth.sensor import MODELS
+
+NAME = "calibrate"
+HELP = "Fit a calibration to ball presses; load it into a device and measure it there, if one is named."
+ALL = "all"
+
+
+def pitch(text: str) -> tuple[float, ...]:
+    """Read the size of a pixel in mm, as 0.0634, or its height and width, as 0.0634,0.058."""
+    try:
+        numbers = tuple(float(number) for number in text.split(","))
+    except ValueError:
+        numbers = ()
+    if len(numbers) not in (1, 2):
+        accepted = "mm per camera pixel, as 0.0634, or its height and width, as 0.0634,0.058"
+        raise argparse.ArgumentTypeError(f"{text!r} is no pitch: accepted are {accepted}")
+    return numbers
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the subcommand."""
+    parser.add_argument(
+        "device", nargs="?", metavar="device:ADDRESS", help="device:/dev/ttyUSB0, device:sim, ..; by default none"
+    )
+    parser.add_argument("presses", metavar="PRESSES", help=f"a folder of pictures of ball presses, with {TABLE}")
+    parser.add_argument(
+        "--pitch-mm", type=pitch, metavar="MM", help="mm per camera pixel, or height,width; by default from the balls"
+    )
+    parser.add_argument(
+        "--diameter-mm", type=float, metavar="MM", help=f"of the ball that made all presses of a folder without {TABLE}"
+    )
+    parser.add_argument(
+        "--background", metavar="PICTURE", help=f"the sensor without contact; by default {BACKGROUND}.png in PRESSES"
+    )
+    parser.add_argument(
+        "--grid", type=size, metavar="WxH", help="of the depth map; by default that of the device, or 128x96 for 4:3"
+    )
+    parser.add_argument(
+        "--model",
+        choices=(ALL, *MODELS),
+        default=ALL,
+        help=f"gradient model; {ALL} (default): fits all, and a device gets the best",
+    )
+    parser.add_argument(
+        "--bits", type=int, default=DEFAULT_BITS, metavar="N", help=f"of each colour, for lut (default {DEFAULT_BITS})"
+    )
+    parser.add_argument("--find-circles", action="store_true", help=f"find all circles, also those that {TABLE} gives")
+    parser.add_argument("--exposure-us", type=float, metavar="US", help="exposure time of the camera, to be kept")
+    parser.add_argument("--out", type=Path, metavar="FILE.npz", help="default: <name of PRESSES>.npz")
+    add_light_and_zero_arguments(parser)
+    add_build_arguments(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
+    """Fit, print the table, measure through the device if one is named, and write the calibration file.
+
+    Raises
+    ------
+    InputError, DeviceError
+    """
+    if options.presses.startswith(DEVICE):
+        raise InputError(
+            f"{options.presses}: a device sends no camera pictures to its host, so its own camera cannot be used: give "
+            f"a folder of presses behind it, whose pictures are sent, as `{NAME} {options.presses} PRESSES`"
+        )
+    address = None if options.device is None else address_of(options.device)
+    if address is not None and (grid := grid_of(address)) is not None:  # told before the fit
+        if options.grid not in (None, grid):
+            remedy = ("omit it, or give ", Argument("grid", grid))
+            raise InputError(Argument("grid", options.grid), ": the device has another grid", remedy=remedy)
+        options.grid = grid
+    out: Path = options.out or Path(f"{Path(options.presses).resolve().name}.npz")
+    if out.suffix != ".npz":
+        raise InputError(f"--out {out}: give the name of an .npz file")
+    with files.workspace(out.parent, (out.name,), str(out)) as work:  # refused before the fit, which takes some seconds
+        pictures = press_pictures(options)
+        presses = on_grid(options, pictures)
+        fit = fitted(options, presses, out.stem)
+        if address is not None:
+            pipeline = Pipeline(fit.sensor, pictures.background, grid=presses.grid, **build_choices(options))
+            measure(address, pipeline, presses, pictures)
+        fit.sensor.save(work / out.name)
+        files.replace(work, (out.name,), out.parent)
+    print(f"results: {out}")
+
+
+def press_pictures(options: argparse.Namespace) -> PressPictures:
+    """Return the presses of a folder with a table, or of a folder of pictures of one ball.
+
+    Raises
+    ------
+    InputError
+    """
+    folder = Path(options.presses)
+    if options.diameter_mm is None:
+        return gather(folder, options.background)
+    if (folder / TABLE).exists():
+        raise InputError(f"--diameter-mm {options.diameter_mm:g}: {folder / TABLE} has the diameters: omit one of them")
+    background = Path(options.background or background_path(folder))
+    names = [name for name in read_pictures(folder, f"PRESSES {folder}")[0] if folder / name != background]
+    return gather([BallPress(folder / name, options.diameter_mm, name=name) for name in names], background)
+
+
+def on_grid(options: argparse.Namespace, pictures: PressPictures) -> GridPresses:
+    """Return the presses on the grid, and warn of those that are left out.
+
+    Raises
+    ------
+    InputError
+    """
+    pitch_mm = options.pitch_mm and (options.pitch_mm[0] if len(options.pitch_mm) == 1 else options.pitch_mm)
+    check_arguments(chosen(options), options.bits, pitch_mm, options.exposure_us)
+    if options.grid is not None and min(options.grid) < SMALLEST_GRID:
+        raise InputError(Argument("grid", options.grid), accepted=f"{SMALLEST_GRID} columns and rows or more")
+    height, aspect = pixel_size(pitch_mm)
+    presses = to_grid(
+        pictures, camera_pitch_mm(pictures, height), options.find_circles, aspect=aspect, grid=options.grid
+    )
+    for note in presses.notes:
+        warn(InputWarning(note))
+    return presses
+
+
+def chosen(options: argparse.Namespace) -> tuple[str, ...]:
+    """Return the gradient models to fit."""
+    return MODELS if options.model == ALL else (options.model,)
+
+
+def fitted(options: argparse.Namespace, presses: GridPresses, name: str) -> Fit:
+    """Fit to the presses, and print the error on each whole press by a fit to the others.
+
+    Raises
+    ------
+    InputError
+        Too few presses.
+    """
+    rows, columns = presses.grid
+    print(f"{len(presses.views)} presses, grid of {columns} x {rows}", presses.field_of_view, sep="\n", flush=True)
+    fit = fit_presses(presses, chosen(options), options.bits, name, options.exposure_us, _progress)
+    evaluation = replace(fit.evaluation, notes=())  # they are warnings
+    print("every whole press, by a fit to the others; cap height: recovered / true", evaluation, sep="\n")
+    print(f"the best model is {fit.sensor.model}", flush=True)
+    return fit
+
+
+def _progress(views: list[View]) -> Iterator[View]:
+    """Give presses, and count them on a terminal."""
+    for number, view in enumerate(views, 1):
+        if sys.stderr.isatty():
+            end = "\n" if number == len(views) else ""
+            print(f"\rfit {number} of {len(views)} to all presses but one", end=end, file=sys.stderr, flush=True)
+        yield view

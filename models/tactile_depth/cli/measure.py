@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measures a calibration through a device: what it reads on the presses, beside what the package reads."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tactile_depth.built_in import synthetic
+from tactile_depth.device.addresses import SIM, open_transport
+from tactile_depth.device.device import Device
+from tactile_depth.device.errors import DeviceError
+from tactile_depth.device.frame import DeviceFrame
+from tactile_depth.device.line import Line
+from tactile_depth.errors import InputError, InputWarning
+from tactile_depth.frames import read_picture
+from tactile_depth.pipeline import Pipeline
+from tactile_depth.presses import GridPresses, PressPictures, View
+from tactile_depth.result import Result
+
+DEVICE = "device:"
+SENT = 4  # times that each press is sent, so that the light gains have settled at the last
+TRIES = 3  # for a frame that gets lost on the line
+NAME_WIDTH = 22
+
+
+class Measured(NamedTuple):
+    """A press as device and package read it: height RMS in mm of each, touching, and whether their codes are equal."""
+
+    device_mm: float
+    package_mm: float
+    is_touching: bool
+    is_equal: bool
+
+
+def address_of(word: str) -> str:
+    """Return the address of a device from `device:ADDRESS`; raise InputError if it is none."""
+    address = word.removeprefix(DEVICE)
+    if address == word or not address:
+        raise InputError(f"{word}: no device: give {DEVICE}/dev/ttyUSB0, {DEVICE}serial:NUMBER or {DEVICE}sim")
+    return address
+
+
+def grid_of(address: str) -> tuple[int, int] | None:
+    """Return rows and columns of a device that can be reached; None for a simulator, which is built for a pipeline.
+
+    Raises
+    ------
+    InputError
+        There is no such port, or the device speaks another version of the link.
+    DeviceError
+        The port is in use, or the device does not answer.
+    """
+    if address.partition(":")[0] == SIM:
+        return None
+    line = Line(open_transport(address, Pipeline(synthetic())))
+    line.close()
+    return line.status.rows, line.status.columns
+
+
+def measure(address: str, pipeline: Pipeline, presses: GridPresses, pictures: PressPictures) -> None:
+    """Load a calibration into a device, send background and presses, and print what the device reads on each.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+        With the calibration, fitted to the presses, and the background as its reference.
+    presses, pictures : GridPresses, PressPictures
+        The presses that were fitted, and their pictures.
+
+    Raises
+    ------
+    InputError
+        The device has another configuration.
+    DeviceError
+        It does not answer, or frames get lost again and again.
+    """
+    background = pictures.background
+    rows, columns = pipeline.grid
+    print(f"device {address}: {pipeline.config.gradient_model}, {columns} x {rows}", flush=True)
+    images = {press.name: press.image for press in pictures.presses}
+    results: dict[str, Measured] = {}
+    with Device(address, pipeline) as device:
+        device.load()
+        device.capture_reference(background)
+        if pipeline.config.zero_offset:
+            device.capture_zero(background)
+        print("background sent, reference and zero offset captured", flush=True)
+        print(f"{'press':<{NAME_WIDTH}}  {'touching':<10}height RMS, um: device  package")
+        for view in presses.views:
+            name = view.press.name
+            image = images[name]
+            picture = image if isinstance(image, np.ndarray) else read_picture(image)  # type: ignore[arg-type]
+            if (read := _read(device, pipeline, view, picture)) is None:
+                print(f"{name[-NAME_WIDTH:]:<{NAME_WIDTH}}  gives no depth, as a warning says", flush=True)
+                continue
+            results[name] = read
+            touching = "yes" if read.is_touching else "no"
+            numbers = f"{1000 * read.device_mm:>22.1f}{1000 * read.package_mm:>9.1f}"
+            print(f"{name[-NAME_WIDTH:]:<{NAME_WIDTH}}  {touching:<10}{numbers}", flush=True)
+    print(summary(presses.views, results))
+    untouched = [name for name, read in results.items() if not read.is_touching]
+    if untouched:
+        warnings.warn(InputWarning(f"the device sees no contact in {', '.join(untouched)}"), stacklevel=2)
+
+
+def summary(views: Sequence[View], results: dict[str, Measured]) -> str:
+    """Return the line on all presses."""
+    whole = [results[view.press.name] for view in views if view.is_whole and view.press.name in results]
+    if not whole:
+        return "the device gave depth of no whole press"
+    device, package = 1000 * np.mean([(read.device_mm, read.package_mm) for read in whole], axis=0)
+    differing = sum(not read.is_equal for read in results.values())
+    equal = f"depth codes differ in {differing} of {len(results)} presses" if differing else "all depth codes are equal"
+    return f"height RMS of {len(whole)} whole presses: device {device:.1f} um, package {package:.1f} um; {equal}"
+
+
+def _read(device: Device, pipeline: Pipeline, view: View, picture: np.ndarray) -> Measured | None:
+    """Send the picture of a press; return None if it gives no depth."""
+    sent = [picture] * SENT
+    expected: list[Result] = list(pipeline.stream(sent))
+    if len(expected) < SENT:
+        return None
+    frame, pitch_mm = _last(device, sent), pipeline.pixel_pitch_mm
+    device_mm, package_mm = (
+        view.press.height_rms(each.depth_mm / pitch_mm) * pitch_mm for each in (frame, expected[-1])
+    )
+    is_equal = np.array_equal(frame.codes, expected[-1].codes)
+    return Measured(device_mm, package_mm, frame.contact.touching, is_equal)
+
+
+def _last(device: Device, pictures: Sequence[np.ndarray]) -> DeviceFrame:
+    """Return the depth frame of the last picture of a stream. Raises DeviceError if it gets lost again and again."""
+    for _ in range(TRIES):
+        for frame in device.depth(pictures):
+            if frame.picture == len(pictures) - 1:
+                return frame
+    problem = f"{device.address}: the depth of a picture got lost {TRIES} times"
+    raise DeviceError(problem, remedy="use a shorter cable, or a lower baud rate")
