@@ -128,7 +128,7 @@ def test_a_simulator_that_does_not_start(steady: td.Pipeline, monkeypatch: pytes
 def test_a_simulator_that_hangs(steady: td.Pipeline, monkeypatch: pytest.MonkeyPatch) -> None:
     text = "import sys, time; print('ready', file=sys.stderr, flush=True); time.sleep(60)"
     monkeypatch.setattr(simulator, "command_of", lambda folder, pins: ([sys.executable, "-c", text], ROOT))
-    monkeypatch.setattr(simulator, "PACES", {False: simulator.Pace(0.1, 0.3)})
+    monkeypatch.setattr(simulator, "PACES", {False: simulator.Pace(0.1, 0.3, 0.1)})
     monkeypatch.setattr(simulator, "END_S", 0.2)
     with pytest.raises(td.DeviceError, match=r"the simulator: no answer to a request of its status in 0.3 s"):
         td.Device("sim", steady)

@@ -330,7 +330,7 @@ class Line:
         """Time in which the depth of a picture that was sent comes, as a rule."""
         status = self.status
         depth = rate(status.rows, status.columns, DepthFormat.WORDS, status.data_width).line_bytes
-        return self._backlog_s + 1.5 * depth * self._pace.byte_s + 2 * self._pace.repeat_s
+        return self._backlog_s + 1.5 * depth * self._pace.byte_s + self._pace.look_s
 
     @property
     def limit_s(self) -> float:

@@ -14,7 +14,7 @@ from tactile_depth.link.framing import LONGEST_ON_LINE
 from tactile_depth.link.rates import BITS_A_BYTE
 
 INSTALL = "pip install '.[serial]' in the repository"
-REPEAT_S, LIMIT_S = 0.05, 1.0
+REPEAT_S, LIMIT_S, LOOK_S = 0.05, 1.0, 0.1
 STUCK_S = 5.0  # a port that takes no bytes for so long does not take any
 
 
@@ -80,7 +80,7 @@ class SerialLine:
         self.silence = f"give serial:{path}@BAUD if the device has another baud rate, and check cable and power"
         byte_s = BITS_A_BYTE / baud
         a_packet_each_s = 2 * LONGEST_ON_LINE * byte_s  # of depth, for which a reply waits, and the reply
-        self.pace = Pace(REPEAT_S + a_packet_each_s, LIMIT_S + 4 * a_packet_each_s, byte_s)
+        self.pace = Pace(REPEAT_S + a_packet_each_s, LIMIT_S + 4 * a_packet_each_s, LOOK_S, byte_s)
         self._path = path
         try:
             self._port = serial.Serial(path, baud, timeout=0, write_timeout=STUCK_S, exclusive=True)

@@ -23,7 +23,7 @@ READY = "ready"
 START_S = 600.0  # a simulator that is not ready by then is not built
 END_S = 5.0
 PIPE_BYTES = 1 << 16
-PACES = {False: Pace(2.0, 60.0), True: Pace(2.0, 120.0)}  # without and with the pins of the line
+PACES = {False: Pace(2.0, 60.0, 0.1), True: Pace(2.0, 120.0, 0.5)}  # without and with the pins of the line
 
 
 def command_of(folder: Path, pins: bool) -> tuple[list[str], Path]:

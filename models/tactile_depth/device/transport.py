@@ -17,12 +17,16 @@ class Pace:
         A request without a reply is repeated after this time.
     limit_s : float
         A device that has not answered by then does not answer.
+    look_s : float
+        A device that has not sent the depth of a picture after this time, beside the time on the line, is asked about
+        it.
     byte_s : float
         Time that a byte takes on the line.
     """
 
     repeat_s: float
     limit_s: float
+    look_s: float
     byte_s: float = 0.0
 
 
