@@ -15,6 +15,15 @@ from tb.stream import CLOCK_NS
 
 BYTE = ("data",)
 FIELDS = ("data", "last")
+# Profiles of the source and of the sink.
+STREAMS = (
+    ("none", "none"),
+    ("random", "random"),
+    ("one_in_4", "long"),
+    ("long", "alternate"),
+    ("none", "random"),
+)
+STALLED = 2000  # cycles without a byte after which a test fails; the slowest streams stall for less
 
 
 def words(packet: bytes) -> list[tuple[int, int]]:
@@ -93,7 +102,11 @@ class Bench:
 
     async def until_left(self, count: int, quiet: int = 8) -> None:
         """Wait until so many words have left; after that none may come for some cycles."""
+        left, idle = 0, 0
         while len(self.left.words) < count:
             await RisingEdge(self.dut.clk)
+            idle = 0 if len(self.left.words) > left else idle + 1
+            left = len(self.left.words)
+            assert idle < STALLED, f"no byte has left for {idle} cycles: {left} bytes left, {count} expected"
         await self.clocks(quiet)
         assert len(self.left.words) == count, f"{len(self.left.words)} bytes left, {count} expected"

@@ -7,9 +7,8 @@ from collections.abc import Iterable
 import cocotb
 
 from tactile_depth.link.framing import DELIMITER, RUN, cobs_encode
-from tb.axis import PROFILES
 from tb.cases import on_bench
-from tb.link.byte_packets import BYTE, Bench, random_packet, words
+from tb.link.byte_packets import BYTE, STREAMS, Bench, random_packet, words
 from tb.stream import MANY, REGRESS, parameters
 
 
@@ -39,19 +38,19 @@ async def check(bench: Bench, sent: Iterable[bytes]) -> None:
     """Send packets; the line has theirs, one behind the other."""
     (run,) = parameters(bench.dut, "Run")
     expected = b"".join(on_line(packet, run) for packet in sent)
-    await bench.sources["in"].send([word for packet in sent for word in words(packet)])
+    cocotb.start_soon(bench.sources["in"].send([word for packet in sent for word in words(packet)]))
     await bench.until_left(len(expected))
     assert bytes(byte for (byte,) in bench.left.words) == expected
 
 
 @on_bench(Bench, milliseconds=20, out_fields=BYTE)
-@cocotb.parametrize(offers=[*PROFILES], accepts=["none", "random", "long"])
+@cocotb.parametrize((("offers", "accepts"), STREAMS))
 async def packets(bench: Bench, offers: str, accepts: str) -> None:
     """Send packets at the limits of a run, and random ones; long runs are shared out over the streams."""
     (run,) = parameters(bench.dut, "Run")
     sent = cases(run) + [random_packet(bench.random, 3 * run) for _ in range(3 * MANY)]
     random.Random(f"{offers} {accepts}").shuffle(sent)
-    await check(bench, sent[:8] if run == RUN and not REGRESS else sent)
+    await check(bench, sent[:16] if run == RUN and not REGRESS else sent)
 
 
 @on_bench(Bench, milliseconds=20, out_fields=BYTE)
