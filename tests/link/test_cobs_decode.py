@@ -24,6 +24,8 @@ PROOFS = (
         "the length of a piece is only counted",
         {"Longest": 5},
         depth=16,
+        engine="smtbmc bitwuzla -- --noincr",
+        steps=3,
     ),
 )
 

@@ -11,5 +11,7 @@ PROOFS = (
         "each packet does what its kind says if length and fields are good, in order; another one is said to be bad, "
         "or dropped if its kind is unknown; the streams are whole and stable",
         "the widths in use",
+        engine="smtbmc bitwuzla -- --noincr",
+        steps=3,
     ),
 )

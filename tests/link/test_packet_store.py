@@ -23,6 +23,8 @@ PROOFS = (
         "places are only counted; an arbitrary byte is followed",
         {"BankBytes": 4},
         depth=30,
+        engine="smtbmc bitwuzla -- --noincr",
+        steps=3,
     ),
 )
 
