@@ -8,12 +8,11 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.link.packets import SELECT, Ask, Kind, Picture, Read, Select, Write, unpack
+from tactile_depth.link.packets import SELECT, TO_DEVICE, Ask, Kind, Picture, Read, Select, Write, unpack
 from tb.axis import profile
 from tb.cases import on_bench
 from tb.stream import CLOCK_NS
 
-TO_DEVICE = (Kind.ASK, Kind.SELECT, Kind.READ, Kind.WRITE, Kind.PICTURE)
 LENGTHS = {  # of kind and fields: about the limits, and some between them
     Kind.ASK: (1, 2, 3),
     Kind.SELECT: (1, 2, 3, 4, 6),

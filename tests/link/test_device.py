@@ -208,3 +208,9 @@ def test_a_picture_goes_on_with_row_and_column_of_the_next_pixel(device: LinkDev
     assert len(device.pixels) == 64
     send(device, picture(1, 64, 1))
     assert len(device.pixels) == 65
+
+
+def test_the_device_knows_the_kinds_to_it_alone(device: LinkDevice) -> None:
+    for kind in link.Kind:
+        device.receive(to_line(bytes((kind, 77))))
+    assert device.status().bad_packets == len(link.TO_DEVICE)

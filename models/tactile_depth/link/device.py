@@ -23,6 +23,7 @@ from tactile_depth.link.depth_formats import (
 from tactile_depth.link.framing import to_line
 from tactile_depth.link.packets import (
     PIXEL_BYTES,
+    TO_DEVICE,
     Ask,
     Depth,
     Packet,
@@ -97,7 +98,7 @@ class LinkDevice:
         self._clear()
 
     def _clear(self) -> None:
-        self._reader = PacketReader()
+        self._reader = PacketReader(TO_DEVICE)
         self._depth_format = DepthFormat.WORDS
         self._shift = exact_shift(self.build.data_width)
         self._status_due = True

@@ -7,7 +7,7 @@ line, and `PacketReader` the packets of a line.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from enum import IntEnum
 from struct import Struct
@@ -40,6 +40,7 @@ class Kind(IntEnum):
     RECORD = 0x99
 
 
+TO_DEVICE: Final = (Kind.ASK, Kind.SELECT, Kind.READ, Kind.WRITE, Kind.PICTURE)
 SELECT: Final = Struct("<BBB")  # kind, format, shift
 REQUEST: Final = Struct("<BB")  # kind, number of the request
 ADDRESS: Final = Struct("<H")
@@ -422,6 +423,11 @@ def unpack(body: bytes) -> Packet | None:
 class PacketReader:
     """Packets of a line, whose bytes come in parts. It holds at most the bytes of one packet.
 
+    Parameters
+    ----------
+    kinds : collection of int
+        Kinds that are known; by default all.
+
     Attributes
     ----------
     bad_packets : int
@@ -430,7 +436,8 @@ class PacketReader:
         Packets of an unknown kind, which are skipped.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, kinds: Collection[int] = tuple(_DECODERS)) -> None:
+        self._kinds = frozenset(kinds)
         self.bad_packets = 0
         self.unknown_packets = 0
         self._rest = b""
@@ -456,7 +463,7 @@ class PacketReader:
 
     def _packet(self, piece: bytes) -> Packet | None:
         body = from_line(piece)
-        if body is not None and body[0] not in _DECODERS:
+        if body is not None and body[0] not in self._kinds:
             self.unknown_packets += 1
             return None
         packet = None if body is None else unpack(body)
