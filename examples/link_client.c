@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Loads a calibration into a device on a serial line, sends a picture, and writes its heights in mm.
+
+     gcc -std=c99 -Wall -Werror -Ihardware examples/link_client.c -o link_client
+     ./link_client /dev/ttyUSB0 picture.rgb heights.f32
+
+   `hardware` is a folder of Pipeline.hardware. The picture has bytes of red, green and blue for each pixel of the grid,
+   the file of heights a float; rows go from the top. With - for the port, standard input and output are the line. */
+
+#define _DEFAULT_SOURCE /* POSIX and cfmakeraw in spite of -std=c99 */
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <termios.h>
+
+#include "tactile_depth_link.h"
+
+#ifndef B3000000
+#define B3000000 3000000 /* where speeds are numbers */
+#endif
+
+enum { TRIES = 5 };
+
+static void open_line(struct link *l, const char *port)
+{
+  struct termios line;
+
+  if (!strcmp(port, "-")) {
+    l->out = 1;
+    l->repeat_ms = 2000; /* a simulated device is slow, and may have to be built */
+    l->repeats = 60;
+    return;
+  }
+  l->repeat_ms = 50;
+  l->repeats = 60;
+  l->in = l->out = open(port, O_RDWR | O_NOCTTY);
+  if (l->in < 0 || tcgetattr(l->in, &line) < 0) {
+    l->failure = "the port cannot be opened";
+    return;
+  }
+  cfmakeraw(&line);
+  line.c_cflag |= CLOCAL | CREAD;
+  if (cfsetispeed(&line, B3000000) < 0 || cfsetospeed(&line, B3000000) < 0 || tcsetattr(l->in, TCSAFLUSH, &line) < 0)
+    l->failure = "the port does not have 3,000,000 baud";
+}
+
+/* Ask for the status, and select depth in words. */
+static void begin(struct link *l)
+{
+  const uint8_t ask[] = {LINK_ASK}, select[] = {LINK_SELECT, LINK_WORDS, 0};
+
+  if (link_ask(l, ask, sizeof ask, LINK_STATUS, 1, LINK_VERSION))
+    link_ask(l, select, sizeof select, LINK_STATUS, 10, LINK_WORDS);
+}
+
+/* Send a picture, again if need be, until a depth frame comes. */
+static void send_picture(struct link *l, const uint8_t *picture)
+{
+  uint32_t place, count, frames = l->frames, tries;
+  uint8_t body[LINK_HEADER + 3 * LINK_MOST_PIXELS] = {LINK_PICTURE};
+
+  for (tries = 0; tries < TRIES && l->frames == frames && !l->failure; tries++) {
+    int64_t begin_ms = link_now_ms();
+
+    link_put(body + 1, 4, (uint32_t)begin_ms); /* a number that the picture before did not have */
+    for (place = 0; place < LINK_PIXELS; place += count) {
+      count = LINK_PIXELS - place < LINK_MOST_PIXELS ? LINK_PIXELS - place : LINK_MOST_PIXELS;
+      link_put(body + 5, 2, place / LINK_COLUMNS);
+      link_put(body + 7, 2, place % LINK_COLUMNS);
+      memcpy(body + LINK_HEADER, picture + 3 * place, 3 * count);
+      link_send(l, body, LINK_HEADER + 3 * count);
+    }
+    while (l->frames == frames && link_packet(l, begin_ms + (int64_t)l->repeat_ms * l->repeats))
+      ;
+  }
+  if (l->frames == frames && !l->failure)
+    l->failure = "no depth frame comes";
+}
+
+/* Load tables and thresholds; they are in use from the next picture on. */
+static void load(struct link *l, const uint8_t *picture)
+{
+  static const char *const results[] = {
+      NULL, "no tactile_depth answers", "the device has another grid", "the device has other formats",
+      "the device is another build", "the device has other units", "the device has a table of another size",
+      "tables stay pending", "the device did not take every entry"};
+  int result = tactile_depth_load(link_write, link_read, l, TACTILE_DEPTH_ALL_TABLES);
+
+  if (result == TACTILE_DEPTH_STAYS_PENDING && !l->failure) { /* of a program before, until a frame takes them */
+    send_picture(l, picture);
+    result = tactile_depth_load(link_write, link_read, l, TACTILE_DEPTH_ALL_TABLES);
+  }
+  if (!l->failure)
+    l->failure = results[result];
+  link_write(l, TACTILE_DEPTH_THRESHOLD_ADDRESS, TACTILE_DEPTH_THRESHOLD);
+  link_write(l, TACTILE_DEPTH_AREA_THRESHOLD_ADDRESS, TACTILE_DEPTH_AREA_THRESHOLD);
+  link_flush(l);
+}
+
+/* Convert depth codes to heights in mm above the untouched surface: the mean depth that is not above the threshold. */
+static void heights(const struct link *l, float *mm)
+{
+  double sum = 0, count = 0;
+  uint32_t place;
+
+  for (place = 0; place < LINK_PIXELS; place++)
+    if (l->codes[place] <= (int32_t)TACTILE_DEPTH_THRESHOLD) {
+      sum += l->codes[place];
+      count++;
+    }
+  for (place = 0; place < LINK_PIXELS; place++) /* not a number if all are above the threshold */
+    mm[place] = (float)(TACTILE_DEPTH_DEPTH_LSB_MM * (l->codes[place] - sum / count));
+}
+
+int main(int count, char **words)
+{
+  static struct link l;
+  static uint8_t picture[3 * LINK_PIXELS];
+  static float mm[LINK_PIXELS];
+  uint32_t place, peak = 0;
+  FILE *file;
+
+  if (count != 3 && count != 4) {
+    fprintf(stderr, "usage: link_client PORT PICTURE [HEIGHTS]\n");
+    return 2;
+  }
+  signal(SIGPIPE, SIG_IGN); /* a line that ends gives an error */
+  file = fopen(words[2], "rb");
+  if (!file || fread(picture, sizeof picture, 1, file) != 1 || fgetc(file) != EOF) {
+    fprintf(stderr, "%s: no file of %d x %d pixels of 3 bytes\n", words[2], LINK_COLUMNS, LINK_ROWS);
+    return 1;
+  }
+  open_line(&l, words[1]);
+  begin(&l);
+  load(&l, picture);
+  send_picture(&l, picture);
+  if (l.failure) {
+    fprintf(stderr, "%s: %s\n", words[1], l.failure);
+    return 1;
+  }
+  heights(&l, mm);
+  for (place = 1; place < LINK_PIXELS; place++)
+    peak = mm[place] > mm[peak] ? place : peak;
+  fprintf(stderr, "peak %.4f mm in row %u, column %u\n", mm[peak], peak / LINK_COLUMNS, peak % LINK_COLUMNS);
+  if (count == 3)
+    return 0;
+  file = fopen(words[3], "wb");
+  if (!file || fwrite(mm, sizeof mm, 1, file) != 1 || fclose(file)) {
+    fprintf(stderr, "%s cannot be written\n", words[3]);
+    return 1;
+  }
+  return 0;
+}
