@@ -63,7 +63,7 @@ def test_a_reset(loss: str, call: str, steady: td.Pipeline, sample: td.Sample, p
         device.load()
         cable.serving.wanted.add(loss)
         until(lambda: not cable.serving.wanted)
-        until(lambda: device._line is not None and device._line._trouble is not None)
+        until(lambda: isinstance(device._line, line.Line) and device._line._trouble is not None)
         require_one_error(calls[call], RESET)
         device.load()
         frame = next(device.depth([sample.image]))

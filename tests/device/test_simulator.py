@@ -16,6 +16,7 @@ import pytest
 import tactile_depth as td
 from commands.common.repository import ROOT
 from tactile_depth.device import simulator
+from tactile_depth.device.line import Line
 from tactile_depth.device.simulator import Simulator
 from tests.device.cable import setup_of
 from tests.device.model_device import Setup
@@ -32,7 +33,7 @@ def device(steady: td.Pipeline, simulate: Simulate) -> Iterator[td.Device]:
 
 
 def process_of(device: td.Device) -> int:
-    assert device._line is not None
+    assert isinstance(device._line, Line)
     transport = device._line._transport
     assert isinstance(transport, Simulator)
     assert transport._process is not None

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from tactile_depth.device.channel import Channel
+from tactile_depth.device.line import Line
 from tactile_depth.device.serial_line import SerialLine, port_of
 from tactile_depth.device.simulator import Simulator
 from tactile_depth.device.transport import Transport
@@ -14,16 +16,21 @@ SERIAL, SIM, PINS = "serial", "sim", "pins"
 ACCEPTED = ("serial:PATH", "serial:PATH@BAUD", "serial:USB-SERIAL-NUMBER", "sim", "sim:pins")
 
 
-def open_transport(address: str, pipeline: Pipeline) -> Transport:
-    """Open the line of an address.
+def open_channel(address: str, pipeline: Pipeline) -> Channel:
+    """Open the channel to the device of an address.
 
     Raises
     ------
     InputError
-        There is no such transport or no such port.
+        There is no such transport or no such port, or the device speaks another version of the link.
     DeviceError
-        The line cannot be opened.
+        The line cannot be opened, or the device does not answer.
     """
+    return Line(open_transport(address, pipeline))
+
+
+def open_transport(address: str, pipeline: Pipeline) -> Transport:
+    """Open the line of an address. For errors see `open_channel`."""
     named = Argument("address", address)
     if not isinstance(address, str):
         raise InputError(named, " is no text", accepted=ACCEPTED)

@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from tactile_depth.configuration import LIGHT_GAIN, Configuration
 from tactile_depth.cores import fastest
+from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import CAMERA_S, Exchange
-from tactile_depth.device.line import Line
 from tactile_depth.device.registers import read_words, write_words
 from tactile_depth.device.tables import wait_in_use
 from tactile_depth.gradient.flat_field import pixel_gains
@@ -27,7 +27,7 @@ LIGHT = REGISTERS["LIGHT"]
 UNITY = 1 << LIGHT_GAIN.width - 1
 
 
-def write_gains(line: Line, gains: Sequence[int]) -> None:
+def write_gains(line: Channel, gains: Sequence[int]) -> None:
     """Write the light gains of the next frame, of red, green and blue."""
     write_words(line, list(zip(GAINS, gains, strict=True)))
 
@@ -48,7 +48,7 @@ def gains_of(frames: npt.NDArray[np.uint8], reference: npt.NDArray[np.int64], co
 
 
 def capture_of_pictures(
-    line: Line, table: str, frames: npt.NDArray[np.uint8], gains: Sequence[Sequence[int]] | None = None
+    line: Channel, table: str, frames: npt.NDArray[np.uint8], gains: Sequence[Sequence[int]] | None = None
 ) -> None:
     """Capture a table from pictures that are sent, and wait until it is in use.
 
@@ -71,7 +71,7 @@ def capture_of_pictures(
 
 
 def _capture(
-    line: Line,
+    line: Channel,
     exchange: Exchange,
     table: str,
     frames: npt.NDArray[np.uint8],
@@ -98,7 +98,7 @@ def _capture(
 
 
 def _all_sent(
-    line: Line, exchange: Exchange, frames: npt.NDArray[np.uint8], gains: Sequence[Sequence[int]] | None
+    line: Channel, exchange: Exchange, frames: npt.NDArray[np.uint8], gains: Sequence[Sequence[int]] | None
 ) -> bool:
     """Send the pictures of a capture; return False as soon as one gets lost."""
     for index, frame in enumerate(frames):
@@ -109,7 +109,7 @@ def _all_sent(
     return True
 
 
-def capture_of_camera(line: Line, table: str, count: int, give_picture: Callable[[], None]) -> None:
+def capture_of_camera(line: Channel, table: str, count: int, give_picture: Callable[[], None]) -> None:
     """Capture a table from the next pictures of the device's camera, and wait until it is in use.
 
     Parameters
@@ -139,17 +139,17 @@ def capture_of_camera(line: Line, table: str, count: int, give_picture: Callable
     wait_in_use(line, give_picture)
 
 
-def _start(line: Line, table: str, count: int) -> None:
+def _start(line: Channel, table: str, count: int) -> None:
     register = CAPTURES[table]
     write_words(line, [(register.name, register.pack(log2_frames=count.bit_length() - 1, start=1))])
 
 
-def _busy(line: Line, table: str) -> bool:
+def _busy(line: Channel, table: str) -> bool:
     register = CAPTURES[table]
     return bool(read_words(line, [register.name])[register.name] & register.field("busy").mask)
 
 
-def _has_ended(line: Line, table: str) -> bool:
+def _has_ended(line: Channel, table: str) -> bool:
     """Wait for the end of a capture whose pictures have all come; return False if it waits for more."""
     end = time.monotonic() + line.limit_s
     while _busy(line, table):

@@ -18,11 +18,11 @@ from tactile_depth.checks.reference_check import check_reference
 from tactile_depth.contact.contact_events import Settings
 from tactile_depth.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.device import captures
-from tactile_depth.device.addresses import open_transport
+from tactile_depth.device.addresses import open_channel
+from tactile_depth.device.channel import Arrival, Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import Exchange, camera_frames
 from tactile_depth.device.frame import DeviceFrame
-from tactile_depth.device.line import Arrival, Line
 from tactile_depth.device.registers import Registers, read_words, write_words
 from tactile_depth.device.status import COUNTERS, DeviceStatus
 from tactile_depth.device.tables import load_tables, require_same, wait_in_use
@@ -91,7 +91,7 @@ class Device(AbstractContextManager["Device"]):
         self._codes = {name: self._code(mm) for name, mm in _thresholds_of(pipeline).items()}
         self._reference_gains: npt.NDArray[np.int64] | None = None  # of the device, if they are known
         self._is_closed = False
-        self._line: Line | None = self._connect()
+        self._line: Channel | None = self._connect()
 
     def __exit__(self, *raised: object) -> None:
         self.close()
@@ -268,9 +268,9 @@ class Device(AbstractContextManager["Device"]):
 
     # The line.
 
-    def _connect(self) -> Line:
+    def _connect(self) -> Channel:
         """Open the line, and compare the device with the pipeline."""
-        line = Line(open_transport(self.address, self.pipeline))
+        line = open_channel(self.address, self.pipeline)
         try:
             grid = line.status.rows, line.status.columns
             if grid != tuple(self.pipeline.grid):
@@ -284,7 +284,7 @@ class Device(AbstractContextManager["Device"]):
         return line
 
     @contextmanager
-    def _open_line(self) -> Iterator[Line]:
+    def _open_line(self) -> Iterator[Channel]:
         """Give the line, opened anew if it was gone; raise what has happened since the last call."""
         if self._is_closed:
             raise DeviceError(f"{self.address} is closed", remedy="open it with Device(..)")
@@ -311,7 +311,7 @@ class Device(AbstractContextManager["Device"]):
         return reference.reshape(-1, *self.pipeline.grid, 3)[-1]
 
     def _usable(
-        self, pictures: Pictures | Iterable[Picture], line: Line
+        self, pictures: Pictures | Iterable[Picture], line: Channel
     ) -> Iterator[tuple[int, npt.NDArray[np.uint8]]]:
         """Give pictures on the grid, each with its number; leave out and count what gives no right depth."""
         reference = self.pipeline.sensor.reference

@@ -10,8 +10,8 @@ from contextlib import AbstractContextManager
 import numpy as np
 import numpy.typing as npt
 
+from tactile_depth.device.channel import Arrival, Channel
 from tactile_depth.device.errors import DeviceError
-from tactile_depth.device.line import Arrival, Line
 from tactile_depth.device.registers import read_words
 from tactile_depth.link.depth_frames import NUMBERS
 
@@ -25,7 +25,7 @@ class Exchange(AbstractContextManager["Exchange"]):
     A depth frame belongs to a picture by its number in the pipeline. So depth that comes late goes to no other picture.
     """
 
-    def __init__(self, line: Line) -> None:
+    def __init__(self, line: Channel) -> None:
         self._line = line
         line.ask()  # frames up to now are delivered or lost
         line.collect(True)
@@ -93,7 +93,7 @@ class Exchange(AbstractContextManager["Exchange"]):
         return DeviceError(f"{MISSED} pictures in a row gave no depth: {counts}", remedy="check cable and baud rate")
 
 
-def camera_frames(line: Line) -> Iterator[Arrival]:
+def camera_frames(line: Channel) -> Iterator[Arrival]:
     """Give the depth frames of the device's camera as they come.
 
     Raises
@@ -108,7 +108,7 @@ def camera_frames(line: Line) -> Iterator[Arrival]:
         line.collect(False)
 
 
-def _camera_frames(line: Line) -> Iterator[Arrival]:
+def _camera_frames(line: Channel) -> Iterator[Arrival]:
     patience_s = line.depth_s + CAMERA_S
     last, bad = time.monotonic(), line.bad_packets
     while True:

@@ -8,16 +8,17 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
+from tactile_depth.device.channel import Arrival
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.transport import Transport
 from tactile_depth.errors import InputError
 from tactile_depth.link.depth_formats import DepthFormat, exact_shift
-from tactile_depth.link.depth_frames import DepthFrame, DepthFrames
+from tactile_depth.link.depth_frames import DepthFrames
 from tactile_depth.link.framing import to_line
 from tactile_depth.link.packets import (
     LARGEST_SHIFT,
@@ -43,25 +44,8 @@ Found = TypeVar("Found")
 Reply = TypeVar("Reply", ReadReply, WriteReply)
 
 
-class Arrival(NamedTuple):
-    """A depth frame.
-
-    Attributes
-    ----------
-    frame : DepthFrame
-    time_s : float
-        When its last bytes came, as `time.time`.
-    lost : int
-        Frames lost before it.
-    """
-
-    frame: DepthFrame
-    time_s: float
-    lost: int
-
-
 class Line:
-    """Device at the end of a transport. A thread takes what the device sends; one thread calls the methods.
+    """Channel to a device at the end of a transport. A thread of its own takes what the device sends.
 
     The device is told a shift of 16-bit depth that it does not have after a reset, although words of depth have none:
     a status with another shift shows a reset or a power-up.
@@ -73,8 +57,6 @@ class Line:
 
     Attributes
     ----------
-    status : Status
-        The last one.
     broken : bool
         The transport is gone: the line must be opened anew.
 
@@ -339,6 +321,7 @@ class Line:
 
     @property
     def status(self) -> Status:
+        """Last status."""
         assert self._frames.status is not None
         return self._frames.status
 

@@ -7,15 +7,15 @@ import difflib
 from collections.abc import Callable, Iterator, MutableMapping, Sequence
 from contextlib import AbstractContextManager
 
+from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
-from tactile_depth.device.line import Line
 from tactile_depth.errors import Argument, InputError
 from tactile_depth.registers.register_map import REGISTERS, WORD, Field, Register
 
 VALUE = "value"  # the field of a register that holds a single number
 
 
-def read_words(line: Line, names: Sequence[str]) -> dict[str, int]:
+def read_words(line: Channel, names: Sequence[str]) -> dict[str, int]:
     """Return the words of registers by name, all of one request if they are at most 128.
 
     Raises DeviceError if the device refuses one, or does not answer.
@@ -26,7 +26,7 @@ def read_words(line: Line, names: Sequence[str]) -> dict[str, int]:
     return dict(zip(names, words, strict=True))
 
 
-def write_words(line: Line, pairs: Sequence[tuple[str, int]]) -> None:
+def write_words(line: Channel, pairs: Sequence[tuple[str, int]]) -> None:
     """Write words to registers, in order. Raises DeviceError if the device refuses one, or does not answer."""
     done = line.write([(REGISTERS[name].offset, word & WORD) for name, word in pairs])
     if done < len(pairs):
@@ -46,7 +46,7 @@ class Registers(MutableMapping[str, int]):
         Gives a context with the line to the device.
     """
 
-    def __init__(self, line: Callable[[], AbstractContextManager[Line]]) -> None:
+    def __init__(self, line: Callable[[], AbstractContextManager[Channel]]) -> None:
         self._line = line
 
     def __getitem__(self, name: str) -> int:

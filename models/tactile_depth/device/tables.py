@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
-from tactile_depth.device.line import Line
 from tactile_depth.device.registers import read_words, write_words
 from tactile_depth.errors import InputError
 from tactile_depth.pipeline import Pipeline
@@ -30,7 +30,7 @@ def build_of(pipeline: Pipeline) -> Build:
     return Build(top_parameters(pipeline.config, pipeline.pixel_pitch_mm))
 
 
-def require_same(line: Line, pipeline: Pipeline) -> None:
+def require_same(line: Channel, pipeline: Pipeline) -> None:
     """Raise InputError, which names what differs, unless a device has the configuration of a pipeline.
 
     The lanes may differ. Raises DeviceError if the device is no tactile_depth, or does not answer.
@@ -57,7 +57,7 @@ def _shown(word: int, field: Field) -> str:
     return names.get(value, str(value))
 
 
-def load_tables(line: Line, pipeline: Pipeline, give_picture: Callable[[], None]) -> None:
+def load_tables(line: Channel, pipeline: Pipeline, give_picture: Callable[[], None]) -> None:
     """Write all tables and the pitch of a pipeline into a device, and commit them together.
 
     Parameters
@@ -90,7 +90,7 @@ def _select(name: str) -> tuple[str, int]:
     return "TABLE_SELECT", REGISTERS["TABLE_SELECT"].pack(select=TABLES[name])
 
 
-def _write_table(line: Line, name: str, entries: np.ndarray) -> None:
+def _write_table(line: Channel, name: str, entries: np.ndarray) -> None:
     """Write the entries (n, 2) of a table, lower and upper word, into its free bank."""
     accesses = [_select(name), ("TABLE_INDEX", 0)]
     for low, high in entries.tolist():
@@ -102,7 +102,7 @@ def _write_table(line: Line, name: str, entries: np.ndarray) -> None:
         raise DeviceError(f"the device did not take every entry of its table {name}", remedy="call load() again")
 
 
-def wait_in_use(line: Line, give_picture: Callable[[], None], also_captures: bool = False) -> None:
+def wait_in_use(line: Channel, give_picture: Callable[[], None], also_captures: bool = False) -> None:
     """Wait until frames use all tables that are committed, and until captures have ended if `also_captures` is set.
 
     Raises DeviceError if they stay pending.
@@ -122,7 +122,7 @@ def wait_in_use(line: Line, give_picture: Callable[[], None], also_captures: boo
             raise DeviceError(problem, remedy="reset the device, then call load()")
 
 
-def _pending(line: Line, also_captures: bool) -> list[str]:
+def _pending(line: Channel, also_captures: bool) -> list[str]:
     """Return the tables that are not in use yet, and the captures under way."""
     words = read_words(line, [*BUSY, COMMIT.name])  # the captures first: the end of one sets a bit of TABLE_COMMIT
     busy = [name for name in BUSY if also_captures and words[name] & REGISTERS[name].field("busy").mask]
