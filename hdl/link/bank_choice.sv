@@ -2,14 +2,15 @@
 // bank_choice: which of two banks is written, which one is read, and which frame waits for the reader.
 //
 // A frame begins (write_begin), is whole (write_end), and becomes ready (publish: with write_end, or later, also inside
-// the next frame). Then it waits until the reader takes it (take, only while `waiting`), and is read up to `done`. The
-// pulses of the writer: write_end only inside a frame, not with write_begin. Those of the reader: done only while
-// `reading`; take not while `reading`, but with done.
+// the next frame). Then it waits until the reader takes it (take, only while `waiting` and keep), and is read up to
+// `done`. The pulses of the writer: write_end only inside a frame, not with write_begin. Those of the reader: done only
+// while `reading`; take not while `reading`, but with done.
 //
 // A frame begins in a bank that is not being read: in the one without a whole frame, or with the older of two. What
 // stood there is lost. A write_begin inside a frame begins it again, in the same bank. A frame that becomes ready
-// replaces the one that waits. `replaced` is high for one clock for each frame that is lost so. While keep is low
-// no frame waits or becomes ready, and nothing counts as replaced. A bank is free for the writer in the clock of done.
+// replaces the one that waits. `replaced` is high for one clock for each frame that is lost so. While keep is low no
+// frame becomes ready, the one that waits is given up, and nothing counts as replaced. A bank is free for the writer in
+// the clock of done.
 // Cycle-accurate model: models/tactile_depth/link/bank_choice.py.
 
 `default_nettype none
@@ -53,7 +54,7 @@ module bank_choice (
   assign ready_next = ~keep ? 2'b00 : (published != 2'b00 ? published : ready & ~taken) & ~begun;
 
   assign write_bank = write_begin ? chosen[1] : written[1];
-  assign waiting = keep & ready != 2'b00;
+  assign waiting = ready != 2'b00;
   assign reading = read != 2'b00;
   assign read_bank = read[1];
   assign replaced = keep & (held & ~(whole_next | ready_next)) != 2'b00;

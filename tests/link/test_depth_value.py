@@ -19,5 +19,8 @@ PROOFS = (
         "the sum of the codes, divided and rounded once as td_round_saturate does for each shift, 3 clocks later",
         "the sum and the rounding are one formula for every width; 20 bits are rounded with every shift, and clip",
         {"DataWidth": 20},
+        depth=8,
+        engine="smtbmc bitwuzla -- --noincr",
+        steps=6,
     ),
 )

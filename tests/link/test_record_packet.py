@@ -10,6 +10,6 @@ PROOFS = (
     Proof(
         "whole packets of the kind and the 48 bytes of the newest record that was there as the first byte was taken",
         f"the size in use; one bit of an arbitrary word is followed: {WORD_FREE}",
-        depth=90,
+        depth=30,
     ),
 )

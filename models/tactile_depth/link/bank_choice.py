@@ -50,7 +50,7 @@ class BankChoice:
         done: bool = False,
     ) -> Seen:
         """Advance by one clock edge; return the outputs before it."""
-        waiting, read_bank = keep and self.ready is not None, self.read
+        waiting, read_bank = self.ready is not None, self.read
         if done:
             self.read = None
         if take:
