@@ -39,8 +39,8 @@ module fv_register_access #(
 
   logic allowed, started;
   protocol_register_access #(.Accesses(Accesses)) u_protocol (
-    .*, .holds(allowed), .counts_m_axil_awaddr(), .counts_m_axil_wdata(), .counts_m_axil_araddr(), .counts_reply_data(),
-    .counts_reply_last(), .counts()
+    .*, .holds(allowed), .counts_m_axil_awaddr(), .counts_m_axil_wdata(), .counts_m_axil_araddr(),
+    .counts_m_axil_bready(), .counts_m_axil_rready(), .counts_reply_data(), .counts_reply_last(), .counts()
   );
   assumed u_assumed (.clk, .rst, .allowed, .started);
 

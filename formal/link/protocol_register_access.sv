@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_register_access: requests are whole: a number, then 1 to Accesses accesses, all of one kind; `forget` comes
-// between them. The port answers an access once, after it was taken. What is offered stays until it is taken.
+// between them. The port answers an access once, after it was taken. What is offered stays until it is taken. The ready
+// of an answer counts while it is offered.
 
 `default_nettype none
 
@@ -33,6 +34,8 @@ module protocol_register_access #(
   output logic        counts_m_axil_awaddr,
   output logic        counts_m_axil_wdata,
   output logic        counts_m_axil_araddr,
+  output logic        counts_m_axil_bready,
+  output logic        counts_m_axil_rready,
   output logic        counts_reply_data,
   output logic        counts_reply_last,
   output logic        counts
@@ -49,7 +52,8 @@ module protocol_register_access #(
       && (request_last || !whole || count != 8'(Accesses - 1)) : !request_last;
   assign between = ~begun & ~request_valid;
   assign answers = (~m_axil_bvalid | (address_taken & data_taken)) & (~m_axil_rvalid | read_taken);
-  assign holds = rst | (stays & write_stays & read_stays & (~request_valid | well_formed) & (~forget | between) & answers);
+  assign holds = rst
+      | (stays & write_stays & read_stays & (~request_valid | well_formed) & (~forget | between) & answers);
   assign reset = rst | ~holds;
 
   always_ff @(posedge clk) begin
@@ -69,8 +73,8 @@ module protocol_register_access #(
   end
 
   offer_stays #(.Width(10)) u_request (
-    .clk, .rst, .reset, .valid(request_valid), .ready(request_ready), .word({request_write, request_last, request_data}),
-    .holds(stays)
+    .clk, .rst, .reset, .valid(request_valid), .ready(request_ready),
+    .word({request_write, request_last, request_data}), .holds(stays)
   );
   offer_stays #(.Width(2)) u_written (
     .clk, .rst, .reset, .valid(m_axil_bvalid), .ready(m_axil_bready), .word(m_axil_bresp), .holds(write_stays)
@@ -84,6 +88,8 @@ module protocol_register_access #(
   assign counts_m_axil_awaddr = counts & m_axil_awvalid;
   assign counts_m_axil_wdata = counts & m_axil_wvalid;
   assign counts_m_axil_araddr = counts & m_axil_arvalid;
+  assign counts_m_axil_bready = counts & m_axil_bvalid;
+  assign counts_m_axil_rready = counts & m_axil_rvalid;
   assign {counts_reply_data, counts_reply_last} = {2{counts & reply_valid}};
 
 endmodule

@@ -51,7 +51,7 @@ async def play(dut: Any, levels: Any) -> Any:
     return received
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.test(timeout_time=0.5, timeout_unit="ms")
 @cocotb.parametrize((("off", "gap"), [(0, 0), (0, 40), (-TOLERANCE, 0), (TOLERANCE, 0)]))
 async def words(dut: Any, off: Any, gap: Any) -> None:
     """Receive every byte, also back to back, from a sender that is slower or faster."""
@@ -65,7 +65,7 @@ async def words(dut: Any, off: Any, gap: Any) -> None:
     assert await play(dut, levels) == sent
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.test(timeout_time=0.5, timeout_unit="ms")
 @cocotb.parametrize(longest=[1, 3, 12])
 async def noise(dut: Any, longest: Any) -> None:
     """Receive levels of random length: glitches, breaks, bytes that begin at any time."""

@@ -37,7 +37,7 @@ async def start(dut: Any, offers: str) -> Any:
     return source, levels
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.test(timeout_time=0.5, timeout_unit="ms")
 @cocotb.parametrize(offers=["none", "long", "random"])
 async def words(dut: Any, offers: str) -> None:
     """Send every byte in order; each bit has its length, and no stop bit is shorter."""
@@ -57,7 +57,7 @@ async def words(dut: Any, offers: str) -> None:
     assert runs[-1][0] == 1
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.test(timeout_time=0.5, timeout_unit="ms")
 async def reset(dut: Any) -> None:
     """Reset inside a byte: the line is high at once, and the next byte is complete."""
     (divider,) = parameters(dut, "Divider")

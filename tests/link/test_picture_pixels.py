@@ -10,7 +10,7 @@ STRUCTURES = (
     built(12, 16, on=VERILATOR),
     built(3, 4, on=ICARUS, mutants=True),
     built(5, 6, late=BOTH),
-    built(128, 128),
+    built(2, 300),
 )
 MUTANTS = Mutants(repeats=4)
 REFUSED = {
