@@ -2,7 +2,7 @@
 """packet_mux against its model in every cycle: packets on all streams, stalls, resets."""
 
 import random
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import cocotb
@@ -11,27 +11,35 @@ from tactile_depth.link.packet_mux import DEPTH, RECORD, SOURCES, PacketMux
 from tb.cases import on_bench
 from tb.link.byte_packets import STREAMS, Bench, random_packet, words
 from tb.link.byte_packets import packets as packets_of
-from tb.stream import MANY, at_every_edge
+from tb.stream import MANY, at_every_edge, drive
+
+PINS = [f"{name}_{pin}" for pin in ("valid", "data", "last") for name in SOURCES]
+OUTPUTS = ["out_valid", "out_data", "out_last", *(f"{name}_ready" for name in SOURCES)]
 
 
-def follow(bench: Bench) -> Iterator[None]:
-    """Compare every output with the model, which is fed from the pins; keep the sources in the order of packets."""
-    dut, model = bench.dut, PacketMux()
-    pins = [[getattr(dut, f"{name}_{pin}") for name in SOURCES] for pin in ("valid", "ready", "data", "last")]
+def step(model: PacketMux, pin: Callable[[str], Any]) -> None:
+    """Compare the outputs of a clock with the model, and advance it; `pin` returns the value of a pin."""
+    valid, last = ([bool(pin(f"{name}_{of}")) for name in SOURCES] for of in ("valid", "last"))
+    chosen, out_ready = model.chosen, bool(pin("out_ready"))
+    offered = chosen is not None and valid[chosen]
+    assert bool(pin("out_valid")) == offered, f"out_valid with {valid}, chosen {chosen}"
+    ready = [bool(pin(f"{name}_ready")) for name in SOURCES]
+    assert ready == [source == chosen and out_ready for source in range(len(SOURCES))], f"ready, chosen {chosen}"
+    if offered and chosen is not None:
+        assert int(pin("out_data")) == int(pin(f"{SOURCES[chosen]}_data")), f"data of {SOURCES[chosen]}"
+        assert bool(pin("out_last")) == last[chosen], f"last of {SOURCES[chosen]}"
+    if pin("rst"):
+        model.reset()
+    else:
+        model.clock(valid, last, out_ready)
+
+
+def follow(dut: Any) -> Iterator[None]:
+    """Compare every output with the model, which is fed from the pins."""
+    model, pins = PacketMux(), {name: getattr(dut, name) for name in ("rst", "out_ready", *PINS, *OUTPUTS)}
     while True:
         yield
-        valid, ready, data, last = ([int(pin.value) for pin in row] for row in pins)
-        chosen, out_ready = model.chosen, int(dut.out_ready.value)
-        offered = chosen is not None and bool(valid[chosen])
-        assert bool(dut.out_valid.value) == offered, f"out_valid with {valid}, chosen {chosen}"
-        assert ready == [int(source == chosen and out_ready) for source in range(4)], f"ready, chosen {chosen}"
-        if offered and chosen is not None:
-            assert int(dut.out_data.value) == data[chosen], f"data of {SOURCES[chosen]}"
-            assert int(dut.out_last.value) == last[chosen], f"last of {SOURCES[chosen]}"
-        if dut.rst.value:
-            model.reset()
-        else:
-            model.clock([bool(one) for one in valid], [bool(one) for one in last], bool(out_ready))
+        step(model, lambda name: pins[name].value)
 
 
 class MuxBench(Bench):
@@ -42,7 +50,7 @@ class MuxBench(Bench):
 
     async def start(self) -> None:
         await super().start()
-        at_every_edge(self.dut.clk, follow(self))
+        at_every_edge(self.dut.clk, follow(self.dut))
 
     async def deliver(self, sent: dict[str, list[bytes]], apart: bool) -> list[bytes]:
         """Send packets on all streams, with idle cycles between them if `apart`; return them as they left."""
@@ -65,7 +73,7 @@ def numbered(bench: Bench, count: int) -> dict[str, list[bytes]]:
 
 
 @on_bench(MuxBench)
-@cocotb.parametrize((("offers", "accepts"), STREAMS), apart=[False, True])
+@cocotb.parametrize((("offers", "accepts"), STREAMS), ("apart", [False, True]))
 async def packets(bench: MuxBench, apart: bool) -> None:
     """Send packets on all streams: each stream's leave whole and in order."""
     sent = numbered(bench, 4 * MANY)
@@ -93,3 +101,19 @@ async def resets(bench: MuxBench) -> None:
         left = await bench.deliver({"record": [b"\2\7"], "depth": [b"\3\7\1"]}, apart=False)
         assert left == [b"\2\7", b"\3\7\1"]
         await bench.reset()
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def any_pins(dut: Any) -> None:
+    """Drive all pins at random, last without valid too: every output is as in the model."""
+    rng = random.Random(cocotb.RANDOM_SEED)
+
+    def pins(reset: int) -> dict[str, int]:
+        often = {name: int(rng.random() < 0.7) for name in ("out_ready", *PINS[: len(SOURCES)])}
+        data = {f"{name}_data": rng.getrandbits(8) for name in SOURCES}
+        return {"rst": reset, **often, **data, **{f"{name}_last": int(rng.random() < 0.4) for name in SOURCES}}
+
+    inputs = [pins(1), *(pins(int(rng.random() < 0.01)) for _ in range(400))]
+    seen, model = await drive(dut, inputs, OUTPUTS), PacketMux()
+    for clock in range(1, len(inputs)):
+        step(model, lambda name, at=clock: seen[name][at])  # type: ignore[misc]
