@@ -166,7 +166,7 @@ def test_the_metadata_say_what_a_user_must_know(wheel: Path) -> None:
     assert fields["Requires-Python"] == ">=3.10"
     assert fields["License-Expression"] == "Apache-2.0"
     assert fields["Author"] and fields["Keywords"] and fields.get_all("Classifier")  # noqa: PT018
-    assert fields.get_all("Provides-Extra") == ["fast", "fit", "plot", "live"]
+    assert fields.get_all("Provides-Extra") == ["fast", "fit", "plot", "live", "serial"]
     required = [line for line in fields.get_all("Requires-Dist") if "extra ==" not in line]
     assert [re.match(r"\w+", line)[0] for line in required] == ["numpy", "scipy", "Pillow"]  # type: ignore[index]
 
@@ -231,7 +231,7 @@ def test_nothing_beyond_the_declared_is_imported(environment: Any, pictures: Any
         """
     path, *modules = run(environment, pictures, "-c", textwrap.dedent(script)).split()
     assert Path(path).is_relative_to(environment.parent.parent)
-    assert not {"matplotlib", "skimage", "cv2", "rerun", "commands"} & set(modules)
+    assert not {"matplotlib", "skimage", "cv2", "rerun", "serial", "commands"} & set(modules)
 
 
 @pytest.mark.parametrize("block", list(examples()))

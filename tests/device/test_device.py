@@ -4,14 +4,19 @@
 from __future__ import annotations
 
 import itertools
+import re
+import textwrap
 import time
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import tactile_depth as td
+from commands.common.repository import ROOT
 from tactile_depth.registers.register_map import TABLES
 from tactile_depth.table_entries import table_entries
 from tests.device.cable import Cable
@@ -281,6 +286,21 @@ def test_a_device_of_another_configuration(
     pipeline = td.Pipeline(sample.sensor, reference=sample.reference, **{"grid": GRID, **other})
     with pytest.raises(td.InputError, match=message):
         td.Device(cable.address, pipeline)
+
+
+def test_the_program_of_the_page(
+    sample: td.Sample, plug: Plug, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    section = (ROOT / "docs" / "python.md").read_text().partition("\n## Device\n")[2]
+    block = re.findall(r"^    import .*\n(?:    .*\n|\n)*", section, re.MULTILINE)[0]
+    pipeline = td.Pipeline(sample.sensor, reference=sample.reference)
+    for name, picture in (("background", sample.reference), ("press", sample.image)):
+        Image.fromarray(picture).save(tmp_path / f"{name}.png")
+    monkeypatch.chdir(tmp_path)
+    text = textwrap.dedent(block).replace('td.load("gelsight-mini")', 'td.sample("ball").sensor')
+    exec(text.replace("serial:/dev/ttyUSB0", plug(pipeline).address), {})
+    height_mm = pipeline(sample.image).height_mm.max()
+    assert capsys.readouterr().out == f"{np.float32(height_mm)} True\n"
 
 
 def test_several_devices_at_once(
