@@ -88,7 +88,8 @@ class AxilSlave:
             else:
                 value = int(self.pin(word).value)
                 assert self.held.get(channel, value) == value, f"{word} changed before {channel}ready came"
-                assert channel not in self.taken and self.answer is None, f"{channel}: two accesses at a time"
+                assert channel not in self.taken, f"{channel}: two accesses at a time"
+                assert self.answer is None, f"{channel}: an access before the answer to the last"
                 self.held[channel] = value
                 if ready.value:
                     self.taken[channel] = self.held.pop(channel)
@@ -101,7 +102,8 @@ class AxilSlave:
             self.pin(f"{self.answer}valid").value = 0
             self.answer = None
             self.taken.clear()
-        if self.taken and "ar" not in self.taken and len(self.taken) < 2 or not next(self.moves) or not self.taken:
+        whole = "ar" in self.taken or len(self.taken) > 1
+        if not whole or not next(self.moves):
             return
         if "ar" in self.taken:
             assert len(self.taken) == 1, "a read and a write at a time"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""register_access against the model of the device: the same accesses and replies, whatever the streams and the port do."""
+"""register_access against the model of the device: the same accesses and replies, whatever streams and port do."""
 
 import os
 import random

@@ -18,12 +18,13 @@ PROFILES["rarely"] = lambda rng: (rng.random() < 0.2 for _ in iter(int, 1))
 CLOCKS = 3000
 
 
-def random_status(chance: random.Random) -> Status:
-    """Return a status of random fields."""
+def random_body(chance: random.Random) -> bytes:
+    """Return a packet of random fields: those of a status, or any bits."""
     grid = chance.randint(1, 4096), chance.randint(1, 4096)
     shape = chance.getrandbits(16), *grid, chance.randint(1, 32), chance.random() < 0.5, chance.random() < 0.5
     counts = (chance.getrandbits(32) for _ in range(3))
-    return Status(*shape, DepthFormat(chance.randrange(4)), chance.randint(0, 16), *counts)
+    body = Status(*shape, DepthFormat(chance.randrange(4)), chance.randint(0, 16), *counts).pack()
+    return body if chance.random() < 0.5 else body[:2] + chance.randbytes(len(body) - 2)
 
 
 async def play(dut: Any, requests: float, resets: float, accepts: str) -> int:
@@ -36,12 +37,12 @@ async def play(dut: Any, requests: float, resets: float, accepts: str) -> int:
         await edge
     due, left, sent, was_reset, body = False, b"", 0, True, b""
     for clock in range(CLOCKS):
-        status, reset = random_status(chance), chance.random() < resets
+        body_now, reset = random_body(chance), chance.random() < resets
         pins = chance.random() < requests, next(ready)
         dut.rst.value, dut.request.value, dut.status_ready.value = reset, *pins
-        dut.fields.value = int.from_bytes(status.pack()[2:], "little")
+        dut.fields.value = int.from_bytes(body_now[2:], "little")
         await edge
-        body = left or (status.pack() if due else b"")
+        body = left or (body_now if due else b"")
         assert bool(dut.status_valid.value) == bool(body), f"status_valid in clock {clock}"
         if body:
             assert int(dut.status_data.value) == body[0], f"status_data in clock {clock}"

@@ -54,6 +54,7 @@ async def words(dut: Any, offers: str) -> None:
         assert level == wanted
         late = clocks - bits * divider  # only where a stop bit ends a run
         assert late == 0 or (level and late > 0)
+        assert late <= 1 or offers != "none", "the next byte waits although the line is free"
     assert runs[-1][0] == 1
 
 

@@ -21,8 +21,8 @@ REFUSED = {
 }
 PROOFS = (
     Proof(
-        "a pixel leaves the clock after its last byte, exactly if its packet begins a picture or goes on with it and the "
-        "picture lacks it, with its bytes and marks",
+        "a pixel leaves the clock after its last byte, exactly if its packet begins a picture or goes on with it and "
+        "the picture lacks it, with its bytes and marks",
         "rows and columns are only counted",
         {"Rows": 2, "Columns": 3},
         depth=34,

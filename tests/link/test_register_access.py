@@ -20,8 +20,9 @@ REFUSED = {
 }
 PROOFS = (
     Proof(
-        "each access once, one at a time, in its clock, with its own address and value; none behind a refused one, above "
-        "the width, or of a repeated request; the reply has what was done and the values read, a repeated one the same",
+        "each access once, one at a time, in its clock, with its own address and value; none behind a refused one, "
+        "above the width, or of a repeated request; the reply has what was done and the values read, a repeated one "
+        "the same",
         "accesses are only counted, and no value is looked at; td_ram is proven by itself",
         depth=32,
         free=("word",),

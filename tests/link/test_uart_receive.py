@@ -9,8 +9,8 @@ STRUCTURES = (Structure({"Divider": 4}, on=BOTH, mutants=True), Structure({"Divi
 REFUSED = {"Divider=3": "Divider_must_be_at_least_4"}
 PROOFS = (
     Proof(
-        "a byte has the levels in the middle of its bits and leaves in its clock; a low stop bit breaks it, and nothing "
-        "begins until the line is high",
+        "a byte has the levels in the middle of its bits and leaves in its clock; a low stop bit breaks it, and "
+        "nothing begins until the line is high",
         "clocks of a bit are only counted",
         depth=46,
     ),
