@@ -102,6 +102,11 @@ def measure(address: str, pipeline: Pipeline, presses: GridPresses, pictures: Pr
             numbers = f"{1000 * read.device_mm:>22.1f}{1000 * read.package_mm:>9.1f}"
             print(f"{name[-NAME_WIDTH:]:<{NAME_WIDTH}}  {touching:<10}{numbers}", flush=True)
     print(summary(presses.views, results))
+    differing = [name for name, read in results.items() if not read.is_equal]
+    if differing:
+        what = f"the depth of the device is not that of the package in {', '.join(differing)}"
+        remedy = "make sure that no camera of the device sends pictures meanwhile"
+        warnings.warn(InputWarning(what, remedy=remedy), stacklevel=2)
     untouched = [name for name, read in results.items() if not read.is_touching]
     if untouched:
         warnings.warn(InputWarning(f"the device sees no contact in {', '.join(untouched)}"), stacklevel=2)
