@@ -69,6 +69,28 @@ def test_depth_is_that_of_the_package(name: str, sample: td.Sample, pictures: li
         require_equal(list(device.depth(pictures)), list(pipeline.stream(pictures)))
 
 
+@pytest.mark.parametrize("name", CONFIGURATIONS)
+def test_a_picture_that_stands_for_itself(name: str, sample: td.Sample, pictures: list[np.ndarray], plug: Plug) -> None:
+    pictures = [*pictures, (0.97 * sample.image).astype(np.uint8)]
+    pipeline = td.Pipeline(sample.sensor, reference=sample.reference, **{"grid": GRID, **CONFIGURATIONS[name]})
+    with td.Device(plug(pipeline).address, pipeline) as device:
+        device.load()
+        for _ in range(2):
+            require_equal(list(device.depth(pictures, stream=False)), list(pipeline(np.stack(pictures))))
+        assert device.registers["LIGHT.follow"] == 1
+        require_equal(list(device.depth(pictures)), list(pipeline.stream(pictures)))
+
+
+def test_a_picture_for_itself_needs_a_reference_that_is_known(
+    cable: Cable, pipeline: td.Pipeline, sample: td.Sample
+) -> None:
+    with td.Device(cable.address, pipeline) as device:
+        with pytest.raises(td.InputError, match=r"stream=False: the reference of the device is not known: call load"):
+            next(device.depth(sample.image, stream=False))
+        with pytest.raises(td.InputError, match="stream=False: without pictures: give pictures"):
+            next(device.depth(stream=False))
+
+
 def test_a_sensor_without_reference(plug: Plug) -> None:
     pipeline = td.Pipeline(td.load("synthetic"), grid=(16, 16))
     picture = np.full((16, 16, 3), 128, np.uint8)
@@ -300,7 +322,7 @@ def test_the_program_of_the_page(
     text = textwrap.dedent(block).replace('td.load("gelsight-mini")', 'td.sample("ball").sensor')
     exec(text.replace("serial:/dev/ttyUSB0", plug(pipeline).address), {})
     height_mm = pipeline(sample.image).height_mm.max()
-    assert capsys.readouterr().out == f"{np.float32(height_mm)} True\n"
+    assert capsys.readouterr().out == f"{np.float32(height_mm)!s} True\n"
 
 
 def test_several_devices_at_once(

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext, suppress
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +31,21 @@ UNITY = 1 << LIGHT_GAIN.width - 1
 def write_gains(line: Channel, gains: Sequence[int]) -> None:
     """Write the light gains of the next frame, of red, green and blue."""
     write_words(line, list(zip(GAINS, gains, strict=True)))
+
+
+@contextmanager
+def held_light(line: Channel) -> Iterator[None]:
+    """Keep light gains as they are written, until the end of the context."""
+    light, failed = read_words(line, [LIGHT.name])[LIGHT.name], False
+    write_words(line, [(LIGHT.name, light & ~LIGHT.field("follow").mask)])
+    try:
+        yield
+    except DeviceError:
+        failed = True
+        raise
+    finally:
+        with suppress(DeviceError) if failed else nullcontext():  # the first error says what happened
+            write_words(line, [(LIGHT.name, light)])
 
 
 def gains_of(frames: npt.NDArray[np.uint8], reference: npt.NDArray[np.int64], config: Configuration) -> list[list[int]]:
@@ -80,10 +96,7 @@ def _capture(
     def untouched() -> None:
         exchange.depth_of(frames[0])
 
-    light = read_words(line, [LIGHT.name])[LIGHT.name]
-    if gains is not None:
-        write_words(line, [(LIGHT.name, light & ~LIGHT.field("follow").mask)])
-    try:
+    with held_light(line) if gains is not None else nullcontext():
         for _ in range(ATTEMPTS):
             wait_in_use(line, untouched)
             _start(line, table, len(frames))
@@ -91,9 +104,6 @@ def _capture(
                 break
         else:
             raise DeviceError(f"{ATTEMPTS} captures lost pictures on the line", remedy="check cable and baud rate")
-    finally:
-        if gains is not None:
-            write_words(line, [(LIGHT.name, light)])
     wait_in_use(line, untouched)
 
 

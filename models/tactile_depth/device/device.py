@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, MutableMapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from pathlib import Path
 from typing import cast
 
@@ -224,17 +224,25 @@ class Device(AbstractContextManager["Device"]):
             write_words(line, list(codes.items()))
         self._codes = codes
 
-    def depth(self, pictures: Pictures | Iterable[Picture] | None = None) -> Iterator[DeviceFrame]:
+    def depth(
+        self, pictures: Pictures | Iterable[Picture] | None = None, *, stream: bool = True
+    ) -> Iterator[DeviceFrame]:
         """Send pictures and give the depth frame of each; without pictures, give what the device's camera gives.
 
         The frames of pictures are those of `pipeline.stream(pictures)`: light gains begin at 1 and follow the
-        pictures. A picture whose depth gets lost on the line gives no frame and is counted in `lost`;
-        `DeviceFrame.picture` tells which one is missing. The frames of a camera do not end.
+        pictures. With `stream=False` they are those of `pipeline(pictures)`: each picture stands for itself.
+
+        A picture whose depth gets lost on the line gives no frame and is counted in `lost`; `DeviceFrame.picture` tells
+        which one is missing. The frames of a camera do not end.
 
         Parameters
         ----------
         pictures : as for a call of a pipeline, or an iterable of pictures, optional
-            Full pictures of the sensor's camera, or pictures on the grid.
+            Full pictures of the sensor's camera.
+        stream : bool
+            False: the host computes the light gains of each picture, and sends it twice, so that its contact does not
+            depend on the picture before. The device must have a reference that the host knows: by `load`, or by
+            `capture_reference` with pictures.
 
         Raises
         ------
@@ -242,14 +250,29 @@ class Device(AbstractContextManager["Device"]):
             A picture is not accepted.
         DeviceError
         """
+        has_gains = self.pipeline.config.light_gains
+        if not stream and (pictures is None or (has_gains and self._reference_gains is None)):
+            problem = ": without pictures" if pictures is None else ": the reference of the device is not known"
+            remedy = "give pictures" if pictures is None else "call load() first, or capture_reference(pictures)"
+            raise InputError(Argument("stream", stream), problem, remedy=remedy)
         if pictures is None:
             yield from self._depth_of_camera()
             return
-        with self._open_line() as line, Exchange(line) as exchange:
-            if self.pipeline.config.light_gains:
+        with ExitStack() as stack:
+            line = stack.enter_context(self._open_line())
+            exchange = stack.enter_context(Exchange(line))
+            if has_gains and not stream:
+                stack.enter_context(captures.held_light(line))
+            elif has_gains:
                 captures.write_gains(line, [captures.UNITY] * len(captures.GAINS))
             for index, pixels in self._usable(pictures, line):
+                if has_gains and not stream:
+                    assert self._reference_gains is not None
+                    gains = captures.gains_of(pixels[None], self._reference_gains, self.pipeline.config)
+                    captures.write_gains(line, gains[0])
                 arrival = exchange.depth_of(pixels)
+                if arrival is not None and not stream:
+                    arrival = exchange.depth_of(pixels)
                 if arrival is not None:
                     yield self._frame(arrival, index)
 
