@@ -71,8 +71,9 @@ def test_depth_is_that_of_the_package(name: str, sample: td.Sample, pictures: li
 
 @pytest.mark.parametrize("name", CONFIGURATIONS)
 def test_a_picture_that_stands_for_itself(name: str, sample: td.Sample, pictures: list[np.ndarray], plug: Plug) -> None:
-    pictures = [*pictures, (0.97 * sample.image).astype(np.uint8)]
     pipeline = td.Pipeline(sample.sensor, reference=sample.reference, **{"grid": GRID, **CONFIGURATIONS[name]})
+    if pipeline.config.light_gains:
+        pictures = [*pictures, (0.97 * sample.image).astype(np.uint8)]
     with td.Device(plug(pipeline).address, pipeline) as device:
         device.load()
         for _ in range(2):
@@ -231,6 +232,19 @@ def test_a_loop_that_is_left_disturbs_nothing(
             break
     require_equal(list(device.depth(pictures)), list(pipeline.stream(pictures)))
     assert device.status().lost == 0
+
+
+@pytest.mark.parametrize("stream", [True, False])
+def test_a_loop_that_ends_after_its_device_is_closed(
+    stream: bool, cable: Cable, pipeline: td.Pipeline, sample: td.Sample
+) -> None:
+    with td.Device(cable.address, pipeline) as device:
+        device.load()
+        frames = device.depth([sample.image] * 3, stream=stream)
+        next(frames)
+    with pytest.raises(td.DeviceError, match="is closed"):
+        next(frames)
+    frames.close()  # type: ignore[attr-defined]
 
 
 def test_registers_between_the_frames_of_a_loop(device: td.Device, pictures: list[np.ndarray]) -> None:

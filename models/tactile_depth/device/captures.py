@@ -40,7 +40,7 @@ def held_light(line: Channel) -> Iterator[None]:
     write_words(line, [(LIGHT.name, light & ~LIGHT.field("follow").mask)])
     try:
         yield
-    except DeviceError:
+    except BaseException:  # also the end of a loop that was left, when the line may be closed
         failed = True
         raise
     finally:

@@ -264,6 +264,8 @@ class Line:
         return self._repeat(to_line(packet.pack()), answer, "an access to its registers")
 
     def _write_line(self, line: bytes) -> None:
+        if self._ends:
+            raise DeviceError(f"{self._transport.name} is closed", remedy="open the device with Device(..)")
         self._idle_at = max(time.monotonic(), self._idle_at) + len(line) * self._pace.byte_s
         try:
             self._transport.write(line)
