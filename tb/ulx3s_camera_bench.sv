@@ -7,11 +7,11 @@
 module ulx3s_camera_bench #(
   parameter int ClockMhz          = 100,
   parameter int Baud              = 25000000,
-  parameter int Threshold         = 65536,
   parameter int Rows              = 128,
   parameter int Columns           = 128,
   parameter int DataWidth         = 24,
   parameter int Lanes             = 1,
+  parameter int BottomFirst       = 0,
   parameter int Entries           = 16,
   parameter int AddressBytes      = 1,
   parameter int DeviceId          = 66,
@@ -40,8 +40,8 @@ module ulx3s_camera_bench #(
   assign sio_d = camera_pulls ? 1'b0 : 1'bz;
   assign camera_sio_d = sio_d;
   ulx3s_camera #(
-    .ClockMhz(ClockMhz), .Baud(Baud), .Threshold(Threshold), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth),
-    .Lanes(Lanes), .Entries(Entries), .AddressBytes(AddressBytes), .DeviceId(DeviceId), .QuarterClocks(QuarterClocks),
+    .ClockMhz(ClockMhz), .Baud(Baud), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .Lanes(Lanes),
+    .BottomFirst(BottomFirst), .Entries(Entries), .AddressBytes(AddressBytes), .DeviceId(DeviceId), .QuarterClocks(QuarterClocks),
     .MillisecondClocks(MillisecondClocks)
   ) u_board (
     .clk_25mhz, .ftdi_txd, .ftdi_rxd, .btn, .led, .wifi_gpio0, .camera_pclk, .camera_vsync, .camera_href, .camera_data,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ulx3s: tactile_depth on the ULX3S board (LFE5U-85F): frames over the serial port, records of contacts back.
+// ulx3s: tactile_depth on the ULX3S board (LFE5U-85F): the host link over the serial port.
 //
 // ulx3s_system does it; here are the clock and the pins. led[0]: contact; led[1] changes with every record; led[7]: the
 // clock is locked. btn[1]: reset. Model: see ulx3s_system.
@@ -7,13 +7,13 @@
 `default_nettype none
 
 module ulx3s #(
-  parameter int ClockMhz  = 100,      // of the pipeline
-  parameter int Baud      = 3000000,
-  parameter int Threshold = 65536,    // written to both thresholds after a reset
-  parameter int Rows      = 128,      // of the wrapper
-  parameter int Columns   = 128,
-  parameter int DataWidth = 24,
-  parameter int Lanes     = 1
+  parameter int ClockMhz    = 100,      // of the pipeline
+  parameter int Baud        = 3000000,
+  parameter int Rows        = 128,      // of the wrapper
+  parameter int Columns     = 128,
+  parameter int DataWidth   = 24,
+  parameter int Lanes       = 1,
+  parameter int BottomFirst = 0         // 1: the bottom row leaves first
 ) (
   input  wire        clk_25mhz,
   input  wire        ftdi_txd,
@@ -31,8 +31,8 @@ module ulx3s #(
   logic contact, recorded, unused_ready, unused_rst, unused_irq, unused_restart;
   assign led = {locked, 5'd0, recorded, contact};
   ulx3s_system #(
-    .ClockMhz(ClockMhz), .Baud(Baud), .Threshold(Threshold), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth),
-    .Lanes(Lanes)
+    .ClockMhz(ClockMhz), .Baud(Baud), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .Lanes(Lanes),
+    .BottomFirst(BottomFirst)
   ) u_system (
     .clk, .ready(locked & ~btn[1]), .rst(unused_rst), .ftdi_txd, .ftdi_rxd,
     .s_axis_tdata(24'd0), .s_axis_tvalid(1'b0), .s_axis_tready(unused_ready), .s_axis_tlast(1'b0), .s_axis_tuser(1'b0),

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ulx3s_camera: tactile_depth on the ULX3S board behind a parallel camera (DVP): records of contacts over the serial
-// port, registers written over it.
+// ulx3s_camera: tactile_depth on the ULX3S board behind a parallel camera (DVP): the host link over the serial port.
 //
 //   camera -> dvp_receive -> tactile_sensor -> serial line (ulx3s_system)
 //
@@ -16,11 +15,11 @@
 module ulx3s_camera #(
   parameter int ClockMhz          = 100,      // of the pipeline
   parameter int Baud              = 3000000,
-  parameter int Threshold         = 65536,    // written to both thresholds after a reset
   parameter int Rows              = 128,      // of the wrapper
   parameter int Columns           = 128,
   parameter int DataWidth         = 24,
   parameter int Lanes             = 1,
+  parameter int BottomFirst       = 0,        // 1: the bottom row leaves first
   parameter int Entries           = 16,       // of camera.hex, and below them what a camera's SCCB is like
   parameter int AddressBytes      = 1,
   parameter int DeviceId          = 66,
@@ -76,8 +75,8 @@ module ulx3s_camera #(
   logic contact, recorded, irq, lost;
   assign led = {locked, 1'b0, irq, lost, failed, set_up, recorded, contact};
   ulx3s_system #(
-    .ClockMhz(ClockMhz), .Baud(Baud), .Threshold(Threshold), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth),
-    .Lanes(Lanes), .Camera(1)
+    .ClockMhz(ClockMhz), .Baud(Baud), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .Lanes(Lanes),
+    .BottomFirst(BottomFirst), .Camera(1)
   ) u_system (
     .clk, .ready(locked & ~btn[1]), .rst, .ftdi_txd, .ftdi_rxd,
     .s_axis_tdata({16'd0, byte_tdata}), .s_axis_tvalid(byte_tvalid), .s_axis_tready(byte_tready),

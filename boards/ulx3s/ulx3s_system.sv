@@ -1,27 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // ulx3s_system: what the tops of the ULX3S share: serial line, reset and tactile_depth.
 //
-//   ftdi_txd -> uart_receive -> serial_link -> tactile_depth -> serial_link -> uart_transmit -> ftdi_rxd
+//   ftdi_txd -> uart_receive -> link_unit <-> tactile_depth;  link_unit -> uart_transmit -> ftdi_rxd
 //
-// Packets: serial_link.sv. With Camera 0 frames come from the serial line; with Camera 1 they come on s_axis, and those
-// on the line are dropped. Depth leaves the pipeline at full rate and is not sent; its record is. recorded changes with
-// every record. tactile_depth_ulx3s, with Camera tactile_sensor_ulx3s, is a wrapper, which `make fpga` writes for a
-// configuration. Threshold is a depth code.
-// Model: models/tactile_depth/boards/serial_link.py around models/tactile_depth/tactile_depth.py.
+// Packets: docs/link.md. With Camera 0 pictures come from the serial line; with Camera 1 they come on s_axis, and those
+// on the line are dropped. recorded changes with every record. tactile_depth_ulx3s, with Camera tactile_sensor_ulx3s,
+// is a wrapper, which `make fpga` writes for a configuration.
+// Model: models/tactile_depth/link/device.py around models/tactile_depth/tactile_depth.py.
 
 `default_nettype none
 
 module ulx3s_system
   import td_register_map_pkg::*;
 #(
-  parameter int ClockMhz  = 100,      // of clk
-  parameter int Baud      = 3000000,
-  parameter int Threshold = 65536,    // written to both thresholds after a reset
-  parameter int Rows      = 128,      // of the wrapper
-  parameter int Columns   = 128,
-  parameter int DataWidth = 24,
-  parameter int Lanes     = 1,
-  parameter int Camera    = 0
+  parameter int ClockMhz    = 100,      // of clk
+  parameter int Baud        = 3000000,
+  parameter int Rows        = 128,      // of the wrapper
+  parameter int Columns     = 128,
+  parameter int DataWidth   = 24,
+  parameter int Lanes       = 1,
+  parameter int BottomFirst = 0,        // 1: the bottom row leaves first
+  parameter int Camera      = 0
 ) (
   input  wire         clk,
   input  wire         ready,          // the clock is locked, no button is pressed; from elsewhere
@@ -62,29 +61,30 @@ module ulx3s_system
 
   logic [23:0] sent_tdata;
   logic sent_tvalid, sent_tready, sent_tlast, sent_tuser;
-  logic [31:0] event_tdata;
-  logic event_tvalid, event_tready, event_tlast;
-  logic [AddressWidth-1:0] awaddr, araddr;
-  assign araddr = '0;  // nothing is read
-  logic [31:0] wdata;
-  logic awvalid, awready, wvalid, wready;
-  serial_link #(.Rows(Rows), .Columns(Columns), .Divider(Divider)) u_link (
-    .clk, .rst, .threshold(Threshold),
-    .in_valid(byte_valid), .in_data(byte_data), .in_broken(broken),
-    .out_valid(reply_valid), .out_ready(reply_ready), .out_data(reply_data),
-    .m_axis_tdata(sent_tdata), .m_axis_tvalid(sent_tvalid), .m_axis_tready(sent_tready), .m_axis_tlast(sent_tlast),
-    .m_axis_tuser(sent_tuser),
-    .s_event_tdata(event_tdata), .s_event_tvalid(event_tvalid), .s_event_tready(event_tready),
-    .s_event_tlast(event_tlast),
-    .m_axil_awaddr(awaddr), .m_axil_awvalid(awvalid), .m_axil_awready(awready),
-    .m_axil_wdata(wdata), .m_axil_wvalid(wvalid), .m_axil_wready(wready)
-  );
-
   logic [DepthBits-1:0] depth_tdata;
   logic depth_tvalid, depth_tlast, depth_tuser;
+  logic [31:0] event_tdata;
+  logic event_tvalid, event_tlast;
+  logic [AddressWidth-1:0] awaddr, araddr;
+  logic awvalid, awready, wvalid, wready, bvalid, bready, arvalid, arready, rvalid, rready;
+  logic [31:0] wdata, rdata;
   logic [1:0] bresp, rresp;
-  logic bvalid, arready, rvalid;
-  logic [31:0] rdata;
+  logic unused_ready;  // the line waits for nothing
+  link_unit #(
+    .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .Lanes(Lanes), .BottomFirst(BottomFirst),
+    .AddressWidth(AddressWidth)
+  ) u_link (
+    .clk, .rst, .cold_rst(1'b0), .in_valid(byte_valid), .in_ready(unused_ready), .in_data(byte_data),
+    .in_broken(broken), .out_valid(reply_valid), .out_ready(reply_ready), .out_data(reply_data),
+    .m_axis_tdata(sent_tdata), .m_axis_tvalid(sent_tvalid), .m_axis_tready(sent_tready), .m_axis_tlast(sent_tlast),
+    .m_axis_tuser(sent_tuser), .s_axis_tdata(depth_tdata), .s_axis_tvalid(depth_tvalid), .s_axis_tlast(depth_tlast),
+    .s_axis_tuser(depth_tuser), .s_event_tdata(event_tdata), .s_event_tvalid(event_tvalid),
+    .s_event_tlast(event_tlast), .m_axil_awaddr(awaddr), .m_axil_awvalid(awvalid), .m_axil_awready(awready),
+    .m_axil_wdata(wdata), .m_axil_wvalid(wvalid), .m_axil_wready(wready), .m_axil_bresp(bresp), .m_axil_bvalid(bvalid),
+    .m_axil_bready(bready), .m_axil_araddr(araddr), .m_axil_arvalid(arvalid), .m_axil_arready(arready),
+    .m_axil_rdata(rdata), .m_axil_rresp(rresp), .m_axil_rvalid(rvalid), .m_axil_rready(rready)
+  );
+
   if (Camera != 0) begin : g_camera
     tactile_sensor_ulx3s u_sensor (
       .clk, .rst, .cold_rst(1'b0),
@@ -92,13 +92,13 @@ module ulx3s_system
       .m_axis_tdata(depth_tdata), .m_axis_tvalid(depth_tvalid), .m_axis_tready(1'b1),
       .m_axis_tlast(depth_tlast), .m_axis_tuser(depth_tuser),
       .contact, .irq,
-      .m_event_tdata(event_tdata), .m_event_tvalid(event_tvalid), .m_event_tready(event_tready),
+      .m_event_tdata(event_tdata), .m_event_tvalid(event_tvalid), .m_event_tready(1'b1),
       .m_event_tlast(event_tlast),
       .s_axil_awaddr(awaddr), .s_axil_awprot(3'd0), .s_axil_awvalid(awvalid), .s_axil_awready(awready),
       .s_axil_wdata(wdata), .s_axil_wstrb(4'hF), .s_axil_wvalid(wvalid), .s_axil_wready(wready),
-      .s_axil_bresp(bresp), .s_axil_bvalid(bvalid), .s_axil_bready(1'b1),
-      .s_axil_araddr(araddr), .s_axil_arprot(3'd0), .s_axil_arvalid(1'b0), .s_axil_arready(arready),
-      .s_axil_rdata(rdata), .s_axil_rresp(rresp), .s_axil_rvalid(rvalid), .s_axil_rready(1'b1),
+      .s_axil_bresp(bresp), .s_axil_bvalid(bvalid), .s_axil_bready(bready),
+      .s_axil_araddr(araddr), .s_axil_arprot(3'd0), .s_axil_arvalid(arvalid), .s_axil_arready(arready),
+      .s_axil_rdata(rdata), .s_axil_rresp(rresp), .s_axil_rvalid(rvalid), .s_axil_rready(rready),
       .frames_lost, .setup_restart, .setup_done, .setup_failed, .setup_entry, .setup_found
     );
     assign sent_tready = 1'b1;
@@ -112,13 +112,13 @@ module ulx3s_system
       .m_axis_tdata(depth_tdata), .m_axis_tvalid(depth_tvalid), .m_axis_tready(1'b1),
       .m_axis_tlast(depth_tlast), .m_axis_tuser(depth_tuser),
       .contact, .irq,
-      .m_event_tdata(event_tdata), .m_event_tvalid(event_tvalid), .m_event_tready(event_tready),
+      .m_event_tdata(event_tdata), .m_event_tvalid(event_tvalid), .m_event_tready(1'b1),
       .m_event_tlast(event_tlast),
       .s_axil_awaddr(awaddr), .s_axil_awprot(3'd0), .s_axil_awvalid(awvalid), .s_axil_awready(awready),
       .s_axil_wdata(wdata), .s_axil_wstrb(4'hF), .s_axil_wvalid(wvalid), .s_axil_wready(wready),
-      .s_axil_bresp(bresp), .s_axil_bvalid(bvalid), .s_axil_bready(1'b1),
-      .s_axil_araddr(araddr), .s_axil_arprot(3'd0), .s_axil_arvalid(1'b0), .s_axil_arready(arready),
-      .s_axil_rdata(rdata), .s_axil_rresp(rresp), .s_axil_rvalid(rvalid), .s_axil_rready(1'b1)
+      .s_axil_bresp(bresp), .s_axil_bvalid(bvalid), .s_axil_bready(bready),
+      .s_axil_araddr(araddr), .s_axil_arprot(3'd0), .s_axil_arvalid(arvalid), .s_axil_arready(arready),
+      .s_axil_rdata(rdata), .s_axil_rresp(rresp), .s_axil_rvalid(rvalid), .s_axil_rready(rready)
     );
     assign s_axis_tready = 1'b0;
     assign setup_restart = 1'b0;
@@ -128,13 +128,9 @@ module ulx3s_system
   end
 
   always_ff @(posedge clk) begin
-    if (event_tvalid && event_tready && event_tlast) recorded <= ~recorded;
+    if (event_tvalid && event_tlast) recorded <= ~recorded;
     if (rst) recorded <= 1'b0;
   end
-
-  logic unused_outputs;
-  assign unused_outputs = ^{depth_tdata, depth_tvalid, depth_tlast, depth_tuser, bresp, bvalid, arready, rdata,
-    rresp, rvalid};
 
 endmodule
 

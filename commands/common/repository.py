@@ -87,8 +87,9 @@ def chosen(names: str) -> list[str]:
 
 
 def tested(names: Sequence[str]) -> list[str]:
-    """Return the cores whose testbenches test the cores with these names: a unit is tested through its top."""
-    tops = dict.fromkeys(units(), "tactile_depth") | {"camera_unit": "tactile_sensor"}
+    """Return the cores whose testbenches test the cores with these names: a unit without one through its top."""
+    without = [unit for unit in units() if cores()[unit].test is None]
+    tops = dict.fromkeys(without, "tactile_depth") | {"camera_unit": "tactile_sensor"}
     return list(dict.fromkeys(tops.get(name, name) for name in names))
 
 

@@ -132,3 +132,8 @@ def write(folder: Path, name: str, parameters: Mapping[str, int], tables: str = 
 def grid(parameters: Mapping[str, int]) -> dict[str, int]:
     """Return the parameters that a module around a wrapper needs itself."""
     return {name: parameters[name] for name in ("Rows", "Columns", "DataWidth", "Lanes")}
+
+
+def linked(parameters: Mapping[str, int]) -> dict[str, int]:
+    """Return the parameters that a module with a host link around a wrapper needs itself."""
+    return grid(parameters) | {"BottomFirst": parameters["Tridiagonal"]}

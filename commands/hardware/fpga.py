@@ -166,11 +166,7 @@ def synthesize(
     Raises RuntimeError.
     """
     inside, top = top_parameters(config, calibration.pixel_pitch_mm, camera), request.top
-    parameters = {
-        **wrapper.grid(inside),
-        "Threshold": run_request.threshold_code(config),
-        "ClockMhz": request.clock_mhz,
-    }
+    parameters = {**wrapper.linked(inside), "ClockMhz": request.clock_mhz}
     if request.sensor is not None:
         parameters |= {**setup_parameters(request.sensor), "FifoLog2": FIFO_LOG2}
         write_list(folder, request.sensor.entries)

@@ -8,7 +8,6 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.boards.serial_link import write_packet
 from tactile_depth.camera.camera_front_end import camera_front_end
 from tactile_depth.camera.camera_setup import Entry, Kind
 from tactile_depth.camera.dvp_receive import IDLE, Pins, camera_pins
@@ -56,7 +55,7 @@ class CameraBoard(Board):
         super().__init__(dut)
         self.camera = camera_of(self.config)
         self.sccb = SccbCamera(0x42, 1, dict([PRODUCT]))
-        self.frames: list[np.ndarray] = []  # of the grid, of good pictures
+        self.pictures: list[np.ndarray] = []  # of the grid, of good pictures
         self.thresholds: list[tuple[int, int]] = []
         self.now = self.threshold, self.threshold
         dut.camera_pulls.value = dut.camera_vsync.value = dut.camera_href.value = dut.camera_data.value = 0
@@ -83,8 +82,10 @@ class CameraBoard(Board):
         for _ in range(100):
             await ClockCycles(self.dut.clk_25mhz, 200)
             if int(self.dut.led.value) & (DONE | FAILED):
-                return
-        raise AssertionError("the list does not end")
+                break
+        else:
+            raise AssertionError("the list does not end")
+        await self.set(THRESHOLD=self.threshold, OFF_THRESHOLD=self.threshold)
 
     async def play(self, pins: Any) -> None:
         """Drive the pins of the parallel port, an entry in each clock of the camera."""
@@ -96,7 +97,7 @@ class CameraBoard(Board):
     async def show(self, press: bool) -> None:
         """Send a whole picture, and note what the models say of it; then wait until its depth has left."""
         words = self.picture(press)
-        self.frames.append(camera_front_end(words, self.camera))
+        self.pictures.append(camera_front_end(words, self.camera))
         self.thresholds.append(self.now)
         await self.play(camera_pins(words.astype(np.uint8), ROW_BLANK, FRAME_BLANK))
         await self.play([IDLE] * FRAME_BLANK)
@@ -109,15 +110,10 @@ class CameraBoard(Board):
         noise = self.rng.integers(0, 8 if press else 1, seen.shape, np.uint8)
         return photograph((seen ^ noise).astype(np.uint8), self.camera)
 
-    async def set(self, **values: int) -> None:
-        """Write registers over the serial line."""
-        for name, value in values.items():
-            await self.send(write_packet(REGISTERS[name].offset, value))
-
-    def records(self) -> Any:
-        """Return the records that the models expect so far, and whether the light is on."""
+    def frames(self) -> Any:
+        """Return what the models expect of each good picture so far."""
         times = [time for index, time in enumerate(self.starts) if index not in self.dropped]
-        return self.records_of(np.stack(self.frames), self.thresholds, times)
+        return self.frames_of(np.stack(self.pictures), self.thresholds, times)
 
     dropped: tuple[int, ...] = ()  # frames that begin and are not whole, by their number
 
@@ -155,12 +151,12 @@ async def pictures(dut: Any) -> None:
     await board.set_up()
     for press in (True, False, True):
         await board.show(press)
-    highest = max(words[4] for words, _ in board.records())
+    highest = max(record.peak for _, record, _ in board.frames())
     await board.set(THRESHOLD=highest, OFF_THRESHOLD=highest)
     board.now = highest, highest
     await board.show(False)
     assert await board.check() == 4
-    assert [light for _, light in board.records()] == [True, False, True, False]
+    assert board.lights == [True, False, True, False]
 
 
 @case(milliseconds=40)

@@ -9,7 +9,6 @@ import pytest
 
 from commands.common import wrapper
 from commands.common.repository import BOARDS, ROOT
-from commands.common.run_request import threshold_code
 from tactile_depth.built_in import synthetic
 from tactile_depth.camera.register_lists import setup_parameters, write_list
 from tactile_depth.configuration import Configuration
@@ -27,10 +26,9 @@ REAL_SENSOR |= {"data_width": 15, "coefficient_width": 18, "gain_width": 16}
 def board_values(config: Configuration) -> dict[str, int]:
     """Return the parameters of a top, without those of its camera."""
     return {
-        **wrapper.grid(top_parameters(config)),
+        **wrapper.linked(top_parameters(config)),
         "ClockMhz": CLOCK_MHZ,
         "Baud": CLOCK_MHZ * 10**6 // CLOCKS_A_BIT,
-        "Threshold": threshold_code(config),
     }
 
 

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`python -m commands.run.device_sim FOLDER [--pins]`: the RTL of a configuration as a process that speaks the link.
+
+FOLDER holds what `Pipeline.hardware` writes. The process takes the bytes of the line on its standard input and gives
+those of the device on its standard output (tb/device_main.cpp); `ready` on standard error says that it runs. With
+--pins the device is the top of the ULX3S at the pins of its serial port, otherwise the line carries a byte a clock.
+Each configuration is built once for each state of the sources. `tactile_depth.Device("sim", ..)` starts it.
+"""
+
+import fcntl
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+from commands.common import repository, wrapper
+from commands.common import simulator as simulation
+from tactile_depth.errors import InputError
+from tactile_depth.hardware_files import PARAMETERS
+
+BENCH, BOARD = "device_bench", "ulx3s"
+MAIN = repository.ROOT / "tb" / "device_main.cpp"
+EXECUTABLE = "device"
+BIT_CLOCKS = 4  # of the serial line, the least that uart_receive takes
+CLOCK_MHZ = 100
+IDLE_FRAMES, IDLE_CLOCKS = 4, 20_000  # without a byte; then time stands still. An answer takes less
+
+
+def build(fields: Mapping[str, int], pins: bool) -> Path:
+    """Return the simulator for the fields of a configuration, which is built once for each state of the sources.
+
+    Raises RuntimeError if the build fails.
+    """
+    name = BOARD if pins else "device"
+    top = BOARD if pins else BENCH
+    bench = repository.BOARDS[BOARD] if pins else [repository.ROOT / "tb" / f"{BENCH}.sv"]
+    text = wrapper.wrapper(name, fields)
+    key = hashlib.sha256(json.dumps([top, text, simulation.versions()]).encode())
+    for source in (*repository.sources(), *bench, MAIN, Path(__file__)):
+        key.update(source.read_bytes())
+    folder = simulation.BUILD / "simulators" / key.hexdigest()[:16]
+    built, complete = folder / EXECUTABLE, folder / "complete"
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with folder.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # another process may be building the same model
+        if complete.exists():
+            return built
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        print("building the simulator (once for this configuration) ..", file=sys.stderr, flush=True)
+        _verilate(folder, top, [*bench, wrapper.write(folder, name, fields)], fields, pins)
+        complete.touch()
+    return built
+
+
+def _verilate(folder: Path, top: str, files: list[Path], fields: Mapping[str, int], pins: bool) -> None:
+    """Build the executable in a folder. Raises RuntimeError if Verilator or the compiler fails."""
+    simulation.check("verilator")
+    parameters = wrapper.linked(fields)
+    flags = "-O2"
+    if pins:
+        parameters |= {"ClockMhz": CLOCK_MHZ, "Baud": CLOCK_MHZ * 10**6 // BIT_CLOCKS}
+        flags += f" -DPINS -DBIT_CLOCKS={BIT_CLOCKS}"
+        files = [*files, wrapper.write(folder, BOARD, {**fields, "Camera": 1})]  # named in the other branch
+    waivers = [repository.HDL / "verilator.vlt"]
+    command = [
+        *("verilator", "--cc", "--exe", "--build", "--prefix", "Vdevice", "--top-module", top, "-Wall", "-O3"),
+        *("--Mdir", str(folder), "-o", EXECUTABLE, "-CFLAGS", flags, "--timescale", "1ns/1ps"),
+        *(f"-G{name}={value}" for name, value in parameters.items()),
+        *map(str, [*waivers, *repository.sources(), *files, MAIN]),
+    ]
+    level = "-O1"
+    environment = os.environ | {
+        "MAKEFLAGS": f"{simulation.VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL={level}"
+    }
+    log = folder / "build.log"
+    with log.open("w") as output:
+        ended = subprocess.run(command, env=environment, stdout=output, stderr=subprocess.STDOUT, check=False)
+    if ended.returncode:
+        raise RuntimeError(f"the build failed: see {log}")
+
+
+def main() -> None:
+    folder, *options = sys.argv[1:]
+    try:
+        fields = json.loads((Path(folder) / PARAMETERS).read_text())["fields"]
+        built = build(fields, "--pins" in options)
+    except (InputError, RuntimeError) as error:
+        sys.exit(f"device_sim: {error}")
+    os.chdir(folder)  # $readmemh finds the tables there
+    idle = IDLE_FRAMES * fields["Rows"] * fields["Columns"] + IDLE_CLOCKS
+    os.execv(built, [str(built), str(idle)])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: Apache-2.0
+"""link_unit against the model of the device: every byte out, every pixel, every register access.
+
+One thing happens at a time, so that the order of packets is that of the model; what happens at once is tested with the
+host in tests/device. Line, pixels and registers stall at random.
+"""
+
+import random
+from collections import deque
+from typing import Any
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.contact.contact_events import WORDS, record
+from tactile_depth.link import packets as link
+from tactile_depth.link.depth_formats import DepthFormat, exact_shift
+from tactile_depth.link.device import Build, LinkDevice
+from tactile_depth.link.framing import to_line
+from tb.stream import CLOCK_NS, parameters
+
+QUIET_CLOCKS = 3000  # without a byte: more than a packet of depth takes until its first one
+LONGEST_CLOCKS = 60_000
+BROKEN = None  # a byte that could not be received
+REFUSED = 0x40  # address
+Byte = int | None
+
+
+class Board:
+    """Device with a line, registers, a sink of pixels, and a pipeline that gives frames; and the model beside it."""
+
+    def __init__(self, dut: Any, stalls: float) -> None:
+        self.dut, self.stalls = dut, stalls
+        self.chance = random.Random(cocotb.RANDOM_SEED)
+        self.rows, self.columns, self.width, self.lanes, bottom_first = parameters(
+            dut, "Rows", "Columns", "DataWidth", "Lanes", "BottomFirst"
+        )
+        self.registers: dict[int, int] = {}
+        self.model_registers: dict[int, int] = {}
+        build = Build(self.rows, self.columns, self.width, bool(bottom_first))
+        self.model = LinkDevice(build, self.model_read, self.model_write)
+        self.to_device: deque[Byte] = deque()
+        self.beats: deque[tuple[int, int, int]] = deque()
+        self.words: deque[tuple[int, int]] = deque()
+        self.out: list[int] = []
+        self.pixels: list[tuple[int, int, int]] = []
+        self.reads: deque[int] = deque()
+        self.writes: deque[int] = deque()
+        self.values: deque[int] = deque()
+
+    def model_read(self, address: int) -> int | None:
+        return None if self.refuses(address) else self.model_registers.get(address, address)
+
+    def model_write(self, address: int, value: int) -> bool:
+        if not self.refuses(address):
+            self.model_registers[address] = value
+        return not self.refuses(address)
+
+    def refuses(self, address: int) -> bool:
+        return address == REFUSED or address >> len(self.dut.m_axil_araddr) != 0
+
+    async def start(self) -> None:
+        dut = self.dut
+        dut.rst.value, dut.cold_rst.value = 1, 1
+        for name in ("in_valid", "in_broken", "s_axis_tvalid", "s_event_tvalid", "m_axil_bvalid", "m_axil_rvalid"):
+            getattr(dut, name).value = 0
+        for name in ("out_ready", "m_axis_tready", "m_axil_awready", "m_axil_wready", "m_axil_arready"):
+            getattr(dut, name).value = 0
+        Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        for _ in range(4):
+            await RisingEdge(dut.clk)
+        dut.rst.value, dut.cold_rst.value = 0, 0
+        cocotb.start_soon(self.run())
+
+    def goes(self) -> int:
+        return int(self.chance.random() >= self.stalls)
+
+    async def run(self) -> None:
+        """Move everything, each clock."""
+        edge = RisingEdge(self.dut.clk)
+        while True:
+            await edge
+            self.line()
+            self.pipeline()
+            self.bus()
+
+    def line(self) -> None:
+        """Move a byte each way, and a pixel."""
+        dut = self.dut
+        if dut.in_valid.value and dut.in_ready.value:
+            self.to_device.popleft()
+            dut.in_valid.value = 0
+        elif dut.in_broken.value:
+            self.to_device.popleft()
+        offered = bool(dut.in_valid.value and not dut.in_ready.value)
+        dut.in_broken.value = 0
+        if self.to_device and not offered and self.goes():
+            byte = self.to_device[0]
+            dut.in_broken.value, dut.in_valid.value = int(byte is None), int(byte is not None)
+            dut.in_data.value = byte or 0
+        if dut.out_valid.value and dut.out_ready.value:
+            self.out.append(int(dut.out_data.value))
+        dut.out_ready.value = self.goes()
+        if dut.m_axis_tvalid.value and dut.m_axis_tready.value:
+            self.pixels.append((int(dut.m_axis_tdata.value), int(dut.m_axis_tlast.value), int(dut.m_axis_tuser.value)))
+        dut.m_axis_tready.value = self.goes()
+
+    def pipeline(self) -> None:
+        """Give depth and record; what the pipeline gives is never held back."""
+        dut = self.dut
+        dut.s_axis_tvalid.value = dut.s_event_tvalid.value = 0
+        if self.beats and self.goes():
+            data, last, user = self.beats.popleft()
+            dut.s_axis_tdata.value, dut.s_axis_tlast.value, dut.s_axis_tuser.value = data, last, user
+            dut.s_axis_tvalid.value = 1
+        elif self.words and not self.beats and self.goes():
+            dut.s_event_tdata.value, dut.s_event_tlast.value = self.words.popleft()
+            dut.s_event_tvalid.value = 1
+
+    def bus(self) -> None:
+        """Answer accesses; address and data of a write may come in any order."""
+        dut = self.dut
+        for channel, taken in (("aw", self.writes), ("w", self.values), ("ar", self.reads)):
+            ready, name = getattr(dut, f"m_axil_{channel}ready"), "data" if channel == "w" else "addr"
+            if getattr(dut, f"m_axil_{channel}valid").value and ready.value:
+                taken.append(int(getattr(dut, f"m_axil_{channel}{name}").value))
+            ready.value = self.goes()
+        if dut.m_axil_bvalid.value and dut.m_axil_bready.value:
+            dut.m_axil_bvalid.value = 0
+        elif self.writes and self.values and not dut.m_axil_bvalid.value and self.goes():
+            address, value = self.writes.popleft(), self.values.popleft()
+            dut.m_axil_bresp.value, dut.m_axil_bvalid.value = 2 * self.refuses(address), 1
+            if not self.refuses(address):
+                self.registers[address] = value
+        if dut.m_axil_rvalid.value and dut.m_axil_rready.value:
+            dut.m_axil_rvalid.value = 0
+        elif self.reads and not dut.m_axil_rvalid.value and self.goes():
+            address = self.reads.popleft()
+            dut.m_axil_rdata.value = self.registers.get(address, address)
+            dut.m_axil_rresp.value, dut.m_axil_rvalid.value = 2 * self.refuses(address), 1
+
+    # What happens, in device and model.
+
+    def send(self, data: list[Byte]) -> bytes:
+        """Send bytes; return what the model answers. A broken byte makes its piece bad, as a wrong one does."""
+        self.to_device.extend(data)
+        self.model.receive(bytes(0xFF if byte is BROKEN else byte for byte in data))
+        return self.answer()
+
+    def answer(self) -> bytes:
+        return b"".join(iter(self.model.next_packet, b""))
+
+    def frame(self) -> bytes:
+        """Give a frame of the pipeline; return what the model sends of it."""
+        limit = 1 << self.width - 1
+        codes = np.array(
+            [self.chance.choice((self.chance.randrange(-limit, limit), 0, limit - 1, -limit, 1)) for _ in self.places()]
+        ).reshape(self.rows, self.columns)
+        words = [self.chance.getrandbits(32) for _ in range(WORDS)]
+        depth_bits = 8 * -(-self.width // 8)
+        for first in range(0, codes.size, self.lanes):
+            beat = codes.flat[first : first + self.lanes]
+            data = sum((int(code) % (1 << depth_bits)) << place * depth_bits for place, code in enumerate(beat))
+            self.beats.append((data, int((first + self.lanes) % self.columns == 0), int(first == 0)))
+        self.words.extend((word, int(place == WORDS - 1)) for place, word in enumerate(words))
+        self.model.offer(codes.astype(np.int32), record(words))
+        return self.answer()
+
+    def places(self) -> range:
+        return range(self.rows * self.columns)
+
+    async def compare(self, expected: bytes, what: str) -> None:
+        """Wait until everything has been sent, and compare bytes, pixels and registers."""
+        quiet = 0
+        for _ in range(LONGEST_CLOCKS):
+            before = len(self.out)
+            await RisingEdge(self.dut.clk)
+            busy = self.to_device or self.beats or self.words or len(self.out) < len(expected)
+            quiet = 0 if busy or len(self.out) != before else quiet + 1
+            if quiet > QUIET_CLOCKS:
+                break
+        assert bytes(self.out).hex(" ") == expected.hex(" "), what
+        assert self.pixels == [tuple(word) for word in self.model.pixels], what
+        assert self.registers == self.model_registers, what
+        self.out.clear()
+        self.pixels.clear()
+        self.model.pixels.clear()
+
+    async def reset(self) -> bytes:
+        self.dut.rst.value = 1
+        for _ in range(3):
+            await RisingEdge(self.dut.clk)
+        self.dut.rst.value = 0
+        self.to_device.clear()
+        self.model.reset()
+        return self.answer()
+
+    def request(self) -> list[Byte]:
+        """Return the line's bytes of some packet other than ask and select."""
+        chance = self.chance
+        addresses = tuple(chance.choice((4, 8, 8, REFUSED, 1 << 15)) for _ in range(chance.choice((1, 2, 5))))
+        return list(
+            to_line(
+                chance.choice(
+                    [
+                        link.Read(chance.randrange(4), addresses).pack(),
+                        link.Write(
+                            chance.randrange(4), tuple((each, chance.getrandbits(32)) for each in addresses)
+                        ).pack(),
+                        bytes((0x22,)) + chance.randbytes(chance.choice((0, 300, 1100))),  # unknown kind
+                        bytes((link.Kind.WRITE, 1, *range(chance.randrange(8)))),
+                        bytes((link.Kind.READ, 1)) + bytes(2 * 129),
+                        bytes((link.Kind.SELECT, 4, 0)),
+                        bytes((link.Kind.PICTURE, 1, 2, 3, 4, 0, 0, 0, 0, 1, 2)),
+                    ]
+                )
+            )
+        )
+
+    def damaged(self, line: list[Byte]) -> list[Byte]:
+        """Return the bytes with one lost, doubled, flipped or broken, and a delimiter behind them."""
+        place = self.chance.randrange(1, len(line) - 1)
+        byte = line[place]
+        assert byte is not None
+        flipped: Byte = byte ^ self.chance.choice([bit for bit in (1, 16, 128) if byte != bit])
+        new: list[Byte] = self.chance.choice([[], [byte, byte], [flipped], [BROKEN]])
+        return [*line[:place], *new, *line[place + 1 :]]
+
+    def picture(self, number: int) -> list[list[Byte]]:
+        """Return the line's bytes of the packets of a picture."""
+        count = self.rows * self.columns
+        pixels = self.chance.randbytes(link.PIXEL_BYTES * count)
+        sizes = [self.chance.randint(1, min(link.MOST_PIXELS, count)) for _ in range(count)]
+        packets: list[list[Byte]] = []
+        first = 0
+        for size in sizes:
+            part = pixels[3 * first : 3 * (first + size)]
+            if part:
+                packets.append(list(to_line(link.Picture(number, *divmod(first, self.columns), part).pack())))
+            first += size
+        return packets
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(stalls=[0.0, 0.4])
+async def one_after_another(dut: Any, stalls: float) -> None:
+    """Compare each answer: requests, damaged ones, selections, frames in each format, resets."""
+    board = Board(dut, stalls)
+    await board.start()
+    chance = board.chance
+    await board.compare(board.answer(), "power-up")
+    for turn in range(8):
+        depth_format = DepthFormat(turn % 4)
+        select = link.Select(depth_format, chance.choice((0, 3, exact_shift(board.width), 16)))
+        await board.compare(board.send(list(to_line(select.pack()))), f"select {depth_format}")
+        await board.compare(board.frame(), f"frame of {select}")
+        expected = b"".join(board.send(board.request()) for _ in range(3))
+        await board.compare(expected, "requests")
+        expected = b"".join(board.send(board.damaged(board.request())) for _ in range(4))
+        await board.compare(expected, "damaged requests")
+        await board.compare(board.send(list(to_line(link.Ask().pack()))), "counts")
+        if turn % 3 == 2:
+            await board.compare(await board.reset(), "reset")
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(stalls=[0.0, 0.4])
+async def pictures(dut: Any, stalls: float) -> None:
+    """Compare pixels: whole pictures, such that lack a packet, begin again, or repeat a packet."""
+    board = Board(dut, stalls)
+    await board.start()
+    await board.compare(board.answer(), "power-up")
+    for number in range(4):
+        packets = board.picture(number)
+        lost = board.chance.randrange(len(packets))
+        again = board.chance.randrange(len(packets))
+        for some in (packets[:lost] + packets[lost + 1 :], packets, packets[: again + 1] + packets[again:]):
+            expected = b"".join(board.send(packet) for packet in some)
+            await board.compare(expected, f"picture {number}")
