@@ -50,7 +50,7 @@ module packet_store #(
   logic [PlaceWidth-1:0] place;  // of the byte that is read
   logic [11:0] next_place;
   logic fetch;
-  assign {out_length_mod3, out_length} = lengths[gone[0]];
+  assign {out_length_mod3, out_length} = gone[0] ? lengths[1] : lengths[0];
   assign next_place = 12'(place) + 12'd1;
   assign out_last = (next_place == 12'(Most)) | (next_place == 12'(out_length));
   assign takes = out_valid & out_ready;
@@ -65,7 +65,8 @@ module packet_store #(
 
   always_ff @(posedge clk) begin
     bad <= in_end & ~stores;
-    if (stores) lengths[stored[0]] <= {length_mod3, length};
+    if (stores && !stored[0]) lengths[0] <= {length_mod3, length};
+    if (stores && stored[0]) lengths[1] <= {length_mod3, length};
     if (in_valid) begin
       length <= length + 11'd1;
       length_mod3 <= length_mod3 == 2'd2 ? 2'd0 : length_mod3 + 2'd1;

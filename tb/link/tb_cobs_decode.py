@@ -6,7 +6,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.link.cobs_decode import CobsDecode, Decoded
+from tactile_depth.link.cobs_decode import LONGEST_PIECE, CobsDecode, Decoded
 from tactile_depth.link.framing import RUN, cobs_encode
 from tb.stream import drive, parameters
 
@@ -87,7 +87,7 @@ async def pieces(dut: Any, gap: float, resets: float) -> None:
     """Decode good and bad pieces in any order, the first of them before a delimiter."""
     (longest,) = parameters(dut, "Longest")
     chance = random.Random(cocotb.RANDOM_SEED)
-    kinds = [chance.choice(KINDS) for _ in range(60)]
+    kinds = [chance.choice(KINDS) for _ in range(60 if longest < LONGEST_PIECE else 20)]
     seen = await compare(dut, stimuli(longest, ["random", *kinds], gap, resets, chance), longest)
     assert {one.bad for one in seen if one.ends} == {False, True}, "the test is void"
 
@@ -97,7 +97,8 @@ async def lengths(dut: Any) -> None:
     """Decode pieces as long as a piece may be, and longer; one byte; a broken byte alone, and as one too many."""
     (longest,) = parameters(dut, "Longest")
     line = []
-    for length in (longest, longest + 1, longest, 1, longest + 2, 2 * longest + 3, longest):
+    powers = [1 << bit for bit in range(longest.bit_length())]  # each bit of the length alone
+    for length in (*powers, longest, longest + 1, longest, 1, longest + 2, 2 * longest + 3, longest):
         line += [0, *[1] * length]
     line += [
         0,
@@ -129,4 +130,6 @@ async def lengths(dut: Any) -> None:
     calm = {"rst": 0, "in_valid": 0, "in_data": 0, "in_broken": 0}
     seen = await compare(dut, [*pins, calm, calm], longest)
     ends = [not one.bad for one in seen if one.ends]
+    assert ends[: len(powers)] == [True] * len(powers)
+    ends = ends[len(powers) :]
     assert ends == [True, False, True, True, False, False, True, False, True, *[False] * 3, True, False, True], ends

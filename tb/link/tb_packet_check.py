@@ -11,6 +11,8 @@ from tactile_depth.link.framing import CRC_BYTES
 from tactile_depth.link.packet_check import Checked, PacketCheck
 from tb.stream import drive
 
+POLYNOMIAL = 0xEDB88320
+
 
 def packet(chance: random.Random) -> bytes:
     """Return a packet that is good, has a bit changed, a byte lost or swapped, or is short."""
@@ -29,16 +31,31 @@ def packet(chance: random.Random) -> bytes:
     return bytes(whole)
 
 
-def stimuli(gap: float, resets: float, chance: random.Random) -> list[dict[str, int]]:
-    """Return the pins for packets, some of them bad."""
+def changed(bit: int) -> int:
+    """Return the change of a CRC that changes one bit of the remainder behind it."""
+    remainder = 1 << bit
+    for _ in range(8 * CRC_BYTES):  # a step of the CRC, backwards
+        top = remainder >> 31
+        remainder = ((remainder ^ POLYNOMIAL * top) << 1 | top) & 0xFFFF_FFFF
+    return remainder
+
+
+def one_bit_wrong(bit: int, chance: random.Random) -> bytes:
+    """Return a packet with one wrong bit in its remainder."""
+    body = chance.randbytes(3)
+    return body + (zlib.crc32(body) ^ changed(bit)).to_bytes(CRC_BYTES, "little")
+
+
+def stimuli(packets: list[bytes], gap: float, resets: float, chance: random.Random) -> list[dict[str, int]]:
+    """Return the pins for packets; some of them come as bad."""
     clocks: list[dict[str, int]] = []
 
     def clock(**pins: int) -> None:
         idle = {"in_valid": 0, "in_data": chance.randint(0, 255), "in_end": 0, "in_bad": chance.randint(0, 1)}
         clocks.append({"rst": int(chance.random() < resets), **idle, **pins})
 
-    for _ in range(120):
-        for byte in packet(chance):
+    for whole in packets:
+        for byte in whole:
             while chance.random() < gap:
                 clock()
             clock(in_valid=1, in_data=byte)
@@ -49,14 +66,10 @@ def stimuli(gap: float, resets: float, chance: random.Random) -> list[dict[str, 
     return clocks
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(gap=[0.0, 0.4], resets=[0.0, 0.01])
-async def packets(dut: Any, gap: float, resets: float) -> None:
-    """Check packets that follow each other at once, or with gaps."""
-    inputs = stimuli(gap, resets, random.Random(cocotb.RANDOM_SEED))
+async def compare(dut: Any, inputs: list[dict[str, int]]) -> list[bool]:
+    """Drive the pins, compare the outputs with the model in each clock, and return which packets were good."""
     outputs = await drive(dut, inputs, ["out_valid", "out_data", "out_end", "out_good"])
-    model, expected = PacketCheck(), Checked()
-    seen = set()
+    model, expected, seen = PacketCheck(), Checked(), []
     for clock, pins in enumerate(inputs):
         valid, ends = int(outputs["out_valid"][clock]), int(outputs["out_end"][clock])
         got = Checked(
@@ -65,11 +78,28 @@ async def packets(dut: Any, gap: float, resets: float) -> None:
             bool(ends and int(outputs["out_good"][clock])),
         )
         assert got == expected, f"clock {clock}: {got}, expected {expected}"
-        seen |= {got.good} if got.ends else set()
+        seen += [got.good] if got.ends else []
         if pins["rst"]:
             model.reset()
             expected = Checked()
         else:
             byte = pins["in_data"] if pins["in_valid"] else None
             expected = model.clock(byte, bool(pins["in_end"]), bool(pins["in_bad"]))
-    assert seen == {False, True}, "the test is void"
+    return seen
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(gap=[0.0, 0.4], resets=[0.0, 0.01])
+async def packets(dut: Any, gap: float, resets: float) -> None:
+    """Check packets that follow each other at once, or with gaps."""
+    chance = random.Random(cocotb.RANDOM_SEED)
+    seen = await compare(dut, stimuli([packet(chance) for _ in range(60)], gap, resets, chance))
+    assert {*seen} == {False, True}, "the test is void"
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def remainders(dut: Any) -> None:
+    """Check packets whose remainder is wrong in one bit, in each."""
+    chance = random.Random(cocotb.RANDOM_SEED)
+    seen = await compare(dut, stimuli([one_bit_wrong(bit, chance) for bit in range(32)], 0.0, 0.0, chance))
+    assert not any(seen)

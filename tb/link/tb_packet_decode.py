@@ -8,19 +8,20 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
+from tactile_depth.link.framing import LONGEST_BODY
 from tactile_depth.link.packets import SELECT, TO_DEVICE, Ask, Kind, Picture, Read, Select, Write, unpack
 from tb.axis import profile
 from tb.cases import on_bench
 from tb.stream import CLOCK_NS
 
-LENGTHS = {  # of kind and fields: about the limits, and some between them
+LENGTHS = {  # of kind and fields: about the limits, and near each power of two
     Kind.ASK: (1, 2, 3),
     Kind.SELECT: (1, 2, 3, 4, 6),
-    Kind.READ: (1, 2, 3, 4, 5, 6, 7, 10, 257, 258, 259, 260),
-    Kind.WRITE: (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 770, 772, 773, 774, 775, 776),
-    Kind.PICTURE: (1, 2, 8, 9, 10, 11, 12, 13, 14, 15, 777, 778, 779, 780),
+    Kind.READ: (1, 2, 3, 4, 5, 6, 7, 10, 18, 34, 66, 130, 257, 258, 259, 260),
+    Kind.WRITE: (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 20, 32, 68, 134, 260, 518, 770, 772, 773, 774, 775, 776),
+    Kind.PICTURE: (1, 2, 8, 9, 10, 11, 12, 13, 14, 15, 18, 33, 66, 129, 258, 513, 777, 778, 779, 780),
 }
-OTHERS = (0x00, 0x06, 0x07, 0x08, 0x0D, 0x11, 0x21, 0x42, *Kind, 0x85, 0xFF)
+OTHERS = tuple(kind for kind in range(256) if kind not in TO_DEVICE)
 SOURCE = ("in_valid", "in_data", "in_last", "in_length", "in_length_mod3")
 Event = tuple[Any, ...]
 
@@ -149,11 +150,22 @@ def body(kind: int, length: int, chance: random.Random) -> bytes:
 async def lengths(bench: Bench) -> None:
     """Give packets of every kind, with lengths about the limits, in any order."""
     packets = [body(kind, length, bench.random) for kind, some in LENGTHS.items() for length in some]
-    packets += [body(kind, length, bench.random) for kind in OTHERS for length in (1, 2, 3, 5, 10)]
+    packets += [body(kind, bench.random.choice([1, 3, 8, 10, 12]), bench.random) for kind in OTHERS]
     bench.random.shuffle(packets)
     for packet in packets:
         await bench.send(packet)
     assert bench.seen == {"ask", "select", "request", "picture", "bad", "unknown"}, "the test is void"
+
+
+@on_bench(Bench, offers="none", accepts="none", resets=0.0)
+async def wrong_lengths(bench: Bench) -> None:
+    """Give packets of each kind with every length that it cannot have."""
+    for kind in TO_DEVICE:
+        for length in range(1, LONGEST_BODY + 1):
+            packet = body(kind, length, bench.random)
+            if expected(packet) == ("bad", False):
+                await bench.send(packet)
+    assert bench.seen == {"bad"}
 
 
 @on_bench(Bench, offers="none", accepts="none", resets=0.0)

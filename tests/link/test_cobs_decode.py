@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from formal.entries import Proof
 from tactile_depth.link.cobs_decode import LONGEST_PIECE, CobsDecode
 from tactile_depth.link.framing import RUN, cobs_decode, cobs_encode
-from tb.structures import BOTH, ICARUS, VERILATOR, of_parameters
+from tb.structures import BOTH, ICARUS, QUICK_FIRST, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 
 built = of_parameters("Longest")
@@ -16,6 +16,7 @@ STRUCTURES = (
     built(300, on=BOTH, mutants=True),
     built(2, on=ICARUS),
 )
+MUTANTS = Mutants(simulators=QUICK_FIRST)
 REFUSED = {"Longest=0": "Longest_must_be_at_least_1"}
 PROOFS = (
     Proof(

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from formal.entries import Proof
 from tactile_depth.link.packet_store import PacketStore
-from tb.structures import ICARUS, VERILATOR, of_parameters
+from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 
 built = of_parameters("BankBytes")
@@ -15,6 +15,7 @@ STRUCTURES = (
     built(8, on=ICARUS, mutants=True),
     built(4),
 )
+MUTANTS = Mutants(simulators=QUICK_FIRST)
 REFUSED = {f"BankBytes={size}": "BankBytes_must_be_a_power_of_two_from_4_to_1024" for size in (2, 12, 2048)}
 PROOFS = (
     Proof(
