@@ -2,7 +2,7 @@
 """depth_store: RTL against what was written, with the model of the banks."""
 
 from formal.entries import WORD_FREE, Proof
-from tb.structures import ICARUS, VERILATOR, of_parameters
+from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 
 built = of_parameters("Rows Columns DataWidth Lanes")
@@ -13,6 +13,7 @@ STRUCTURES = (
     built(6, 16, 20, 4),
     built(2, 2, 8, 1),
 )
+MUTANTS = Mutants(repeats=4)
 REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
     "Lanes=3": "Lanes_must_divide_Columns",

@@ -2,7 +2,7 @@
 """depth_value: RTL against the functions of the depth formats."""
 
 from formal.entries import Proof
-from tb.structures import ICARUS, VERILATOR, of_parameters
+from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 
 built = of_parameters("DataWidth")
@@ -13,6 +13,7 @@ STRUCTURES = (
     built(16),
     built(2),
 )
+MUTANTS = Mutants(repeats=4)
 REFUSED = {"DataWidth=1": "DataWidth_must_be_at_least_2"}
 PROOFS = (
     Proof(
