@@ -132,6 +132,27 @@ async def each_bit_of_a_header_counts(bench: Bench) -> None:
 
 
 @on_bench(Bench, milliseconds=0.6)
+async def a_byte_counts_while_it_is_valid(bench: Bench) -> None:
+    """Send a picture with other bytes on the pins between its bytes, which do not count."""
+    dut, edge = bench.dut, RisingEdge(bench.dut.clk)
+    for number in range(8):
+        for packet in bench.picture(number << 4 * number, 3):
+            bench.device.receive(to_line(packet.pack()))
+            body = packet.pack()[1:]
+            for place, byte in enumerate(body):
+                dut.picture_data.value = bench.random.getrandbits(8)
+                dut.picture_last.value = bench.random.getrandbits(1)
+                await edge
+                dut.picture_data.value, dut.picture_last.value = byte, int(place == len(body) - 1)
+                dut.picture_valid.value = 1
+                await edge
+                while not dut.picture_ready.value:
+                    await edge
+                dut.picture_valid.value = 0
+    await bench.check()
+
+
+@on_bench(Bench, milliseconds=0.6)
 async def what_is_behind_the_end_is_dropped(bench: Bench) -> None:
     """Send pixels behind the end, in the packet of the last pixel and in packets that would go on there."""
     step = max(1, bench.size // 8)
