@@ -133,14 +133,16 @@ async def each_bit_of_a_header_counts(bench: Bench) -> None:
 
 @on_bench(Bench, milliseconds=0.6)
 async def a_byte_counts_while_it_is_valid(bench: Bench) -> None:
-    """Send a picture with other bytes on the pins between its bytes, which do not count."""
+    """Send pictures with other bytes on the pins between theirs, and what would go on if those had begun a picture."""
     dut, edge = bench.dut, RisingEdge(bench.dut.clk)
     for number in range(8):
-        for packet in bench.picture(number << 4 * number, 3):
+        other = bench.packet(number << 4 * number, 0, 2)
+        behind = [replace(other, column=256), replace(other, row=bench.rows)]
+        for packet in [*bench.picture(number << 4 * number, 3), *behind]:
             bench.device.receive(to_line(packet.pack()))
             body = packet.pack()[1:]
             for place, byte in enumerate(body):
-                dut.picture_data.value = bench.random.getrandbits(8)
+                dut.picture_data.value = bench.random.choice([0, bench.random.getrandbits(8)])
                 dut.picture_last.value = bench.random.getrandbits(1)
                 await edge
                 dut.picture_data.value, dut.picture_last.value = byte, int(place == len(body) - 1)

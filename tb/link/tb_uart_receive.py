@@ -30,8 +30,8 @@ def line_of(data: Any, clocks_a_bit: Any, gaps: Any) -> Any:
     return levels
 
 
-async def play(dut: Any, levels: Any) -> Any:
-    """Drive the pin with levels, the first of them in a reset; return the bytes received."""
+async def play(dut: Any, levels: Any, resets: Any = ()) -> Any:
+    """Drive the pin with levels, the first of them in a reset, and those of `resets`; return the bytes received."""
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     edge = RisingEdge(dut.clk)
     received: list[Any] = []
@@ -40,8 +40,8 @@ async def play(dut: Any, levels: Any) -> Any:
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     await ClockCycles(dut.clk, 8)
     dut.rst.value = 0
-    for level in [*levels, *[levels[-1]] * 12 * divider]:
-        dut.line.value = level
+    for clock, level in enumerate([*levels, *[levels[-1]] * 12 * divider]):
+        dut.line.value, dut.rst.value = level, int(clock in resets)
         await edge
         assert not (dut.out_valid.value and dut.broken.value)
         if dut.broken.value:
@@ -78,3 +78,20 @@ async def noise(dut: Any, longest: Any) -> None:
     expected = receive(levels, divider)
     assert longest == 1 or None in expected
     assert await play(dut, levels) == expected
+
+
+@cocotb.test(timeout_time=0.5, timeout_unit="ms")
+@cocotb.parametrize(rate=[0.1, 0.01])
+async def resets(dut: Any, rate: float) -> None:
+    """Reset in any clock of bytes and breaks: nothing of them is left, and bytes come once the line is high."""
+    (divider,) = parameters(dut, "Divider")
+    rng = random.Random(cocotb.RANDOM_SEED)
+    levels = line_of(rng.sample(range(256), BYTES), divider, iter(lambda: rng.randint(0, 2 * divider), None))
+    for _ in range(BYTES // 2):  # breaks
+        first = rng.randrange(len(levels))
+        levels[first : first + 12 * divider] = [0] * 12 * divider
+    levels += [1] * 12 * divider
+    clocks = [clock for clock in range(3, len(levels)) if rng.random() < rate * 4 / divider]
+    starts, ends = [0, *(clock - 2 for clock in clocks)], [*(clock - 3 for clock in clocks), len(levels)]
+    expected = [byte for start, end in zip(starts, ends, strict=True) for byte in receive(levels[start:end], divider)]
+    assert await play(dut, levels, set(clocks)) == expected
