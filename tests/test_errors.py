@@ -22,7 +22,8 @@ from tests.drawn_light import no_contact
 GRID = Argument("grid", (24, 32))
 PYTHON = {  # arguments that neither a variable of make nor an option of the command gives
     *("background", "ball_radius_px", "bits_per_channel", "black_level", "circle", "diameter_mm", "exposure_lines"),
-    *("flat_field", "gains", "gradient_limit", "name", "path", "pictures", "sensor", "zero", "zero_offset"),
+    *("flat_field", "frames", "gains", "gradient_limit", "name", "path", "pictures", "pipeline", "register"),
+    *("release_mm", "sensor", "stream", "zero", "zero_offset"),
 }
 
 
@@ -68,7 +69,8 @@ def test_a_warning_names_the_line_that_called_the_package() -> None:
 
 
 def test_the_command_names_its_options() -> None:
-    names = {"columns": "--grid {}x..", "rows": "--grid ..x{}", "folder": "--out {}", "solver": "solver={}"}
+    names = {"columns": "--grid {}x..", "rows": "--grid ..x{}", "folder": "--out {}", "solver": "--solver {}"}
+    names |= {"address": "device:{}", "zero_offset": "zero_offset={}"}
     for name, text in names.items():
         assert InputError(Argument(name, 33)).text(named) == text.format(33)
 
@@ -83,4 +85,4 @@ def test_front_ends_name_every_argument_of_an_error() -> None:
     assert set(VARIABLES.values()) <= {*ACCEPTED, *CAMERA, *calibrate.VARIABLES}
     (commands,) = (action for action in _parser()._actions if isinstance(action, argparse._SubParsersAction))
     options = {word for command in commands.choices.values() for word in command._option_string_actions}
-    assert {option.split()[0] for option in OPTIONS.values()} <= options
+    assert {option.split()[0] for option in OPTIONS.values() if option.startswith("--")} <= options
