@@ -139,8 +139,8 @@ class Play:
 @cocotb.parametrize(write_pause=[0.0, 0.6], read_pause=[0.0, 0.5, 0.95])
 async def frames(dut: Any, write_pause: float, read_pause: float) -> None:
     """Compare every value and word, which frame waits, and which is lost."""
-    sizes = parameters(dut, "Rows", "Columns", "DataWidth", "Lanes")
-    play = Play(*sizes, random.Random(cocotb.RANDOM_SEED))
+    rows, columns, width, lanes = parameters(dut, "Rows", "Columns", "DataWidth", "Lanes")
+    play = Play(rows, columns, width, lanes, random.Random(cocotb.RANDOM_SEED))
     play.run(300 * MANY + 20 * play.count, write_pause, read_pause)
     seen = await drive(dut, play.clocks, ["frame_valid", "skipped", "value_data", "record_data"])
     for clock, (valid, skipped) in enumerate(play.seen):

@@ -23,12 +23,12 @@ REFUSED = {
 }
 PROOFS = (
     Proof(
-        "each packet is its kind, number, position and Values values, or those that are left; then the trailer with the "
-        "CRC over all values; one bit of an arbitrary value and of an arbitrary word of the record is that of its place",
-        "counts and positions are one formula for every power of two of columns; values are proven of depth_value, the "
-        "CRC is one function of td_link_pkg",
+        "each packet is its kind, number, position and Values values, or those that are left; then the trailer with "
+        "the CRC over all values; an arbitrary value, and a bit of an arbitrary byte of the record, in their places",
+        "positions are one formula for every power of two of columns; rounding is proven of depth_value, and the CRC "
+        "is a function that the bench uses too",
         {"Rows": 3, "Columns": 2, "Values": 2},
-        depth=24,
+        depth=32,
         engine="smtbmc bitwuzla -- --noincr",
         steps=8,
     ),
