@@ -72,7 +72,7 @@ async def noise(dut: Any, longest: Any) -> None:
     (divider,) = parameters(dut, "Divider")
     rng = random.Random(cocotb.RANDOM_SEED)
     levels = [1] * 8
-    for level in range(LEVELS):
+    for level in range(LEVELS * 12 // longest):
         levels += [level % 2] * rng.randint(1, longest * divider)
     levels += [1] * 12 * divider
     expected = receive(levels, divider)
@@ -94,4 +94,17 @@ async def resets(dut: Any, rate: float) -> None:
     clocks = [clock for clock in range(3, len(levels)) if rng.random() < rate * 4 / divider]
     starts, ends = [0, *(clock - 2 for clock in clocks)], [*(clock - 3 for clock in clocks), len(levels)]
     expected = [byte for start, end in zip(starts, ends, strict=True) for byte in receive(levels[start:end], divider)]
+    assert await play(dut, levels, set(clocks)) == expected
+
+
+@cocotb.test(timeout_time=0.5, timeout_unit="ms")
+async def a_reset_in_each_part_of_a_byte(dut: Any) -> None:
+    """Reset in each clock of a byte, or in some where a bit has many: it does not come, the next one does."""
+    (divider,) = parameters(dut, "Divider")
+    levels, clocks, expected = [1] * 8, [], []
+    for offset in range(4, 9 * divider + divider // 2 + 4, max(1, divider // 6)):
+        clocks.append(len(levels) + offset)
+        levels += [level for level in transmit([0xFF]) for _ in range(divider)] + [1] * 4
+        levels += [level for level in transmit([offset % 256]) for _ in range(divider)] + [1] * divider
+        expected.append(offset % 256)
     assert await play(dut, levels, set(clocks)) == expected
