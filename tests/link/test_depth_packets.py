@@ -14,7 +14,7 @@ STRUCTURES = (
     built(2, 8, 32, 0, 16),
     built(6, 16, 8, 0, 32),
 )
-MUTANTS = Mutants(repeats=1)
+MUTANTS = Mutants(repeats=1, flat=False)
 REFUSED = {
     "Rows=1": "Rows_must_be_at_least_2",
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",

@@ -13,7 +13,7 @@ STRUCTURES = (
     built(6, 16, 20, 4),
     built(2, 2, 8, 1),
 )
-MUTANTS = Mutants(repeats=4)
+MUTANTS = Mutants(repeats=4, flat=False)
 REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
     "Lanes=3": "Lanes_must_divide_Columns",
