@@ -18,18 +18,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+import tactile_depth as td
 from commands.common.repository import ROOT
-from tactile_depth.built_in import synthetic
-from tactile_depth.configuration import Configuration
-from tactile_depth.depth.zero_offset import no_zero
-from tactile_depth.gradient.flat_field import unit_gains
-from tactile_depth.hardware_files import write_hardware
 from tactile_depth.link import packets as link
 from tactile_depth.link.depth_frames import DepthFrame, DepthFrames
 from tactile_depth.link.framing import to_line
-from tactile_depth.tactile_depth import tactile_depth
+from tactile_depth.reader import Reader
+from tests.device.test_rtl import small
 
-ROWS, COLUMNS = 16, 32
 PICTURES = 8  # different ones
 WAIT_S = 60.0
 
@@ -46,9 +42,15 @@ class Host:
     """
 
     def __init__(self, folder: Path, options: list[str], seed: int) -> None:
-        self.config = Configuration(columns=COLUMNS, rows=ROWS, bits_per_channel=2, solver="tridiagonal")
-        self.sensor = synthetic(2)
-        write_hardware(folder, self.sensor, self.config, no_zero(self.config), unit_gains(self.config), {})
+        sample = td.sample("ball")
+        pipeline = small(sample)
+        pipeline.hardware(folder)
+        self.columns = pipeline.grid[1]
+        shares = np.linspace(0, 1, PICTURES)[:, None, None, None]
+        camera = list(np.rint((1 - shares) * sample.reference + shares * sample.image).astype(np.uint8))
+        self.codes = [pipeline(picture).codes for picture in camera]
+        reader = Reader(pipeline.sensor, pipeline.grid)
+        self.pictures = [frame for _, frame in reader.pictures(camera, "picture")[0]]
         command = [sys.executable, "-m", "commands.run.device_sim", str(folder), *options]
         self.process = subprocess.Popen(
             command, cwd=ROOT, bufsize=0, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
@@ -65,9 +67,6 @@ class Host:
         self.clean = link.PacketReader()  # of what the device sends, before the damage
         self.frames: list[DepthFrame] = []
         self.packets = self.statuses = 0
-        pixels = np.random.default_rng(seed).integers(0, 256, (PICTURES, ROWS, COLUMNS, 3), np.uint8)
-        self.pictures = list(pixels)
-        self.codes = [depth[::-1] for depth in tactile_depth(pixels, self.sensor, self.config)]
 
     def close(self) -> None:
         self.stdin.close()
@@ -98,7 +97,7 @@ class Host:
         places = range(0, len(data), size)
         self.send(
             *(
-                link.Picture(number, *divmod(first // link.PIXEL_BYTES, COLUMNS), data[first : first + size])
+                link.Picture(number, *divmod(first // link.PIXEL_BYTES, self.columns), data[first : first + size])
                 for first in places
             )
         )
@@ -156,7 +155,7 @@ def disturb(host: Host, packets: int) -> int:
         host.send_picture(number)
         if host.chance.random() < 0.3:
             host.send(link.Read(number % 256, (4, 8)), link.Write(number % 256, ((0, 0),)))
-        if number % 25 == 10:
+        if number % 25 == 5:
             host.reset()
             resets += 1
         before = len(host.frames) + host.host.lost
@@ -166,14 +165,22 @@ def disturb(host: Host, packets: int) -> int:
     return resets
 
 
-@pytest.fixture(params=[[], ["--pins"]], ids=["bytes", "pins"])
-def host(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Host]:
-    host = Host(tmp_path, request.param, seed=1)
+@pytest.fixture
+def host(options: list[str], tmp_path: Path) -> Iterator[Host]:
+    host = Host(tmp_path, options, seed=1)
     yield host
     host.close()
 
 
-@pytest.mark.parametrize("packets", [1000, pytest.param(10_000, marks=pytest.mark.regress)])
+@pytest.mark.parametrize(
+    ("options", "packets"),
+    [
+        pytest.param([], 1000, id="bytes-1000"),
+        pytest.param(["--pins"], 200, id="pins-200"),
+        pytest.param([], 10_000, id="bytes-10000", marks=pytest.mark.regress),
+        pytest.param(["--pins"], 1000, id="pins-1000", marks=pytest.mark.regress),
+    ],
+)
 def test_no_wrong_frame_and_each_loss_is_counted(host: Host, packets: int) -> None:
     resets = disturb(host, packets)
     status = host.status()

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Programs of users on the RTL of a device: the same on a line of bytes and at the pins, and as the package says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tactile_depth as td
+from tactile_depth.device.status import DeviceStatus
+from tests.real_data import FOLDER, needs_real_data
+
+GRID = (16, 32)
+PRESSES = 20
+
+
+def seen(frame: td.DeviceFrame | td.Result) -> tuple[bytes, object]:
+    """Return heights as float32, and the contact without number and time of the frame."""
+    return frame.height_mm.astype(np.float32).tobytes(), frame.contact.record[3:]
+
+
+def small(sample: td.Sample) -> td.Pipeline:
+    """Return the pipeline whose device the tests at the pins simulate: one build for all of them.
+
+    Without light gains, so that the depth of a picture does not depend on those before it.
+    """
+    return td.Pipeline(sample.sensor, sample.reference, grid=GRID, light_gains=False)
+
+
+def program(address: str, sample: td.Sample, pictures: list[np.ndarray]) -> list[object]:
+    """Return all that a program reads of a device: heights, contacts, registers, status."""
+    pipeline = small(sample)
+    read: list[object] = []
+    untouched = (0.95 * sample.reference.astype(float)).astype(np.uint8)
+    with td.Device(address, pipeline) as device:
+        device.load()
+        read += [seen(frame) for frame in device.depth(pictures)]
+        device.capture_reference(untouched)
+        device.capture_zero([untouched, untouched])
+        device.set_thresholds(touch_mm=0.2, area_mm=0.4)
+        read += [(seen(frame), frame.number) for frame in device.depth(pictures)]
+        read += [device.registers[name] for name in ("THRESHOLD", "FRAMES_OUT", "DARK_LEVEL")]
+        with pytest.raises(td.InputError):
+            device.registers["FRAMES_OUT"] = 1
+        read += [device.status()]
+    return read
+
+
+def test_a_program_reads_the_same_on_bytes_and_at_the_pins() -> None:
+    sample = td.sample("ball")
+    pictures = [sample.image, sample.reference, sample.image]
+    on_bytes = program("sim", sample, pictures)
+    at_pins = program("sim:pins", sample, pictures)
+    status, status_at_pins = on_bytes.pop(), at_pins.pop()
+    assert on_bytes == at_pins
+    assert isinstance(status, DeviceStatus)
+    assert isinstance(status_at_pins, DeviceStatus)
+    assert status_at_pins._replace(resets=status.resets) == status
+    for read, result in zip(on_bytes[: len(pictures)], small(sample).stream(pictures), strict=True):
+        assert read == seen(result)
+
+
+@needs_real_data
+def test_real_presses() -> None:
+    """Load, capture reference and zero offset, send presses of a real sensor: each frame is that of the package."""
+    folder = FOLDER / "gelslam"
+    background = folder / "background.png"
+    balls = [sorted(map(str, folder.glob(f"{ball}mm/*.png")))[: PRESSES // 2] for ball in ("6.310", "9.500")]
+    presses = [*balls[0], *balls[1]]
+    pipeline = td.Pipeline(td.load("gelsight-mini"), background)
+    captured = td.Pipeline(td.load("gelsight-mini"), background)
+    captured.capture_reference(background)
+    captured.capture_zero(background)
+    with td.Device("sim", pipeline) as device:
+        device.load()
+        device.capture_reference(background)
+        device.capture_zero(background)
+        frames = list(device.depth(presses))
+    assert [frame.lost for frame in frames] == [0] * PRESSES
+    for frame, result in zip(frames, captured.stream(presses), strict=True):
+        assert seen(frame) == seen(result)
