@@ -93,18 +93,37 @@ class Check:
         model.clock(byte, *(bool(pins[pin]) for pin in ("in_end", "in_good", "out_ready", "out_drop")))
 
 
-@cocotb.test(timeout_time=40, timeout_unit="ms")
-@cocotb.parametrize(accepts=["none", "random", "rarely", "bursts"], gap=[0.0, 0.5], resets=[0.0, 0.003])
-async def packets(dut: Any, accepts: str, gap: float, resets: float) -> None:
-    """Store packets, whether there is room or not, and read all of each, or a part."""
-    (bank,) = parameters(dut, "BankBytes")
-    inputs = stimuli(bank, accepts, gap, resets, random.Random(cocotb.RANDOM_SEED))
+async def compare(dut: Any, bank: int, inputs: list[dict[str, int]]) -> Check:
+    """Drive the pins and compare the outputs with the model in each clock."""
     pins = ["in_ready", "bad", "out_valid", "out_data", "out_last", "out_length", "out_length_mod3"]
     check = Check(bank, await drive(dut, inputs, pins))
     for clock, at_pins in enumerate(inputs):
         check.compare(clock)
         check.advance(at_pins)
     assert check.bytes_taken, "the test is void: no byte left"
+    return check
+
+
+@cocotb.test(timeout_time=40, timeout_unit="ms")
+@cocotb.parametrize(accepts=["none", "random", "rarely", "bursts"], gap=[0.0, 0.5], resets=[0.0, 0.003])
+async def packets(dut: Any, accepts: str, gap: float, resets: float) -> None:
+    """Store packets, whether there is room or not, and read all of each, or a part."""
+    (bank,) = parameters(dut, "BankBytes")
+    inputs = stimuli(bank, accepts, gap, resets, random.Random(cocotb.RANDOM_SEED))
+    check = await compare(dut, bank, inputs)
     assert bank > 100 or check.seen >= {"drop", *(["full"] if accepts == "rarely" else ["last"])}, (
         f"the test is void: {check.seen}"
     )
+
+
+@cocotb.test(timeout_time=40, timeout_unit="ms")
+async def lengths(dut: Any) -> None:
+    """Store packets whose length is a power of two, one in each bank, and the longest."""
+    (bank,) = parameters(dut, "BankBytes")
+    chance = random.Random(cocotb.RANDOM_SEED)
+    calm = {"rst": 0, "in_valid": 0, "in_data": 0, "in_end": 0, "in_good": 0, "out_ready": 1, "out_drop": 0}
+    inputs = []
+    for length in (1, 1, 2, 2, 4, 4, 8, 8, 16, 16, 32, 32, 64, 64, 128, 128, 256, 256, 512, 512, 1024, 1024, 2047):
+        inputs += [calm | {"in_valid": 1, "in_data": chance.randint(0, 255)} for _ in range(length)]
+        inputs += [calm | {"in_end": 1, "in_good": 1}, *[calm] * 4, *[calm | {"out_drop": 1}] * 4]
+    await compare(dut, bank, inputs)
