@@ -192,7 +192,8 @@ def combined(outcomes: Mapping[str, Outcome]) -> str:
 
 def reasons() -> dict[str, str]:
     """Return the cores without a proof of their own, each with the reason."""
-    of_units = dict.fromkeys(units(), "proven cores in a row; what it adds, the testbench of tactile_depth checks")
+    adds = "proven cores in a row; what it adds, the testbench of {} checks"
+    of_units = {unit: adds.format(*tested([unit])) for unit in units()}
     noted = {core: stated(core, "NO_PROOF") for core in cores()}
     return of_units | {core: why for core, why in noted.items() if why}
 
