@@ -46,8 +46,8 @@ def one_bit_wrong(bit: int, chance: random.Random) -> bytes:
     return body + (zlib.crc32(body) ^ changed(bit)).to_bytes(CRC_BYTES, "little")
 
 
-def stimuli(packets: list[bytes], gap: float, resets: float, chance: random.Random) -> list[dict[str, int]]:
-    """Return the pins for packets; some of them come as bad."""
+def stimuli(packets: list[bytes], gap: float, resets: float, bad: float, chance: random.Random) -> list[dict[str, int]]:
+    """Return the pins for packets; so many of them come as bad."""
     clocks: list[dict[str, int]] = []
 
     def clock(**pins: int) -> None:
@@ -61,7 +61,7 @@ def stimuli(packets: list[bytes], gap: float, resets: float, chance: random.Rand
             clock(in_valid=1, in_data=byte)
         while chance.random() < gap:
             clock()
-        clock(in_end=1, in_bad=int(chance.random() < 0.15))
+        clock(in_end=1, in_bad=int(chance.random() < bad))
     clock()
     return clocks
 
@@ -93,7 +93,7 @@ async def compare(dut: Any, inputs: list[dict[str, int]]) -> list[bool]:
 async def packets(dut: Any, gap: float, resets: float) -> None:
     """Check packets that follow each other at once, or with gaps."""
     chance = random.Random(cocotb.RANDOM_SEED)
-    seen = await compare(dut, stimuli([packet(chance) for _ in range(60)], gap, resets, chance))
+    seen = await compare(dut, stimuli([packet(chance) for _ in range(60)], gap, resets, 0.15, chance))
     assert {*seen} == {False, True}, "the test is void"
 
 
@@ -101,5 +101,5 @@ async def packets(dut: Any, gap: float, resets: float) -> None:
 async def remainders(dut: Any) -> None:
     """Check packets whose remainder is wrong in one bit, in each."""
     chance = random.Random(cocotb.RANDOM_SEED)
-    seen = await compare(dut, stimuli([one_bit_wrong(bit, chance) for bit in range(32)], 0.0, 0.0, chance))
+    seen = await compare(dut, stimuli([one_bit_wrong(bit, chance) for bit in range(32)], 0.0, 0.0, 0.0, chance))
     assert not any(seen)
