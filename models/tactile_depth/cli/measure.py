@@ -10,11 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_depth.built_in import synthetic
-from tactile_depth.device.addresses import SIM, open_transport
+from tactile_depth.device.addresses import SIM, open_channel
 from tactile_depth.device.device import Device
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.frame import DeviceFrame
-from tactile_depth.device.line import Line
 from tactile_depth.errors import InputError, InputWarning
 from tactile_depth.frames import read_picture
 from tactile_depth.pipeline import Pipeline
@@ -56,9 +55,9 @@ def grid_of(address: str) -> tuple[int, int] | None:
     """
     if address.partition(":")[0] == SIM:
         return None
-    line = Line(open_transport(address, Pipeline(synthetic())))
-    line.close()
-    return line.status.rows, line.status.columns
+    channel = open_channel(address, Pipeline(synthetic()))
+    channel.close()
+    return channel.status.rows, channel.status.columns
 
 
 def measure(address: str, pipeline: Pipeline, presses: GridPresses, pictures: PressPictures) -> None:

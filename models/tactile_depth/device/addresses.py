@@ -8,12 +8,14 @@ from tactile_depth.device.line import Line
 from tactile_depth.device.serial_line import SerialLine, port_of
 from tactile_depth.device.simulator import Simulator
 from tactile_depth.device.transport import Transport
+from tactile_depth.device.uio import DEFAULT, Uio
 from tactile_depth.errors import Argument, InputError
 from tactile_depth.pipeline import Pipeline
 
 BAUD = 3_000_000
-SERIAL, SIM, PINS = "serial", "sim", "pins"
-ACCEPTED = ("serial:PATH", "serial:PATH@BAUD", "serial:USB-SERIAL-NUMBER", "sim", "sim:pins")
+SERIAL, SIM, PINS, UIO = "serial", "sim", "pins", "uio"
+UIO_FILES = f"{UIO}:REGISTERS,VDMA,BUFFER"
+ACCEPTED = ("serial:PATH", "serial:PATH@BAUD", "serial:USB-SERIAL-NUMBER", "sim", "sim:pins", "uio", UIO_FILES)
 
 
 def open_channel(address: str, pipeline: Pipeline) -> Channel:
@@ -26,6 +28,9 @@ def open_channel(address: str, pipeline: Pipeline) -> Channel:
     DeviceError
         The line cannot be opened, or the device does not answer.
     """
+    kind, colon, files = address.partition(":") if isinstance(address, str) else ("", "", "")
+    if kind == UIO:
+        return Uio(*(_files(files, Argument("address", address)) if colon else DEFAULT))
     return Line(open_transport(address, pipeline))
 
 
@@ -41,6 +46,14 @@ def open_transport(address: str, pipeline: Pipeline) -> Transport:
     if kind == SIM and place in ("", PINS):
         return Simulator(pipeline, place == PINS)
     raise InputError(named, " is no address of a device", accepted=ACCEPTED)
+
+
+def _files(files: str, named: Argument) -> tuple[str, str, str]:
+    """Return the files of registers, VDMA and buffer."""
+    registers, vdma, buffer, *more = [*files.split(","), "", "", ""]
+    if not (registers and vdma and buffer) or any(more):
+        raise InputError(named, " does not name three files", accepted=[UIO, f"{UIO}:{','.join(DEFAULT)}"])
+    return registers, vdma, buffer
 
 
 def _split(place: str, named: Argument) -> tuple[str, int]:

@@ -54,6 +54,10 @@ class Channel(Protocol):
         """Depth frames that did not come whole or were not taken in time, and pictures without depth."""
 
     @property
+    def quiet_s(self) -> float:
+        """Time in which a camera of the device gives a picture, as a rule; then one is sent."""
+
+    @property
     def depth_s(self) -> float:
         """Time in which the depth of a picture that was sent comes, as a rule."""
 

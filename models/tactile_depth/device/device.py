@@ -44,7 +44,7 @@ THRESHOLDS = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD")
 
 
 class Device(AbstractContextManager["Device"]):
-    """Device with the pipeline, on a serial line or in a simulator. Several may be open at once.
+    """Device with the pipeline, on a serial line, in a simulator or in a Zynq. Several may be open at once.
 
     After a DeviceError the next call works if its cause is gone. A device that was unplugged is opened anew. After a
     reset of the device, or a loss of its power, call `load` again: its settings are those of power-up.
@@ -54,7 +54,8 @@ class Device(AbstractContextManager["Device"]):
     address : str
         `serial:PATH`, `serial:PATH@BAUD` (3000000 by default) or `serial:NUMBER`, the USB serial number; a bare
         `/dev/ttyUSB0` is a path. `sim` simulates the device of the pipeline's configuration, from a clone of the
-        repository, and `sim:pins` with the pins of its serial line.
+        repository, and `sim:pins` with the pins of its serial line. `uio:REGISTERS,VDMA,BUFFER` names the files of a
+        Zynq whose camera gives the pictures; a bare `uio` is `uio:/dev/uio0,/dev/uio1,/dev/udmabuf0`.
     pipeline : Pipeline
         Pipeline with the arithmetic of the hardware. Its configuration is that of the device; it gives calibration,
         reference, zero offset, thresholds and units.

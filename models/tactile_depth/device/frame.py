@@ -29,7 +29,8 @@ class DeviceFrame(ByValue):
     record : Record
         Contact record that the device made, with the frame's number and time in the pipeline.
     number : int
-        Number of the frame on the link, from 1 at power-up, modulo 2^32. A frame that is lost has a number too.
+        Number of the frame on the link, from 1 at power-up, modulo 2^32; over `uio` that of its record, from 1 at a
+        reset. A frame that is lost has a number too.
     time_s : float
         Time at which the last bytes of the frame came, in seconds since the epoch, as `time.time` gives it.
     lost : int

@@ -39,6 +39,7 @@ from tactile_depth.link.rates import rate
 
 KEPT = 8  # frames that wait for the program; the oldest is dropped and counted
 READ_S = 0.1
+QUIET_S = 0.2
 REQUESTS = 256  # numbers of requests
 Found = TypeVar("Found")
 Reply = TypeVar("Reply", ReadReply, WriteReply)
@@ -59,6 +60,8 @@ class Line:
     ----------
     broken : bool
         The transport is gone: the line must be opened anew.
+    quiet_s : float
+        A camera that gives no picture in this time is not waited for: one is sent.
 
     Raises
     ------
@@ -67,6 +70,8 @@ class Line:
     DeviceError
         It does not answer.
     """
+
+    quiet_s = QUIET_S
 
     def __init__(self, transport: Transport) -> None:
         self.broken = False

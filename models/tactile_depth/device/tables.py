@@ -21,7 +21,6 @@ from tactile_depth.tactile_depth import top_parameters
 
 DESCRIPTION = ("GRID", "FORMAT", "DEVICE", "DEPTH_UNIT", "SLOPE_UNIT")
 BUSY = tuple(capture.name for capture in CAPTURES.values())
-QUIET_S = 0.2  # a camera that gives no picture in this time is not waited for
 REMEDY = "make the pipeline with the configuration of the device, or build the device for the pipeline"
 
 
@@ -107,7 +106,7 @@ def wait_in_use(line: Channel, give_picture: Callable[[], None], also_captures: 
 
     Raises DeviceError if they stay pending.
     """
-    quiet_ends, pictures = time.monotonic() + QUIET_S, 0
+    quiet_ends, pictures = time.monotonic() + line.quiet_s, 0
     most = 2 + (1 << 8) * also_captures  # pictures of a capture, one that takes its table, and one that was malformed
     ends = time.monotonic() + line.limit_s
     while pending := _pending(line, also_captures):
