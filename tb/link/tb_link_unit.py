@@ -23,6 +23,7 @@ from tb.stream import CLOCK_NS, parameters
 
 QUIET_CLOCKS = 3000  # without a byte: more than a packet of depth takes until its first one
 LONGEST_CLOCKS = 60_000
+CLOCKS_A_BYTE = 4  # of a frame in words, to a line that takes a byte in each clock (docs/link.md)
 BROKEN = None  # a byte that could not be received
 REFUSED = 0x40  # address
 Byte = int | None
@@ -45,6 +46,9 @@ class Board:
         self.beats: deque[tuple[int, int, int]] = deque()
         self.words: deque[tuple[int, int]] = deque()
         self.out: list[int] = []
+        self.clock = 0
+        self.out_clocks: list[int] = []  # of each byte
+        self.duration = 0  # clocks from the first byte to the last of what was compared last
         self.pixels: list[tuple[int, int, int]] = []
         self.reads: deque[int] = deque()
         self.writes: deque[int] = deque()
@@ -82,6 +86,7 @@ class Board:
         edge = RisingEdge(self.dut.clk)
         while True:
             await edge
+            self.clock += 1
             self.line()
             self.pipeline()
             self.bus()
@@ -102,6 +107,7 @@ class Board:
             dut.in_data.value = byte or 0
         if dut.out_valid.value and dut.out_ready.value:
             self.out.append(int(dut.out_data.value))
+            self.out_clocks.append(self.clock)
         dut.out_ready.value = self.goes()
         if dut.m_axis_tvalid.value and dut.m_axis_tready.value:
             self.pixels.append((int(dut.m_axis_tdata.value), int(dut.m_axis_tlast.value), int(dut.m_axis_tuser.value)))
@@ -184,7 +190,9 @@ class Board:
         assert bytes(self.out).hex(" ") == expected.hex(" "), what
         assert self.pixels == [tuple(word) for word in self.model.pixels], what
         assert self.registers == self.model_registers, what
+        self.duration = self.out_clocks[-1] - self.out_clocks[0] if self.out else 0
         self.out.clear()
+        self.out_clocks.clear()
         self.pixels.clear()
         self.model.pixels.clear()
 
@@ -255,7 +263,10 @@ async def one_after_another(dut: Any, stalls: float) -> None:
         depth_format = DepthFormat(turn % 4)
         select = link.Select(depth_format, chance.choice((0, 3, exact_shift(board.width), 16)))
         await board.compare(board.send(list(to_line(select.pack()))), f"select {depth_format}")
-        await board.compare(board.frame(), f"frame of {select}")
+        expected = board.frame()
+        await board.compare(expected, f"frame of {select}")
+        if not stalls and depth_format == DepthFormat.WORDS:
+            assert board.duration <= CLOCKS_A_BYTE * len(expected)
         expected = b"".join(board.send(board.request()) for _ in range(3))
         await board.compare(expected, "requests")
         expected = b"".join(board.send(board.damaged(board.request())) for _ in range(4))
