@@ -90,6 +90,13 @@ def frames_of(channel: Uio, zynq: Zynq, scenes: np.ndarray) -> list[int]:
     return numbers
 
 
+def noisy(untouched: np.ndarray) -> np.ndarray:
+    """Return twelve untouched pictures that differ: their depth has no contact, so their records do not tell them."""
+    noise = np.random.default_rng(3)
+    pictures = [np.clip(untouched + noise.integers(-3, 4, untouched.shape), 0, 255) for _ in range(12)]
+    return np.stack(pictures).astype(np.uint8)
+
+
 def require_made(frame: Any, zynq: Zynq) -> None:
     """Require that a frame is the one that the model made under its number."""
     codes, record = zynq.made[frame.record.frame]
@@ -230,6 +237,15 @@ def test_a_frame_that_comes_while_the_first_is_looked_for(
     assert frames_of(channel, zynq, scenes) == [4, 5, 6, 7]
 
 
+def test_frames_that_came_before_the_first_was_looked_for(channel: Uio, zynq: Zynq, scenes: np.ndarray) -> None:
+    pictures = noisy(scenes[1])
+    for picture in pictures[:2]:
+        zynq.show(picture)
+    assert channel.frame(0, channel.lost) is None
+    assert frames_of(channel, zynq, pictures[2:]) == list(range(3, 13))
+    assert channel.lost == 0, "the stream begins with the first that is found"
+
+
 def test_frames_that_come_too_fast(
     channel: Uio, zynq: Zynq, scenes: np.ndarray, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -258,9 +274,7 @@ def test_a_record_that_changes_while_it_is_read_is_not_delivered(
 
 def test_untouched_frames_that_come_in_pairs_have_their_own_depth(channel: Uio, zynq: Zynq, scenes: np.ndarray) -> None:
     """Without contact a record says nothing of the depth: the store is found by the number alone."""
-    noise = np.random.default_rng(3)
-    untouched = np.stack([np.clip(scenes[1] + noise.integers(-3, 4, scenes[1].shape), 0, 255) for _ in range(12)])
-    pictures = untouched.astype(np.uint8)
+    pictures = noisy(scenes[1])
     assert frames_of(channel, zynq, pictures[:1]) == [1]
     for first in range(1, 11, 2):
         zynq.show(pictures[first])
@@ -275,6 +289,22 @@ def test_an_error_of_the_vdma_starts_it_anew(error: str, channel: Uio, zynq: Zyn
     zynq.dma.fail(error)
     zynq.dma.store = 0
     assert frames_of(channel, zynq, scenes[:3]) == [4, 5]
+    assert (zynq.dma.starts, channel.lost) == (2, 1)
+
+
+def test_an_error_while_a_store_is_copied(
+    channel: Uio, zynq: Zynq, scenes: np.ndarray, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert frames_of(channel, zynq, scenes[:1]) == [1]
+    copy, errors = frame_stores.FrameStores.codes, ["VDMASlvErr"]
+
+    def failing(stores: frame_stores.FrameStores, store: int) -> np.ndarray:
+        while errors:
+            zynq.dma.fail(errors.pop())
+        return copy(stores, store)
+
+    monkeypatch.setattr(frame_stores.FrameStores, "codes", failing)
+    assert frames_of(channel, zynq, scenes[:3]) == [3, 4]
     assert (zynq.dma.starts, channel.lost) == (2, 1)
 
 
@@ -302,8 +332,8 @@ def test_a_vdma_that_was_stopped_is_started(channel: Uio, zynq: Zynq, scenes: np
 
 
 def test_depth_that_the_device_drops_shifts_no_store(channel: Uio, zynq: Zynq, scenes: np.ndarray) -> None:
-    zynq.dropped = {3}
-    assert frames_of(channel, zynq, np.concatenate([scenes, scenes])) == [1, 2, 4, 5, 6, 7, 8]
+    zynq.dropped = {6}
+    assert frames_of(channel, zynq, noisy(scenes[1])) == [1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12]
     assert channel.lost == 1
 
 
