@@ -13,12 +13,14 @@ import pytest
 
 import tactile_depth as td
 from commands.common.repository import ROOT
-from tactile_depth.device import simulator
+from tactile_depth.device import mapped_words, simulator, uio
 from tests.device.cable import Cable, setup_of
 from tests.device.model_device import Setup
+from tests.device.zynq import Played, Zynq
 
 GRID = (12, 16)
 Plug = Callable[..., Cable]
+BuildZynq = Callable[..., Zynq]
 
 
 @pytest.fixture(scope="session")
@@ -70,3 +72,29 @@ def simulate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Setup
         monkeypatch.setattr(simulator, "command_of", lambda folder, pins: (command, ROOT))
 
     return simulate
+
+
+@pytest.fixture
+def build_zynq(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[BuildZynq]:
+    """Return a function that builds a Zynq for a pipeline."""
+    built: list[Zynq] = []
+    monkeypatch.setattr(uio, "MappedWords", Played)
+    monkeypatch.setattr(uio, "POLL_S", 0.0002)
+
+    def build(pipeline: td.Pipeline, stores: int = 3) -> Zynq:
+        zynq = Zynq(tmp_path / f"zynq{len(built)}", setup_of(pipeline), stores)
+        monkeypatch.setattr(mapped_words, "SYSFS", zynq.folder / "class")
+        built.append(zynq)
+        return zynq
+
+    yield build
+    for zynq in built:
+        zynq.close()
+
+
+@pytest.fixture
+def zynq(build_zynq: BuildZynq, steady: td.Pipeline) -> Zynq:
+    """Zynq with the tables and the threshold of a pipeline."""
+    zynq = build_zynq(steady)
+    zynq.load(steady)
+    return zynq
