@@ -41,8 +41,8 @@ module ulx3s_camera_bench #(
   assign camera_sio_d = sio_d;
   ulx3s_camera #(
     .ClockMhz(ClockMhz), .Baud(Baud), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .Lanes(Lanes),
-    .BottomFirst(BottomFirst), .Entries(Entries), .AddressBytes(AddressBytes), .DeviceId(DeviceId), .QuarterClocks(QuarterClocks),
-    .MillisecondClocks(MillisecondClocks)
+    .BottomFirst(BottomFirst), .Entries(Entries), .AddressBytes(AddressBytes), .DeviceId(DeviceId),
+    .QuarterClocks(QuarterClocks), .MillisecondClocks(MillisecondClocks)
   ) u_board (
     .clk_25mhz, .ftdi_txd, .ftdi_rxd, .btn, .led, .wifi_gpio0, .camera_pclk, .camera_vsync, .camera_href, .camera_data,
     .camera_xclk, .camera_reset_n, .camera_power_down, .camera_sio_c, .camera_sio_d(sio_d)

@@ -104,6 +104,7 @@ module fv_packet_store #(
       if (stalled) stable: assert (out_valid && out_data == stalled_data && out_last == stalled_last);
       if (now && out_valid) as_it_came: assert (out_data == value);
       if (waiting != '0) within_it: assert (sent < kept);
+      if (dut.fetched) read_now: assert (waiting != '0 && !out_valid && (!now || dut.read_data == value));
       // What makes it inductive: the state of the core is that of the bench.
       as_counted: assert (bytes[11] || (dut.length == bytes[10:0] && dut.length_mod3 == 2'(bytes % 12'd3)));
       as_met: assert (dut.lost == met_full && 2'(dut.stored - dut.gone) == waiting && 12'(dut.place) == sent);
@@ -127,10 +128,16 @@ module fv_packet_store #(
     end
   end
 
-  // A byte is offered one clock after one waits, and none is: in the clock after the last one left there is none.
-  logic waited;
-  always_ff @(posedge clk) waited <= (waiting != '0) & ~out_valid & ~rst;
-  always_comb if (started && waited) at_once: assert (out_valid);
+  // A byte is offered two clocks after one waits, and none is: in the clocks after the last one left there is none.
+  logic waited, waited_more;
+  always_ff @(posedge clk) begin
+    waited <= (waiting != '0) & ~out_valid & ~rst;
+    waited_more <= waited & ~out_valid & ~rst;
+  end
+  always_comb begin
+    if (started && waited) read_at_once: assert (dut.fetched || out_valid);
+    if (started && waited_more) at_once: assert (out_valid);
+  end
 
   bind fv_packet_store.dut.u_bytes ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
 

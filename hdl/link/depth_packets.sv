@@ -67,7 +67,9 @@ module depth_packets
   logic [1:0] kept_format;
   logic [4:0] kept_shift;
   logic [31:0] number = '0;
-  logic [31:0] crc;
+  logic [31:0] crc;       // of the values up to the byte before the last: the trailer's header leaves before it does
+  logic counts;           // the byte `counted` is not in it yet
+  logic [7:0] counted;
   logic [PlaceWidth-1:0] place;  // of the next value
   logic means, leaves, part_ends, last_value, packet_full, stale;
   assign means = kept_format == Means;
@@ -143,8 +145,10 @@ module depth_packets
           Tail: sending <= 1'b0;
         endcase
       end
-      if (phase == Value) crc <= crc32_step(crc, depth_data);
     end
+    counts <= leaves & phase == Value;
+    counted <= depth_data;
+    if (counts) crc <= crc32_step(crc, counted);
     if (frame_take) begin
       sending <= 1'b1;
       phase <= Head;

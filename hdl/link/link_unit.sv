@@ -13,9 +13,7 @@
 
 `default_nettype none
 
-module link_unit
-  import td_link_pkg::*;
-#(
+module link_unit #(
   parameter int Rows         = 128,
   parameter int Columns      = 128,
   parameter int DataWidth    = 24,
@@ -108,9 +106,15 @@ module link_unit
     .request_write, .picture_valid, .picture_ready, .picture_data, .picture_last
   );
 
+  logic sliced_valid, sliced_ready, sliced_last;
+  logic [7:0] sliced_data;
+  td_axis_skid #(.Width(9)) u_picture_slice (
+    .clk, .rst, .s_valid(picture_valid), .s_ready(picture_ready), .s_data({picture_last, picture_data}),
+    .m_valid(sliced_valid), .m_ready(sliced_ready), .m_data({sliced_last, sliced_data})
+  );
   picture_pixels #(.Rows(Rows), .Columns(Columns)) u_pixels (
-    .clk, .rst, .picture_valid, .picture_ready, .picture_data, .picture_last, .m_axis_tdata, .m_axis_tvalid,
-    .m_axis_tready, .m_axis_tlast, .m_axis_tuser
+    .clk, .rst, .picture_valid(sliced_valid), .picture_ready(sliced_ready), .picture_data(sliced_data),
+    .picture_last(sliced_last), .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser
   );
 
   logic reply_valid, reply_ready, reply_last;
@@ -131,16 +135,18 @@ module link_unit
   logic [15:0] resets = '0;
   logic [31:0] skipped, bad_packets;
   logic was_reset = 1'b1;    // power-up is no reset
-  logic skips;
+  logic skips, skips_q;
   always_ff @(posedge clk) begin
     if (select) {format, shift} <= {select_format, select_shift};
-    skipped <= skipped + 32'(skips);
-    bad_packets <= bad_packets + 32'(store_bad) + 32'(decode_bad);
+    skipped <= skipped + 32'(skips_q);
+    skips_q <= skips;
+    bad_packets <= bad_packets + 32'({store_bad & decode_bad, store_bad ^ decode_bad});
     was_reset <= rst;
     if (rst && !was_reset) resets <= resets + 16'd1;
     if (rst) begin
       {format, shift} <= {2'd1, FirstShift};
       skipped <= '0;
+      skips_q <= 1'b0;
       bad_packets <= '0;
       if (cold_rst) resets <= '0;
     end
@@ -169,6 +175,12 @@ module link_unit
     .value_address, .value_data, .record_word, .record_data(frame_record_data), .depth_valid, .depth_ready,
     .depth_data, .depth_last, .sent, .sending
   );
+  logic depth_out_valid, depth_out_ready, depth_out_last;
+  logic [7:0] depth_out_data;
+  td_axis_skid #(.Width(9)) u_depth_slice (
+    .clk, .rst, .s_valid(depth_valid), .s_ready(depth_ready), .s_data({depth_last, depth_data}),
+    .m_valid(depth_out_valid), .m_ready(depth_out_ready), .m_data({depth_out_last, depth_out_data})
+  );
 
   logic record_valid, record_ready, record_last;
   logic [7:0] record_data;
@@ -188,15 +200,22 @@ module link_unit
 
   // To the line.
 
-  logic mixed_valid, mixed_ready, mixed_last, checked_valid, checked_ready, checked_last;
-  logic [7:0] mixed_data, checked_data;
+  logic mixed_valid, mixed_ready, mixed_last, packet_out_valid, packet_out_ready, packet_out_last;
+  logic checked_valid, checked_ready, checked_last;
+  logic [7:0] mixed_data, packet_out_data, checked_data;
   packet_mux u_mux (
     .clk, .rst, .status_valid, .status_ready, .status_data, .status_last, .reply_valid, .reply_ready, .reply_data,
-    .reply_last, .record_valid, .record_ready, .record_data, .record_last, .depth_valid, .depth_ready, .depth_data,
-    .depth_last, .out_valid(mixed_valid), .out_ready(mixed_ready), .out_data(mixed_data), .out_last(mixed_last)
+    .reply_last, .record_valid, .record_ready, .record_data, .record_last, .depth_valid(depth_out_valid),
+    .depth_ready(depth_out_ready), .depth_data(depth_out_data), .depth_last(depth_out_last),
+    .out_valid(mixed_valid), .out_ready(mixed_ready), .out_data(mixed_data), .out_last(mixed_last)
+  );
+  td_axis_skid #(.Width(9)) u_packet_slice (
+    .clk, .rst, .s_valid(mixed_valid), .s_ready(mixed_ready), .s_data({mixed_last, mixed_data}),
+    .m_valid(packet_out_valid), .m_ready(packet_out_ready), .m_data({packet_out_last, packet_out_data})
   );
   crc_append u_crc (
-    .clk, .rst, .in_valid(mixed_valid), .in_ready(mixed_ready), .in_data(mixed_data), .in_last(mixed_last),
+    .clk, .rst, .in_valid(packet_out_valid), .in_ready(packet_out_ready), .in_data(packet_out_data),
+    .in_last(packet_out_last),
     .out_valid(checked_valid), .out_ready(checked_ready), .out_data(checked_data), .out_last(checked_last)
   );
   cobs_encode u_cobs_encode (

@@ -6,7 +6,7 @@
 // sends a byte then is lost. Stream out: the kept bytes of each good packet in order under valid and ready, out_last
 // with the last; out_length and out_length_mod3 are the true length, all through the packet. A byte that is taken with
 // out_drop takes the rest of its packet with it. A bank is free behind the last byte. `bad` is high for one clock for
-// a packet that is bad or lost. Latency: 2 cycles from in_end to the first byte, 1 to `bad`; a byte every 2 cycles.
+// a packet that is bad or lost. Latency: 3 cycles from in_end to the first byte, 1 to `bad`; a byte every 3 cycles.
 // Model: models/tactile_depth/link/packet_store.py.
 
 `default_nettype none
@@ -49,18 +49,20 @@ module packet_store #(
   logic [1:0][12:0] lengths;  // of the packets in the banks
   logic [PlaceWidth-1:0] place;  // of the byte that is read
   logic [11:0] next_place;
-  logic fetch;
-  assign {out_length_mod3, out_length} = gone[0] ? lengths[1] : lengths[0];
+  logic fetch, fetched;
+  logic [7:0] read_data;
+  logic [10:0] read_length;  // of its packet
+  logic [1:0] read_mod3;
+  assign {read_mod3, read_length} = gone[0] ? lengths[1] : lengths[0];
   assign next_place = 12'(place) + 12'd1;
-  assign out_last = (next_place == 12'(Most)) | (next_place == 12'(out_length));
   assign takes = out_valid & out_ready;
   assign goes = takes & (out_last | out_drop);
-  assign fetch = waits & ~out_valid;
+  assign fetch = waits & ~fetched & ~out_valid;
 
   td_ram #(.Width(8), .Depth(2 * BankBytes)) u_bytes (
     .clk,
     .write_en(in_valid & has_room), .write_address({stored[0], length[PlaceWidth-1:0]}), .write_data(in_data),
-    .read_en(fetch), .read_address({gone[0], place}), .read_data(out_data)
+    .read_en(fetch), .read_address({gone[0], place}), .read_data
   );
 
   always_ff @(posedge clk) begin
@@ -72,7 +74,14 @@ module packet_store #(
       length_mod3 <= length_mod3 == 2'd2 ? 2'd0 : length_mod3 + 2'd1;
       lost <= lost | ~in_ready;
     end
-    out_valid <= fetch | (out_valid & ~out_ready);
+    fetched <= fetch;
+    if (fetched) begin
+      out_data <= read_data;
+      out_last <= (next_place == 12'(Most)) | (next_place == 12'(read_length));
+      out_length <= read_length;
+      out_length_mod3 <= read_mod3;
+    end
+    out_valid <= fetched | (out_valid & ~out_ready);
     if (takes) place <= place + PlaceWidth'(1);
     stored <= stored + 2'(stores);
     gone <= gone + 2'(goes);
@@ -84,6 +93,7 @@ module packet_store #(
     if (goes || rst) place <= '0;
     if (rst) begin
       bad <= 1'b0;
+      fetched <= 1'b0;
       out_valid <= 1'b0;
       stored <= '0;
       gone <= '0;

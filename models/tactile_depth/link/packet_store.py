@@ -51,7 +51,7 @@ class PacketStore:
         self._lost = False
         self._waiting: deque[bytes] = deque()
         self._place = 0  # of the next byte of the first that waits
-        self._fetched = False
+        self._reads = self._offers = False  # a byte is read; one is offered
 
     @property
     def ready(self) -> bool:
@@ -61,7 +61,7 @@ class PacketStore:
     @property
     def offer(self) -> Offer | None:
         """Byte that is offered, None if none is."""
-        if not self._fetched:
+        if not self._offers:
             return None
         packet = self._waiting[0]
         last = self._place + 1 == min(len(packet), self._bank_bytes)
@@ -80,7 +80,10 @@ class PacketStore:
             if offer.last or drop:
                 self._place = 0
                 self._waiting.popleft()
-        self._fetched = not ready if offer is not None else waits
+        self._reads, self._offers = (
+            waits and not self._reads and offer is None,
+            self._reads if offer is None else not ready,
+        )
         self.bad = ends and not (good and not self._lost)
         if data is not None:
             self._packet.append(data)
