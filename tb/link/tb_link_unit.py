@@ -19,9 +19,9 @@ from tactile_depth.link import packets as link
 from tactile_depth.link.depth_formats import DepthFormat, exact_shift
 from tactile_depth.link.device import Build, LinkDevice
 from tactile_depth.link.framing import to_line
-from tb.stream import CLOCK_NS, parameters
+from tb.stream import CLOCK_NS, MANY, parameters
 
-QUIET_CLOCKS = 3000  # without a byte: more than a packet of depth takes until its first one
+QUIET_CLOCKS = 2000  # without a byte: more than a packet of depth takes until its first one
 LONGEST_CLOCKS = 60_000
 CLOCKS_A_BYTE = 4  # of a frame in words, to a line that takes a byte in each clock (docs/link.md)
 BROKEN = None  # a byte that could not be received
@@ -259,7 +259,7 @@ async def one_after_another(dut: Any, stalls: float) -> None:
     await board.start()
     chance = board.chance
     await board.compare(board.answer(), "power-up")
-    for turn in range(8):
+    for turn in range(MANY + 3):
         depth_format = DepthFormat(turn % 4)
         select = link.Select(depth_format, chance.choice((0, 3, exact_shift(board.width), 16)))
         await board.compare(board.send(list(to_line(select.pack()))), f"select {depth_format}")
