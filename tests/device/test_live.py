@@ -22,6 +22,7 @@ from tests.device.model_device import Setup
 from tests.press_video import press_frames, write_sensor
 
 FRAMES = 6
+MANY = 96  # pictures: that a bad line loses none of them has a probability below 0.001
 WORDS = ["--grid", f"{GRID[1]}x{GRID[0]}"]
 
 
@@ -165,9 +166,9 @@ def test_pictures_without_depth_are_counted(
 def test_pictures_that_get_lost_on_the_line_are_counted(
     tmp_path: Path, inputs: Path, screen: Any, plug: Plug, capsys: Any
 ) -> None:
-    np.save(tmp_path / "frames.npy", np.stack([press_frames(FRAMES)[3]] * 16))
+    np.save(tmp_path / "frames.npy", np.stack([press_frames(FRAMES)[3]] * MANY))
     lossy = td.Pipeline(td.load(inputs / "sensor.npz"), inputs / "background.png", grid=GRID, model="quadratic")
-    cable = plug(lossy, damage={"flip": 0.05})
+    cable = plug(lossy, damage={"flip": 0.03})
     run(
         inputs,
         f"device:{cable.address}",
@@ -178,7 +179,7 @@ def test_pictures_that_get_lost_on_the_line_are_counted(
         "quadratic",
     )
     counts = counted(capsys.readouterr().out)
-    assert counts["read"] == 16
+    assert counts["read"] == MANY
     assert counts["lost"] > 0
     assert counts["shown"] == len(screen) > 0
 
