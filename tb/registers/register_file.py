@@ -29,7 +29,7 @@ INPUTS = (
 )
 PARAMETERS = (
     *("Tridiagonal", "Neumann", "Rows", "Columns", "DataWidth", "GradientWidth", "GradientFraction", "BitsPerChannel"),
-    *("FlatField", "Polynomial", "LightGains", "ZeroOffset", "Lanes", "BlockLog2", "GainWidth"),
+    *("FlatField", "Polynomial", "Corrections", "LightGains", "ZeroOffset", "Lanes", "BlockLog2", "GainWidth"),
     *("DepthMantissa", "DepthExponent", "SlopeMantissa", "SlopeExponent", "PitchNm"),
 )
 
