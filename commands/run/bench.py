@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Input and recording of tb/frame_bench.sv, in which pixels move in bulk, without a step of Python per cycle."""
 
-import fcntl
 import hashlib
 import json
 import shutil
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -115,31 +113,20 @@ def build(
     key = hashlib.sha256(json.dumps([simulator, waves, text, simulation.versions()]).encode())
     for source in (*sources, Path(simulation.__file__)):
         key.update(source.read_bytes())
-    folder = simulation.BUILD / "simulators" / key.hexdigest()[:16]
-    complete = folder / "complete"
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    with folder.with_suffix(".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # another run may be building the same model
-        if complete.exists():
-            return folder
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir()
-        print(f"building the {simulator} model (once for this configuration) ..", file=sys.stderr)
-        try:
-            simulation.build(
-                simulator,
-                BENCH,
-                [*sources, *(wrapper.write(folder, "bench", parameters | {"Camera": each}) for each in (0, 1))],
-                {**wrapper.grid(parameters), "Camera": parameters["Camera"]},
-                folder,
-                fast=not waves,
-                waves=waves,
-                log=folder / "build.log",
-            )
-        except (RuntimeError, SystemExit) as error:
-            raise RuntimeError(f"the build failed: see {folder / 'build.log'}") from error
-        complete.touch()
-    return folder
+
+    def make(folder: Path) -> None:
+        simulation.build(
+            simulator,
+            BENCH,
+            [*sources, *(wrapper.write(folder, "bench", parameters | {"Camera": each}) for each in (0, 1))],
+            {**wrapper.grid(parameters), "Camera": parameters["Camera"]},
+            folder,
+            fast=not waves,
+            waves=waves,
+            log=folder / simulation.LOG,
+        )
+
+    return simulation.built_once(key.hexdigest(), f"the {simulator} model", make)
 
 
 def play(

@@ -7,11 +7,9 @@ those of the device on its standard output (tb/device_main.cpp); `ready` on stan
 Each configuration is built once for each state of the sources. `tactile_depth.Device("sim", ..)` starts it.
 """
 
-import fcntl
 import hashlib
 import json
 import os
-import shutil
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -42,19 +40,11 @@ def build(fields: Mapping[str, int], pins: bool) -> Path:
     key = hashlib.sha256(json.dumps([top, text, simulation.versions()]).encode())
     for source in (*repository.sources(), *bench, MAIN, Path(__file__)):
         key.update(source.read_bytes())
-    folder = simulation.BUILD / "simulators" / key.hexdigest()[:16]
-    built, complete = folder / EXECUTABLE, folder / "complete"
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    with folder.with_suffix(".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # another process may be building the same model
-        if complete.exists():
-            return built
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir()
-        print("building the simulator (once for this configuration) ..", file=sys.stderr, flush=True)
+
+    def make(folder: Path) -> None:
         _verilate(folder, top, [*bench, wrapper.write(folder, name, fields)], fields, pins)
-        complete.touch()
-    return built
+
+    return simulation.built_once(key.hexdigest(), "the simulator", make) / EXECUTABLE
 
 
 def _verilate(folder: Path, top: str, files: list[Path], fields: Mapping[str, int], pins: bool) -> None:
@@ -73,15 +63,12 @@ def _verilate(folder: Path, top: str, files: list[Path], fields: Mapping[str, in
         *(f"-G{name}={value}" for name, value in parameters.items()),
         *map(str, [*waivers, *repository.sources(), *files, MAIN]),
     ]
-    level = "-O1"
     environment = os.environ | {
-        "MAKEFLAGS": f"{simulation.VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL={level}"
+        "MAKEFLAGS": f"{simulation.VERILATOR_MAKEFLAGS} OPT_FAST=-O1 OPT_SLOW=-O0 OPT_GLOBAL=-O1"
     }
-    log = folder / "build.log"
-    with log.open("w") as output:
-        ended = subprocess.run(command, env=environment, stdout=output, stderr=subprocess.STDOUT, check=False)
-    if ended.returncode:
-        raise RuntimeError(f"the build failed: see {log}")
+    with (folder / simulation.LOG).open("w") as output:
+        if subprocess.run(command, env=environment, stdout=output, stderr=subprocess.STDOUT, check=False).returncode:
+            raise RuntimeError("Verilator or the compiler failed")
 
 
 def main() -> None:
