@@ -13,7 +13,7 @@
 // BottomFirst, bottom row first; they are never held back, and gaps change nothing. A frame that begins inside another
 // begins afresh. Settings and in_time are taken with a frame's first beat. From the last beat of a frame to that of the
 // next lie at least Latency cycles. Stream out: the record of each frame, docs/registers.md, as a packet. Latency: the
-// record is in its register, until the next, Latency = 2 log2(larger side) + 2 log2(Lanes) + 20 cycles after the last
+// record is in its register, until the next, Latency = 2 log2(larger side) + 2 log2(Lanes) + 22 cycles after the last
 // beat, touching 3 cycles after it. Bit-accurate model: models/tactile_depth/contact/contact_events.py.
 
 `default_nettype none
@@ -53,8 +53,8 @@ module contact_events
   localparam int CountWidth = $clog2(Rows * Columns + 1);
   localparam int WeightWidth = Width + $clog2(Rows * Columns);
   localparam int MomentWidth = WeightWidth + PositionWidth;
-  localparam int Latency = 2 * PositionWidth + 2 * $clog2(Lanes) + 20;
-  localparam int Delay = $clog2(Lanes) + 4;  // until the first beat of a frame finds the area threshold
+  localparam int Latency = 2 * PositionWidth + 2 * $clog2(Lanes) + 22;
+  localparam int Delay = $clog2(Lanes) + 6;  // until the first beat of a frame finds the area threshold
   localparam int PositionBits = $bits(depth_position_t);
 
   // Settings and time: of the frame that comes in (_q: since its first beat), and of the last frame (last_).
@@ -81,13 +81,13 @@ module contact_events
 
   // Area threshold. The delayed frame takes it Delay cycles after its first beat, when the peak of the last is known.
 
-  logic signed [31:0] in_force, half_peak, wanted, least_wanted;
+  logic signed [31:0] in_force, half_peak, wanted, least_wanted;  // a register behind each choice
   logic signed [Width-1:0] level, level_of_frame, last_level;
   assign in_force = touching ? off_q : on_q;
   assign half_peak = 32'(last_peak >>> 1);
-  assign wanted = last_any && half_peak < area_limit ? half_peak : area_limit;
-  assign least_wanted = wanted > in_force ? wanted : in_force;
   always_ff @(posedge clk) begin
+    wanted <= last_any && half_peak < area_limit ? half_peak : area_limit;
+    least_wanted <= wanted > in_force ? wanted : in_force;
     level <= least_wanted[Width-1:0];
     if (least_wanted[31:Width-1] != {(33 - Width) {least_wanted[31]}}) begin
       level <= {least_wanted[31], {(Width - 1) {~least_wanted[31]}}};

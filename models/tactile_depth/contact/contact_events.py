@@ -104,7 +104,7 @@ def latency(rows: int, columns: int, lanes: int = 1) -> int:
 
     The last depths of two frames are at least this number of cycles apart.
     """
-    delay = cycles_to_peak(lanes) + 1  # until the area threshold of the next frame is there
+    delay = cycles_to_peak(lanes) + 3  # until the area threshold of the next frame is there
     return delay + cycles_to_sums(lanes) + 1 + centroid.cycles(centroid.position_bits(rows, columns)) + 1
 
 
