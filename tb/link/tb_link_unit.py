@@ -19,13 +19,14 @@ from tactile_depth.link import packets as link
 from tactile_depth.link.depth_formats import DepthFormat, exact_shift
 from tactile_depth.link.device import Build, LinkDevice
 from tactile_depth.link.framing import to_line
+from tb.link.axil_slave import AxilSlave, Registers
 from tb.stream import CLOCK_NS, MANY, parameters
 
 QUIET_CLOCKS = 2000  # without a byte: more than a packet of depth takes until its first one
 LONGEST_CLOCKS = 60_000
 CLOCKS_A_BYTE = 4  # of a frame in words, to a line that takes a byte in each clock (docs/link.md)
 BROKEN = None  # a byte that could not be received
-REFUSED = 0x40  # address
+REFUSED = 0x43  # address, which Registers refuses
 Byte = int | None
 
 
@@ -38,10 +39,9 @@ class Board:
         self.rows, self.columns, self.width, self.lanes, bottom_first = parameters(
             dut, "Rows", "Columns", "DataWidth", "Lanes", "BottomFirst"
         )
-        self.registers: dict[int, int] = {}
-        self.model_registers: dict[int, int] = {}
+        self.registers, self.model_registers = (Registers(len(dut.m_axil_araddr)) for _ in range(2))
         build = Build(self.rows, self.columns, self.width, bool(bottom_first))
-        self.model = LinkDevice(build, self.model_read, self.model_write)
+        self.model = LinkDevice(build, self.model_registers.read, self.model_registers.write)
         self.to_device: deque[Byte] = deque()
         self.beats: deque[tuple[int, int, int]] = deque()
         self.words: deque[tuple[int, int]] = deque()
@@ -50,28 +50,13 @@ class Board:
         self.out_clocks: list[int] = []  # of each byte
         self.duration = 0  # clocks from the first byte to the last of what was compared last
         self.pixels: list[tuple[int, int, int]] = []
-        self.reads: deque[int] = deque()
-        self.writes: deque[int] = deque()
-        self.values: deque[int] = deque()
-
-    def model_read(self, address: int) -> int | None:
-        return None if self.refuses(address) else self.model_registers.get(address, address)
-
-    def model_write(self, address: int, value: int) -> bool:
-        if not self.refuses(address):
-            self.model_registers[address] = value
-        return not self.refuses(address)
-
-    def refuses(self, address: int) -> bool:
-        return address == REFUSED or address >> len(self.dut.m_axil_araddr) != 0
 
     async def start(self) -> None:
         dut = self.dut
         dut.rst.value, dut.cold_rst.value = 1, 1
-        for name in ("in_valid", "in_broken", "s_axis_tvalid", "s_event_tvalid", "m_axil_bvalid", "m_axil_rvalid"):
+        for name in ("in_valid", "in_broken", "s_axis_tvalid", "s_event_tvalid", "out_ready", "m_axis_tready"):
             getattr(dut, name).value = 0
-        for name in ("out_ready", "m_axis_tready", "m_axil_awready", "m_axil_wready", "m_axil_arready"):
-            getattr(dut, name).value = 0
+        AxilSlave(dut, self.registers, iter(lambda: bool(self.goes()), None), cocotb.RANDOM_SEED)
         Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         for _ in range(4):
             await RisingEdge(dut.clk)
@@ -89,7 +74,6 @@ class Board:
             self.clock += 1
             self.line()
             self.pipeline()
-            self.bus()
 
     def line(self) -> None:
         """Move a byte each way, and a pixel."""
@@ -124,28 +108,6 @@ class Board:
         elif self.words and not self.beats and self.goes():
             dut.s_event_tdata.value, dut.s_event_tlast.value = self.words.popleft()
             dut.s_event_tvalid.value = 1
-
-    def bus(self) -> None:
-        """Answer accesses; address and data of a write may come in any order."""
-        dut = self.dut
-        for channel, taken in (("aw", self.writes), ("w", self.values), ("ar", self.reads)):
-            ready, name = getattr(dut, f"m_axil_{channel}ready"), "data" if channel == "w" else "addr"
-            if getattr(dut, f"m_axil_{channel}valid").value and ready.value:
-                taken.append(int(getattr(dut, f"m_axil_{channel}{name}").value))
-            ready.value = self.goes()
-        if dut.m_axil_bvalid.value and dut.m_axil_bready.value:
-            dut.m_axil_bvalid.value = 0
-        elif self.writes and self.values and not dut.m_axil_bvalid.value and self.goes():
-            address, value = self.writes.popleft(), self.values.popleft()
-            dut.m_axil_bresp.value, dut.m_axil_bvalid.value = 2 * self.refuses(address), 1
-            if not self.refuses(address):
-                self.registers[address] = value
-        if dut.m_axil_rvalid.value and dut.m_axil_rready.value:
-            dut.m_axil_rvalid.value = 0
-        elif self.reads and not dut.m_axil_rvalid.value and self.goes():
-            address = self.reads.popleft()
-            dut.m_axil_rdata.value = self.registers.get(address, address)
-            dut.m_axil_rresp.value, dut.m_axil_rvalid.value = 2 * self.refuses(address), 1
 
     # What happens, in device and model.
 
@@ -189,7 +151,7 @@ class Board:
                 break
         assert bytes(self.out).hex(" ") == expected.hex(" "), what
         assert self.pixels == [tuple(word) for word in self.model.pixels], what
-        assert self.registers == self.model_registers, what
+        assert self.registers.log == self.model_registers.log, what
         self.duration = self.out_clocks[-1] - self.out_clocks[0] if self.out else 0
         self.out.clear()
         self.out_clocks.clear()
