@@ -150,11 +150,9 @@ def _pipeline(p: dict[str, int]) -> Parts:
 
 
 def _contact(p: dict[str, int]) -> Parts:
-    """Count the delay of contact_events.sv, which is a memory with several lanes, registers with one."""
+    """Count the delay of contact_events.sv."""
     lanes = p["Lanes"]
-    if lanes == 1:
-        return []
-    return [Memory("delay lines", lanes * p["DataWidth"] + DEPTH_MARKS, lanes.bit_length() + 3, "contact_events")]
+    return [Memory("delay lines", lanes * p["DataWidth"] + DEPTH_MARKS, lanes.bit_length() + 5, "contact_events")]
 
 
 def _colours(p: dict[str, int]) -> Parts:
