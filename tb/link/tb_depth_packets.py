@@ -4,6 +4,7 @@
 The testbench is the store: it holds a frame, and answers reads as depth_store does.
 """
 
+import math
 import os
 import random
 import zlib
@@ -23,6 +24,8 @@ from tb.stream import CLOCK_NS, MANY, parameters
 
 FORMATS = (DepthFormat.WORDS, DepthFormat.SHORT, DepthFormat.AVERAGED)
 LONGEST_SILENCE = 8  # clocks
+LOAD_CLOCKS = 5  # of a value of one code
+TRAILER_WAITS = WORDS  # a clock before each word of the record
 
 
 class Bench:
@@ -30,7 +33,7 @@ class Bench:
 
     def __init__(self, dut: Any, accepts: str = "none") -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
-        self.dut, self.ready = dut, profile(accepts)
+        self.dut, self.ready, self.always_ready = dut, profile(accepts), accepts == "none"
         self.chance = random.Random(cocotb.RANDOM_SEED)
         names = "Rows", "Columns", "DataWidth", "BottomFirst", "Values"
         self.rows, self.columns, self.width, self.bottom_first, self.values = parameters(dut, *names)
@@ -59,6 +62,7 @@ class Bench:
         self.reading, self.silent = False, 0
         self.held: tuple[int, bool] | None = None  # a byte that was offered and not taken
         self.pending: int | None = None  # a value that was read in the clock before
+        self.reads = self.waits = 0  # values that were read; clocks without a byte while a frame is sent
         self.sent = 0 if cold else self.sent
 
     def offer(self, depth_format: DepthFormat, shift: int) -> list[bytes]:
@@ -105,6 +109,7 @@ class Bench:
         else:
             assert self.held is None, "valid fell before ready came"
         self.silent = 0 if valid or not dut.sending.value else self.silent + 1
+        self.waits += self.silent > 0
         assert self.silent <= LONGEST_SILENCE, f"a byte waits for more than {LONGEST_SILENCE} clocks"
         self.store()
 
@@ -117,6 +122,7 @@ class Bench:
         if self.reading:
             dut.record_data.value = self.words[int(dut.record_word.value) % WORDS]
         if read:
+            self.reads += 1
             assert self.reading, "no frame is taken"
             assert not done, "the frame is given back"
             self.pending = int(self.codes.flat[int(dut.value_address.value)])
@@ -142,7 +148,7 @@ class Bench:
         want = self.offer(depth_format, shift)
         await self.clock()
         assert bool(dut.frame_take.value), "a frame waits"
-        self.packets = []
+        self.packets, self.reads, self.waits = [], 0, 0
         await self.clock()
         while bool(dut.sending.value):
             assert int(dut.sent.value) == self.sent
@@ -150,6 +156,11 @@ class Bench:
         assert not self.packet
         assert self.packets == want, f"{[p.hex() for p in self.packets]}, expected {[p.hex() for p in want]}"
         assert not self.reading, "the frame was not given back"
+        values = math.prod(sent_shape(depth_format, self.rows, self.columns))
+        codes = 4 if depth_format == DepthFormat.AVERAGED else 1
+        assert self.reads == codes * values, "each code is read once"
+        if self.always_ready:
+            assert self.waits == (LOAD_CLOCKS + codes - 1) * values + TRAILER_WAITS
 
 
 @on_bench(Bench, milliseconds=20)
