@@ -44,6 +44,8 @@ module fv_axil_port
   logic [31:0] answer;
   logic [1:0] last_bresp, last_rresp;
   logic [31:0] last_rdata;
+  logic read_taken;  // in the clock before
+  logic [AddressWidth-3:0] taken_address;
   logic [31:0] strobed;
   always_comb for (int n = 0; n < 32; n++) strobed[n] = word[32 + n / 8];
   always_ff @(posedge clk) begin
@@ -54,7 +56,9 @@ module fv_axil_port
     if (s_axil_bvalid && s_axil_bready) {has_address, has_data, answered} <= '0;
 
     read_due <= (read && !read_late) || until_late == 3'd1;
-    if (read) read_busy <= 1'b1;
+    read_taken <= s_axil_arvalid & s_axil_arready;
+    taken_address <= s_axil_araddr[AddressWidth-1:2];
+    if (s_axil_arvalid && s_axil_arready) read_busy <= 1'b1;
     if (s_axil_rvalid && s_axil_rready) read_busy <= 1'b0;
     until_late <= read && read_late ? 3'd4 : until_late == 3'd0 ? 3'd0 : until_late - 3'd1;
     if (until_late == 3'd1) {answer, answer_refused} <= {late_data, late_refused};
@@ -64,25 +68,24 @@ module fv_axil_port
     answer_waits <= s_axil_rvalid & ~s_axil_rready;
     {last_bresp, last_rdata, last_rresp} <= {s_axil_bresp, s_axil_rdata, s_axil_rresp};
     if (rst) begin
-      {has_address, has_data, answered, read_busy, read_due, write_was, until_late, response_waits, answer_waits} <= '0;
+      {has_address, has_data, answered, read_busy, read_taken, read_due, write_was, until_late, response_waits, answer_waits} <= '0;
     end
   end
 
   always_comb begin
-    no_access_in_reset: assert (!(rst && (write || read)));
     nothing_taken_in_reset: assert (!(rst && (s_axil_awready || s_axil_wready || s_axil_arready)));
     if (started) begin
       one_write_in_flight: assert (s_axil_awready == (!has_address && !rst) && s_axil_wready == (!has_data && !rst));
       one_read_in_flight: assert (s_axil_arready == (!read_busy && !rst));
-      a_write_when_due: assert (write == (has_address && has_data && !answered && until_late == 3'd0 && !rst));
+      a_write_when_due: assert (write == (has_address && has_data && !answered && until_late == 3'd0));
       response_when_due: assert (s_axil_bvalid == answered);
-      answer_when_due: assert (s_axil_rvalid == (read_busy && until_late == 3'd0));
-      read_when_taken: assert (read == (s_axil_arvalid && s_axil_arready));
+      answer_when_due: assert (s_axil_rvalid == (read_busy && !read_taken && until_late == 3'd0));
+      read_when_taken: assert (read == read_taken);
       if (write) begin
         its_own_register: assert (write_offset == 32'({address[AddressWidth-1:2], 2'd0}));
         its_own_bytes: assert (write_mask == strobed && write_ones == (word[31:0] & strobed));
       end
-      if (read) register_read: assert (read_offset == 32'({s_axil_araddr[AddressWidth-1:2], 2'd0}));
+      if (read) register_read: assert (read_offset == 32'({taken_address, 2'd0}));
       if (write_was) its_response: assert (s_axil_bresp == (refused ? 2'd2 : 2'd0));
       if (read_due) its_answer: assert (s_axil_rdata == answer && s_axil_rresp == (answer_refused ? 2'd2 : 2'd0));
       if (response_waits) response_stays: assert (s_axil_bvalid && s_axil_bresp == last_bresp);

@@ -10,7 +10,7 @@
 module td_ram #(
   parameter int Width = 24,
   parameter int Depth = 16384,
-  parameter int Style = 3,  // 0: distributed, 1: block, 2: ultra, 3: block above AutoBits, else distributed
+  parameter int Style = 3,  // 0: distributed, 1: block, 2: ultra, 3: block above DistributedBits, else distributed
   parameter     File  = "",
   localparam int AddressWidth = $clog2(Depth)
 ) (
@@ -23,8 +23,7 @@ module td_ram #(
   output logic [Width-1:0]        read_data
 );
 
-  localparam int AutoBits = 4096;  // below this LUTs are cheaper than a block RAM
-  localparam int Built = Style != 3 ? Style : Width * Depth > AutoBits ? 1 : 0;
+  localparam int Built = Style != 3 ? Style : Width * Depth > td_types_pkg::DistributedBits ? 1 : 0;
 
   case (Built)  // not else if: Yosys' own front end would count that as a scope
     0: begin : g_distributed

@@ -18,9 +18,7 @@ module td_rom #(
   output logic [Width-1:0]        data
 );
 
-  localparam int SmallBits = 4096;  // below this LUTs are cheaper than a block RAM
-
-  if (Width * Depth <= SmallBits) begin : g_distributed
+  if (Width * Depth <= td_types_pkg::DistributedBits) begin : g_distributed
     (* rom_style = "distributed" *) logic [Width-1:0] words[Depth];
     initial $readmemh(File, words);
     always_ff @(posedge clk) if (en) data <= words[address];

@@ -148,7 +148,7 @@ module polynomial_gradient
         .clk, .rst, .en, .table_bank, .table_in_use(in_use[Polynomial]), .frame_start, .change(first_q[colour]),
         .read(1'b1), .read_address(term), .read_word(word),
         .free_write(table_write & own_entry), .free_write_address(offset[TermWidth-1:0]), .free_write_word(table_word),
-        .free_read(table_read & own_entry), .free_read_address(offset[TermWidth-1:0]), .free_word
+        .free_read(table_read), .free_read_address(offset[TermWidth-1:0]), .free_word
       );
       always_ff @(posedge clk) fetched <= table_read & own_entry;
       assign fetched_words[Polynomial] = fetched ? free_word : '0;

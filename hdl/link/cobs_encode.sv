@@ -48,7 +48,7 @@ module cobs_encode #(
   assign out_data = state == Code ? 8'(count) + 8'd1 : state == Bytes ? stored : '0;
 
   td_ram #(.Width(8), .Depth(1 << PlaceWidth)) u_piece (
-    .clk, .write_en(in_valid & in_ready & ~zero), .write_address(PlaceWidth'(count)), .write_data(in_data),
+    .clk, .write_en(in_valid & in_ready), .write_address(PlaceWidth'(count)), .write_data(in_data),
     .read_en(reads), .read_address(PlaceWidth'(place)), .read_data(stored)
   );
 

@@ -152,7 +152,16 @@ module link_unit #(
     end
   end
 
-  // Depth frames and records.
+  // Depth frames and records, in registers first: they come at the end of a path of the pipeline.
+
+  logic [8*DepthBytes-1:0] depth_tdata;
+  logic depth_tvalid, depth_tlast, depth_tuser, event_tvalid, event_tlast;
+  logic [31:0] event_tdata;
+  always_ff @(posedge clk) begin
+    {depth_tdata, depth_tlast, depth_tuser} <= {s_axis_tdata, s_axis_tlast, s_axis_tuser};
+    {event_tdata, event_tlast} <= {s_event_tdata, s_event_tlast};
+    {depth_tvalid, event_tvalid} <= rst ? '0 : {s_axis_tvalid, s_event_tvalid};
+  end
 
   logic frame_valid, frame_take, frame_done, value_read;
   logic [$clog2(Rows*Columns)-1:0] value_address;
@@ -161,9 +170,10 @@ module link_unit #(
   logic [31:0] frame_record_data, sent;
   logic sending;
   depth_store #(.Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .Lanes(Lanes)) u_depth_store (
-    .clk, .rst, .keep(format != '0), .s_axis_tdata, .s_axis_tvalid, .s_axis_tlast, .s_axis_tuser, .s_event_tdata,
-    .s_event_tvalid, .s_event_tlast, .skipped(skips), .frame_valid, .frame_take, .frame_done, .value_read,
-    .value_address, .value_data, .record_word, .record_data(frame_record_data)
+    .clk, .rst, .keep(format != '0), .s_axis_tdata(depth_tdata), .s_axis_tvalid(depth_tvalid),
+    .s_axis_tlast(depth_tlast), .s_axis_tuser(depth_tuser), .s_event_tdata(event_tdata),
+    .s_event_tvalid(event_tvalid), .s_event_tlast(event_tlast), .skipped(skips), .frame_valid, .frame_take,
+    .frame_done, .value_read, .value_address, .value_data, .record_word, .record_data(frame_record_data)
   );
 
   logic depth_valid, depth_ready, depth_last;
@@ -185,8 +195,8 @@ module link_unit #(
   logic record_valid, record_ready, record_last;
   logic [7:0] record_data;
   record_packet u_record (
-    .clk, .rst, .s_event_tdata, .s_event_tvalid, .s_event_tlast, .record_valid, .record_ready, .record_data,
-    .record_last
+    .clk, .rst, .s_event_tdata(event_tdata), .s_event_tvalid(event_tvalid), .s_event_tlast(event_tlast),
+    .record_valid, .record_ready, .record_data, .record_last
   );
 
   logic status_valid, status_ready, status_last;

@@ -66,9 +66,9 @@ module forward_elimination #(
   // What follows a word down the pipeline.
   logic [ToState-1:0] start_q, frame_start_q, active_q, singular_q;  // singular: position 0 of the last row
   logic [ToState-1:0][PositionWidth-1:0] position_q;
-  logic [2:0] first_row_q;
+  logic [1:0] first_row_q;
   logic [2:0][Width-1:0] data_q;
-  logic signed [Width-1:0] state, state_or_zero;
+  logic signed [Width-1:0] state, above;  // d of the row before
   always_ff @(posedge clk) begin
     if (en) begin
       start_q <= {start_q[ToState-2:0], in_start};
@@ -76,7 +76,8 @@ module forward_elimination #(
       active_q <= {active_q[ToState-2:0], active};
       singular_q <= {singular_q[ToState-2:0], in_start & (row == RowWidth'(Rows - 1))};
       position_q <= {position_q[ToState-2:0], position};
-      first_row_q <= {first_row_q[1:0], row == '0};
+      first_row_q <= {first_row_q[0], row == '0};
+      above <= first_row_q[1] ? '0 : state;
       data_q <= {data_q[1:0], in_data};
       row_q <= row + RowWidth'(active & (position == PositionWidth'(Columns - 1)));
     end
@@ -88,17 +89,17 @@ module forward_elimination #(
   end
 
   // Difference, product, shift, rounding.
-  assign state_or_zero = first_row_q[2] ? '0 : state;
   logic [1:0][Width-1:0] difference_q;
-  logic signed [Width-1:0] difference, rounded, d, chosen;
+  logic signed [Width-1:0] difference, rounded, d;
   logic signed [ProductWidth-1:0] product;
   logic signed [ShiftedWidth-1:0] shifted;
+  logic [Width-1:0] last_mean;  // of the singular column, in its last row, whose product is 0; else 0
   logic [2:0] clipped, clipped_q;
   td_multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
     .clk, .en, .a(difference_q[1]), .b(coefficient), .product
   );
   td_round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
-    .in((Width + 1)'($signed(data_q[2])) - (Width + 1)'(state_or_zero)), .out(difference), .clipped(clipped[0])
+    .in((Width + 1)'($signed(data_q[2])) - (Width + 1)'(above)), .out(difference), .clipped(clipped[0])
   );
   td_round_saturate #(.InWidth(ShiftedWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_state (
     .in(shifted), .out(rounded), .clipped(clipped[1])
@@ -111,8 +112,8 @@ module forward_elimination #(
     if (en) begin
       difference_q <= {difference_q[0], difference};
       shift_q <= shift;
-      shifted <= ShiftedWidth'(product) <<< shift_q;
-      d <= chosen;
+      shifted <= ShiftedWidth'(product) <<< shift_q | ShiftedWidth'($signed(last_mean)) <<< (CoeffWidth - 1);
+      d <= rounded;
       out_data <= stored;
       out_start <= start_q[ToState-1];
       out_frame_start <= frame_start_q[ToState-1];
@@ -132,8 +133,8 @@ module forward_elimination #(
     .write_en     (en & active_q[ToState-1]),
     .write_address(position_q[ToState-1]),
     .write_data   (d),
-    .read_en      (en & active_q[1]),
-    .read_address (position_q[1]),
+    .read_en      (en & active_q[0]),
+    .read_address (position_q[0]),
     .read_data    (state)
   );
 
@@ -171,6 +172,7 @@ module forward_elimination #(
         if (after[0]) moment <= (weight == (RowWidth + 1)'(1) ? '0 : moment) + MomentWidth'(addend);
         if (after[1]) sum_q <= sum;
         if (after[3]) mean_q <= mean;
+        last_mean <= singular_q[ToState-4] ? mean_q : '0;
       end
       clipped_mean[0] <= en & after[1] & clipped_now[0] & ends;
       clipped_mean[1] <= en & after[3] & clipped_now[1] & ends;
@@ -179,9 +181,8 @@ module forward_elimination #(
         clipped_mean <= '0;
       end
     end
-    assign chosen = singular_q[ToState-2] ? mean_q : rounded;
   end else begin : g_no_mean
-    assign chosen = rounded;
+    assign last_mean = '0;
     assign clipped_mean = '0;
     logic unused_singular;
     assign unused_singular = ^singular_q;

@@ -85,7 +85,6 @@ module frame_stack #(
   td_burst_counter #(.Words(Columns)) u_write (
     .clk, .rst, .en, .start(in_start), .position(write_position), .active(write_active)
   );
-  assign write_end = write_active & (write_position == LastPosition);
   assign write_remaining = in_start ? FirstRemaining : write_remaining_q;
   assign write_row = write_active & (write_remaining == '0);
   assign write_address = in_frame_start ? (down ? AddressWidth'(Top) : '0) : write_address_q;
@@ -103,13 +102,14 @@ module frame_stack #(
       else if (write_end && bank != '0) write_address_q <= write_address - AddressWidth'(Burst - 1);
       else write_address_q <= address_after(write_address, write_end, down);
       bank_q <= bank - BankWidth'(write_end);
+      write_end <= write_active & (write_position == LastPosition - PositionWidth'(1));
       if (write_end) begin  // of the row before the last
         write_last_q <= write_address == (down ? AddressWidth'(BeforeLastDown) : AddressWidth'(BeforeLastUp))
             && (Lanes == 1 || bank == BankWidth'(1));
       end
       down <= down ^ read_begin[0];
     end
-    if (rst) down <= 1'b0;
+    if (rst) {down, write_end} <= '0;
   end
 
   for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane

@@ -2,12 +2,13 @@
 // axil_port: an AXI4-Lite port for registers, with one write and one read in flight.
 //
 // Write: `write` is high in the cycle after both address and data were taken, whichever came first; the response leaves
-// in the cycle after it. Read: `read` is high in the cycle in which the address is taken, and read_data of that cycle
-// leaves in the next; if read_late is high with `read`, late_data of 4 cycles later leaves in the cycle after that, and
+// in the cycle after it. Read: `read` is high in the cycle after the address was taken, and read_data of that cycle leaves
+// in the next; if read_late is high with `read`, late_data of 4 cycles later leaves in the cycle after that, and
 // writes wait until then. A response waits for its ready, and the next transaction of its kind waits for the response.
 // `refused`, with the data, makes the response SLVERR. No ready output depends on an input of the port in the same
 // cycle. While rst is high every ready is low: no access is taken that would find no answer. A reset forgets those in
-// flight. Model: models/tactile_depth/registers/axil_port.py.
+// flight, but a write that is due in its first cycle takes effect: `write` comes from a register, because it begins long
+// paths. Model: models/tactile_depth/registers/axil_port.py.
 
 `default_nettype none
 
@@ -35,12 +36,12 @@ module axil_port
   output logic                    s_axil_rvalid,
   input  wire                     s_axil_rready,
 
-  output logic                    write,
+  output logic                    write = 1'b0,
   output logic [31:0]             write_offset,  // of the register, in bytes
   output logic [31:0]             write_ones,    // the data, 0 in bytes without strobe
   output logic [31:0]             write_mask,    // ones in bytes with strobe
   input  wire                     write_refused,
-  output logic                    read,
+  output logic                    read = 1'b0,
   output logic [31:0]             read_offset,
   input  wire  [31:0]             read_data,
   input  wire                     read_refused,
@@ -56,17 +57,16 @@ module axil_port
   logic [AddressWidth-1:0] address;
   logic [31:0] data;
   logic [3:0] strobe;
+  logic [AddressWidth-1:0] read_address;
   logic [3:0] waiting;  // for late_data, one bit a cycle
 
   assign s_axil_awready = !address_held && !rst;
   assign s_axil_wready = !data_held && !rst;
-  assign s_axil_arready = !s_axil_rvalid && waiting == '0 && !rst;
-  assign write = address_held && data_held && !s_axil_bvalid && waiting == '0 && !rst;
+  assign s_axil_arready = !s_axil_rvalid && !read && waiting == '0 && !rst;
   assign write_offset = 32'({address[AddressWidth-1:2], 2'b00});
   assign write_mask = {{8{strobe[3]}}, {8{strobe[2]}}, {8{strobe[1]}}, {8{strobe[0]}}};
   assign write_ones = data & write_mask;
-  assign read = s_axil_arvalid && s_axil_arready;
-  assign read_offset = 32'({s_axil_araddr[AddressWidth-1:2], 2'b00});
+  assign read_offset = 32'({read_address[AddressWidth-1:2], 2'b00});
 
   always_ff @(posedge clk) begin
     if (s_axil_awvalid && s_axil_awready) begin
@@ -78,6 +78,8 @@ module axil_port
       data <= s_axil_wdata;
       strobe <= s_axil_wstrb;
     end
+    write <= (address_held || s_axil_awvalid) && (data_held || s_axil_wvalid) && !write && !s_axil_bvalid
+        && waiting[2:0] == '0 && !(read && read_late);
     if (write) begin
       s_axil_bvalid <= 1'b1;
       s_axil_bresp <= write_refused ? SlaveError : Okay;
@@ -88,6 +90,8 @@ module axil_port
       data_held <= 1'b0;
     end
 
+    read <= s_axil_arvalid && s_axil_arready;
+    if (s_axil_arvalid && s_axil_arready) read_address <= s_axil_araddr;
     waiting <= {waiting[2:0], read && read_late};
     if (s_axil_rready) s_axil_rvalid <= 1'b0;
     if ((read && !read_late) || waiting[3]) begin
@@ -99,14 +103,16 @@ module axil_port
     if (rst) begin
       address_held <= 1'b0;
       data_held <= 1'b0;
+      write <= 1'b0;
       s_axil_bvalid <= 1'b0;
       s_axil_rvalid <= 1'b0;
+      read <= 1'b0;
       waiting <= '0;
     end
   end
 
   logic unused_bits;
-  assign unused_bits = ^{address[1:0], s_axil_araddr[1:0]};
+  assign unused_bits = ^{address[1:0], read_address[1:0]};
 
 endmodule
 

@@ -111,17 +111,18 @@ class Checker(PortChecker):
             self.late_answer = model.read(OFFSET[asked_before])
             reads_table = self.late_answer[1] == Response.OKAY
         answer, is_late = (0, Response.OKAY), False
-        offset, writes = port.read(offered), port.write()
+        offset, writes = port.asked, port.write()
         if offset is not None:
             is_late = model.is_port(offset)
             self.asked = next((r.name for r in MAP if r.offset == offset), "")
             answer = answer if is_late else model.read(offset, self.live())
         written, started, refused = len(model.table_writes), len(model.captures), False
         gains_before = len(model.gains_written)
-        if writes is not None and not resets:
+        if writes is not None:
             assert port.data is not None
             refused = model.write(writes.offset, *port.data, live=self.live()) != Response.OKAY
-            self.responses["write"].append(response(refused))
+            if not resets:
+                self.responses["write"].append(response(refused))
 
         command |= {"write": len(model.table_writes) - written, "read": int(reads_table and not resets)}
         got = structs.of(self.dut.table_command, "table_command_t")

@@ -386,7 +386,7 @@ async def random_traffic(checker: Checker, dut: Any, pressure: float) -> None:
     master = master_of(dut)
     done = False
     since_start = 0
-    writable = [register.offset for register in MAP if register.writable] + 9 * [OFFSET["TABLE_LOW"]]
+    writable = [register.offset for register in MAP if register.writable] + 30 * [OFFSET["TABLE_LOW"]]
     unmapped = [address for address in ADDRESSES if address not in OFFSET.values()]
     tables = [table for table, size in checker.build.table_sizes.items() if size]
 

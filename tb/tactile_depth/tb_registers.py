@@ -87,14 +87,15 @@ async def busy_until_the_last_depth_is_taken(dut: Any) -> None:
 
 @case()
 async def busy_from_the_clock_after_the_first_pixel(dut: Any) -> None:
-    """Read STATUS with its address taken before, with and after the first pixel."""
+    """Look up STATUS before, with and after the first pixel."""
     pipeline = await started(dut)
     after_pixel = {}
-    for lead in range(-1, 5):
+    for lead in range(-2, 5):
         dut.s_axil_rready.value = 0
         sending = cocotb.start_soon(pipeline.send([None] * (20 - lead), pipeline.frame()))
         await ClockCycles(dut.clk, 20)
         await present(dut, "ar", araddr=OFFSET["STATUS"])
+        await RisingEdge(dut.clk)
         asked = pipeline.into.clock_count
         await RisingEdge(dut.clk)
         value = STATUS.unpack(int(dut.s_axil_rdata.value))["busy"]

@@ -34,7 +34,7 @@ module twiddle_multiply #(
 );
 
   localparam int SumWidth = InWidth + CoeffWidth + 1;
-  localparam int ToSum = 6;  // cycles to the exact product: ROM, a register behind it, dot product
+  localparam int ToSum = 6;  // cycles to the exact product: ROM and a register, dot product
 
   localparam int PositionWidth = $clog2(Size);
   localparam int BlockWidth = $clog2(Block);
@@ -47,9 +47,17 @@ module twiddle_multiply #(
 
   logic [3*CoeffWidth-1:0] factor;
   logic signed [CoeffWidth-1:0] w_re, w_im, w_minus_im;
-  td_rom #(.Width(3 * CoeffWidth), .Depth(Block), .File(File)) u_rom (
-    .clk, .en, .address(position[BlockWidth-1:0]), .data(factor)
-  );
+  logic [BlockWidth-1:0] address;
+  td_rom #(.Width(3 * CoeffWidth), .Depth(Block), .File(File)) u_rom (.clk, .en, .address, .data(factor));
+
+  // A block memory takes long to give a word, a distributed one has the longer way to its words.
+  if (3 * CoeffWidth * Block > td_types_pkg::DistributedBits) begin : g_register_behind
+    assign address = position[BlockWidth-1:0];
+    always_ff @(posedge clk) if (en) {w_minus_im, w_im, w_re} <= factor;
+  end else begin : g_register_in_front
+    always_ff @(posedge clk) if (en) address <= position[BlockWidth-1:0];
+    assign {w_minus_im, w_im, w_re} = factor;
+  end
 
   if (PositionWidth > BlockWidth) begin : g_unused
     logic unused_position;
@@ -62,7 +70,6 @@ module twiddle_multiply #(
     if (en) begin
       re_q <= {re_q[0], in_re};
       im_q <= {im_q[0], in_im};
-      {w_minus_im, w_im, w_re} <= factor;
       start_q <= {start_q[ToSum-2:0], in_start};
       frame_start_q <= {frame_start_q[ToSum-2:0], in_frame_start};
       active_q <= {active_q[ToSum-2:0], active};

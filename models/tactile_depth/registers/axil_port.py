@@ -67,6 +67,8 @@ class AxilPort:
         Response of the write, while it waits for its ready.
     answer : (int, Response) or None
         Data and response of the read, while they wait for their ready.
+    asked : int or None
+        Offset of the read that was taken in the cycle before, and is looked up in this one.
     late : int
         Cycles until the late answer of a read; 0: none is under way.
     """
@@ -75,29 +77,26 @@ class AxilPort:
     data: tuple[int, int] | None = None
     written: Response | None = None
     answer: tuple[int, Response] | None = None
+    asked: int | None = None
     late: int = 0
 
     def reset(self) -> None:
         """Forget the transactions in flight; while a reset lasts, none is taken."""
-        self.address = self.data = self.written = self.answer = None
+        self.address = self.data = self.written = self.answer = self.asked = None
         self.late = 0
 
     @property
     def read_ready(self) -> bool:
         """Return `arready` out of reset; the ready of address and data of a write is that none is held."""
-        return self.answer is None and not self.late
+        return self.answer is None and self.asked is None and not self.late
 
     def write(self) -> Write | None:
-        """Return the write that takes effect in this cycle, out of reset."""
+        """Return the write that takes effect in this cycle, which may be the first one of a reset."""
         if self.address is None or self.data is None or self.written is not None or self.late:
             return None
         word, strobe = self.data
         mask = strobed_bits(strobe)
         return Write(offset_of(self.address), word & mask, mask)
-
-    def read(self, pins: Pins) -> int | None:
-        """Return the offset of the read that is taken in this cycle, out of reset."""
-        return offset_of(pins.read_address) if pins.read_address is not None and self.read_ready else None
 
     def clock(
         self, pins: Pins, refused: bool, answer: tuple[int, Response], is_late: bool, late_answer: tuple[int, Response]
@@ -110,11 +109,12 @@ class AxilPort:
         refused : bool
             The write of this cycle is refused.
         answer, is_late : (int, Response), bool
-            Answer of the read of this cycle, or whether it comes late.
+            Answer of the read that is looked up in this cycle, or whether it comes late.
         late_answer : (int, Response)
             Late answer as it stands in this cycle.
         """
-        writes, reads = self.write() is not None, self.read(pins) is not None
+        writes, reads = self.write() is not None, self.asked is not None
+        taken = pins.read_address if self.read_ready else None
         held = self.address is not None, self.data is not None
         if self.written is not None and pins.write_response_ready:
             self.address = self.data = self.written = None
@@ -130,4 +130,5 @@ class AxilPort:
             self.answer = answer
         if self.late == 1:
             self.answer = late_answer
+        self.asked = None if taken is None else offset_of(taken)
         self.late = LATE_CLOCKS if reads and is_late else max(0, self.late - 1)
