@@ -35,6 +35,8 @@ class Contact(ByValue):
     depth_lsb_mm, pixel_pitch_mm : float
     pixel_aspect : float
         Width of a grid pixel over its height, `pixel_pitch_mm`.
+    grid : tuple of int, or None
+        Rows and columns that positions count on; None: those of `mask`.
     """
 
     record: Record
@@ -43,6 +45,7 @@ class Contact(ByValue):
     depth_lsb_mm: float
     pixel_pitch_mm: float
     pixel_aspect: float = 1.0
+    grid: tuple[int, int] | None = None
 
     def __repr__(self) -> str:
         peak = f"peak {self.peak_mm:.3g} mm at {self.peak_px}, area {self.area_mm2:.3g} mm^2"
@@ -115,7 +118,8 @@ class Contact(ByValue):
     @property
     def is_central(self) -> bool:
         """True if the area lies wholly in the middle square, where `Result.height_error` was measured."""
-        shape, side = self.mask.shape, min(self.mask.shape)
+        shape = self.grid or self.mask.shape
+        side = min(shape)
         bounds = zip(shape, self.record.least, self.record.greatest, strict=True)
         return all((length - side) // 2 < least <= most < (length + side) // 2 - 1 for length, least, most in bounds)
 

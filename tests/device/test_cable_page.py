@@ -11,6 +11,8 @@ import pytest
 import tactile_depth as td
 from commands.common.repository import ROOT
 from tactile_depth.cli import calibrate, live
+from tactile_depth.link.depth_formats import FORMATS, DepthFormatName
+from tactile_depth.link.rates import rate
 from tests.device.cable import setup_of
 from tests.device.model_device import Setup
 
@@ -28,13 +30,19 @@ def test_the_programs_print_what_the_page_says(
     for program in re.findall(r"^```python\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL):
         exec(program, names)
         printed.append(capsys.readouterr().out)
-    status, depth, captured, several = printed
+    status, depth, averaged, captured, several = printed
     (begin,) = re.findall(r"`(DeviceStatus\(.*?)\.\.\)`", PAGE)
     assert status.startswith(begin)
     shown = re.findall(r"^    (\d (?:True|False) .* mm)$", PAGE, re.MULTILINE)
     assert depth.splitlines() == shown
+    assert f"    {averaged}" in PAGE
     assert captured == "untouched: 0.000 mm\n"
     assert several == "48 48\n"
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_the_page_has_the_rates_of_the_formats(name: DepthFormatName) -> None:
+    assert re.search(rf'^\| `"{name}"`.*\| {rate(128, 128, FORMATS[name]).frames_a_second:.1f} \|$', PAGE, re.MULTILINE)
 
 
 def test_every_option_of_a_command_exists() -> None:

@@ -19,6 +19,7 @@ from tactile_depth.cli.main import main
 from tests.device.cable import setup_of
 from tests.device.conftest import GRID, Plug
 from tests.device.model_device import Setup
+from tests.device.test_formats import require_sent
 from tests.press_video import press_frames, write_sensor
 
 FRAMES = 6
@@ -109,6 +110,21 @@ def test_pictures_that_are_sent_are_shown_as_the_package_computes_them(
         [depth.height_mm for *_, depth in screen], [result.height_mm.astype(np.float32) for result in expected]
     )
     assert counted(capsys.readouterr().out) == {"read": FRAMES, "shown": FRAMES, "dropped": 0, "failed": 0}
+
+
+def test_averaged_depth_of_pictures_that_are_sent(
+    inputs: Path, fitting: td.Pipeline, screen: Any, simulate: Callable[[Setup], None], capsys: Any
+) -> None:
+    simulate(setup_of(fitting))
+    words = ("--pictures", inputs / "presses", "--depth-format", "averaged", *background(inputs))
+    run(inputs, "device:sim", *words)
+    expected = fitting.stream(press_frames(FRAMES))
+    for (*_, depth), result in zip(screen, expected, strict=True):
+        require_sent(depth, result, "averaged")
+    printed = capsys.readouterr().out
+    pitch_mm = fitting.pixel_pitch_mm
+    assert f"grid: 16 x 12 pixels of {pitch_mm:.4f} mm\ndepth: 8 x 6 pixels of {2 * pitch_mm:.4f} mm\n" in printed
+    assert counted(printed)["shown"] == FRAMES
 
 
 def test_the_first_pictures_become_the_reference(
@@ -219,6 +235,9 @@ def test_a_device_with_a_camera_needs_no_pictures(
         (["device:bus", "--pictures", "presses"], "device:bus is no address of a device"),
         (["presses", "--pictures", "presses"], "--pictures presses goes with a device"),
         (["device:sim", "--pictures", "none"], "none: no such source"),
+        (["presses", "--depth-format", "averaged"], "--depth-format averaged goes with a device: omit it"),
+        (["device:uio", "--depth-format", "16-bit"], "--depth-format 16-bit: uio has depth in words alone"),
+        (["device:sim", "--depth-format", "float"], "choose from 'words', '16-bit', 'averaged'"),
         (["device:sim", "--pictures", "presses", "--arithmetic", "float"], "--arithmetic float: a device has"),
     ],
 )

@@ -8,6 +8,15 @@ import pytest
 
 import tactile_depth as td
 from tactile_depth.device.status import DeviceStatus
+from tactile_depth.link.depth_formats import (
+    FORMATS,
+    DepthFormatName,
+    exact_shift,
+    from_bytes,
+    sent_shape,
+    to_bytes,
+    value_bytes,
+)
 from tests.real_data import FOLDER, needs_real_data
 
 GRID = (16, 32)
@@ -58,6 +67,24 @@ def test_a_program_reads_the_same_on_bytes_and_at_the_pins() -> None:
     assert status_at_pins._replace(resets=status.resets) == status
     for read, result in zip(on_bytes[: len(pictures)], small(sample).stream(pictures), strict=True):
         assert read == seen(result)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_each_format_of_depth(name: DepthFormatName) -> None:
+    """Each frame has the codes that the model of the link sends of those of the package."""
+    sample = td.sample("ball")
+    pictures, pipeline = [sample.image, sample.reference, sample.image], small(sample)
+    depth_format, width = FORMATS[name], pipeline.config.data_width
+    shift = 0 if name == "words" else exact_shift(width)
+    shape, size = sent_shape(depth_format, *GRID), value_bytes(depth_format, width)
+    with td.Device("sim", pipeline, depth_format=name) as device:
+        device.load()
+        frames = list(device.depth(pictures))
+    for frame, result in zip(frames, pipeline.stream(pictures), strict=True):
+        values = to_bytes(result.codes[::-1], depth_format, width, shift)  # the bottom row leaves first
+        codes = from_bytes(values, size).reshape(shape)[::-1] << shift
+        np.testing.assert_array_equal(frame.codes, codes)
+        assert frame.contact.record[3:] == result.contact.record[3:]
 
 
 @needs_real_data

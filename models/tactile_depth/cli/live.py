@@ -35,11 +35,13 @@ from tactile_depth.device.addresses import SIM
 from tactile_depth.device.device import Device
 from tactile_depth.errors import InputError, InputWarning
 from tactile_depth.frames import GREY
+from tactile_depth.link.depth_formats import FORMATS, NAMES, DepthFormat
 from tactile_depth.pipeline import Pipeline
 from tactile_depth.sensor import Sensor
 
 NAME = "live"
 HELP = "Show depth of a camera, a video, a folder of pictures or a device as it comes, or record it."
+WORDS = NAMES[DepthFormat.WORDS]
 CAPTURE = "capture"
 CAPTURED = 8  # frames that a capture takes the mean of
 PROGRESS_S = 0.2  # between two progress lines
@@ -61,6 +63,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--pictures",
         metavar="SOURCE",
         help=f"with {DEVICE}..: pictures to be sent to it, a SOURCE as above; by default its own camera takes them",
+    )
+    parser.add_argument(
+        "--depth-format",
+        choices=tuple(FORMATS),
+        help=f"with {DEVICE}..: {WORDS} (default), whole depth codes; 16-bit, codes rounded to 16 bits; averaged, the "
+        "mean of 2x2 codes in 16 bits, of which a line carries six times as many frames",
     )
     parser.add_argument(
         "--reference",
@@ -106,7 +114,9 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
                 raise InputError(
                     f"{options.pictures or options.source}: no frame to show: give a source with more of them"
                 )
-            print(f"grid: {pipeline.grid[1]} x {pipeline.grid[0]} pixels of {pipeline.pixel_pitch_mm:.4f} mm")
+            print(f"grid: {shape_of(pipeline.grid, pipeline.pixel_pitch_mm)}")
+            if first.depth.codes.shape != pipeline.grid:
+                print(f"depth: {shape_of(first.depth.codes.shape, first.depth.pixel_pitch_mm)}")
             with Display(options.save, not options.headless) as display:
                 if key is not None:
                     print(KEYS)
@@ -122,11 +132,20 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
         print(f"results: {options.save}")
 
 
+def shape_of(shape: Sequence[int], pitch_mm: float) -> str:
+    """Return columns, rows and size of pixels in words."""
+    rows, columns = shape
+    return f"{columns} x {rows} pixels of {pitch_mm:.4f} mm"
+
+
 def device_of(options: argparse.Namespace) -> str | None:
     """Return the address of the device, None for another source; raise InputError if options do not fit it."""
     if not options.source.startswith(DEVICE):
         if options.pictures is not None:
             raise InputError(f"--pictures {options.pictures} goes with a device: give it as SOURCE, or device:ADDRESS")
+        if options.depth_format is not None:
+            name = f"--depth-format {options.depth_format}"
+            raise InputError(f"{name} goes with a device: omit it, or give device:ADDRESS as SOURCE")
         return None
     address = address_of(options.source)
     if options.pictures is None and address.partition(":")[0] == SIM:
@@ -159,7 +178,7 @@ def of_pictures(
     pipeline = make_pipeline(options, choose_sensor(options, reference), reference)
     if address is None:
         return PackageFeed(frames, pipeline, source.counts), pipeline
-    device = stack.enter_context(Device(address, pipeline))
+    device = stack.enter_context(Device(address, pipeline, depth_format=options.depth_format or WORDS))
     device.load()
     return SentFeed(frames, device, source.counts), pipeline
 
@@ -180,7 +199,7 @@ def own_camera(
         if not is_given:
             warnings.simplefilter("ignore", InputWarning)  # of the picture that stands for a reference for a moment
         pipeline = make_pipeline(options, sensor, reference if is_given else stand_in(sensor))
-    device = stack.enter_context(Device(address, pipeline))
+    device = stack.enter_context(Device(address, pipeline, depth_format=options.depth_format or WORDS))
     device.load()
     if not is_given:
         print(f"do not touch the sensor: its next {CAPTURED} frames become the reference", flush=True)

@@ -47,6 +47,7 @@ OPTIONS = {
     "rows": "--grid ..x{}",
     "threshold_mm": "--threshold-mm {}",
     "area_threshold_mm": "--area-threshold-mm {}",
+    "depth_format": "--depth-format {}",
     "solver": "--solver {}",
     "boundary": "--boundary {}",
     "data_width": "--data-width {}",

@@ -8,16 +8,19 @@ from pathlib import Path
 import numpy as np
 
 
-def vertices_mm(height_mm: np.ndarray, pixel_pitch_mm: float, pixel_aspect: float) -> np.ndarray:
+def vertices_mm(
+    height_mm: np.ndarray, pixel_pitch_mm: float, pixel_aspect: float, origin_mm: tuple[float, float] = (0.0, 0.0)
+) -> np.ndarray:
     """Return the points of a surface, float32 (rows * columns, 3): x to the right, y up the picture, z the height.
 
     x and y count from the upper left corner of the picture: depth (i, j) lies half a pixel up and to the left of the
-    centre of pixel (i, j).
+    centre of pixel (i, j). `origin_mm` is the row and the column of the first value, in mm.
     """
     rows, columns = height_mm.shape
     y, x = np.mgrid[:rows, :columns].astype(np.float32) * np.float32(pixel_pitch_mm)
     x *= np.float32(pixel_aspect)
-    return np.stack([x, -y, height_mm.astype(np.float32)], axis=-1).reshape(-1, 3)
+    top, left = map(np.float32, origin_mm)
+    return np.stack([x + left, -(y + top), height_mm.astype(np.float32)], axis=-1).reshape(-1, 3)
 
 
 def triangles(rows: int, columns: int) -> np.ndarray:

@@ -10,6 +10,7 @@ from tactile_depth.device.simulator import Simulator
 from tactile_depth.device.transport import Transport
 from tactile_depth.device.uio import DEFAULT, Uio
 from tactile_depth.errors import Argument, InputError
+from tactile_depth.link.depth_formats import FORMATS, DepthFormat, DepthFormatName
 from tactile_depth.pipeline import Pipeline
 
 BAUD = 3_000_000
@@ -18,20 +19,24 @@ UIO_FILES = f"{UIO}:REGISTERS,VDMA,BUFFER"
 ACCEPTED = ("serial:PATH", "serial:PATH@BAUD", "serial:USB-SERIAL-NUMBER", "sim", "sim:pins", "uio", UIO_FILES)
 
 
-def open_channel(address: str, pipeline: Pipeline) -> Channel:
-    """Open the channel to the device of an address.
+def open_channel(address: str, pipeline: Pipeline, depth_format: DepthFormatName = "words") -> Channel:
+    """Open the channel to the device of an address, which sends depth in a format.
 
     Raises
     ------
     InputError
-        There is no such transport or no such port, or the device speaks another version of the link.
+        There is no such transport or no such port, the transport has not this format, or the device speaks another
+        version of the link.
     DeviceError
         The line cannot be opened, or the device does not answer.
     """
     kind, colon, files = address.partition(":") if isinstance(address, str) else ("", "", "")
     if kind == UIO:
+        if FORMATS[depth_format] != DepthFormat.WORDS:
+            problem = f": {UIO} has depth in words alone, which a DMA writes into memory"
+            raise InputError(Argument("depth_format", depth_format), problem, remedy="omit it")
         return Uio(*(_files(files, Argument("address", address)) if colon else DEFAULT))
-    return Line(open_transport(address, pipeline))
+    return Line(open_transport(address, pipeline), FORMATS[depth_format])
 
 
 def open_transport(address: str, pipeline: Pipeline) -> Transport:

@@ -26,10 +26,11 @@ from tactile_depth.device.frame import DeviceFrame
 from tactile_depth.device.registers import Registers, read_words, write_words
 from tactile_depth.device.status import COUNTERS, DeviceStatus
 from tactile_depth.device.tables import load_tables, require_same, wait_in_use
-from tactile_depth.errors import Argument, InputError, InputWarning, Part, is_number, warn
+from tactile_depth.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
 from tactile_depth.frames import GREY
 from tactile_depth.gradient.flat_field import captured_gains, reference_gains, require_light
 from tactile_depth.gradient.reference_capture import largest_log2_frames
+from tactile_depth.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.npy import is_array
 from tactile_depth.pictures import Picture, Pictures
 from tactile_depth.pipeline import PICTURES, Pipeline
@@ -59,11 +60,16 @@ class Device(AbstractContextManager["Device"]):
     pipeline : Pipeline
         Pipeline with the arithmetic of the hardware. Its configuration is that of the device; it gives calibration,
         reference, zero offset, thresholds and units.
+    depth_format : str
+        Format in which the device sends depth. `words`, the default: whole depth codes. `16-bit`: codes whose lowest
+        bits are rounded away, so that 16 are left. `averaged`: in 16 bits the mean of 2 x 2 codes, half the rows and
+        columns. Contacts are those of the whole grid in each. `uio` has words alone.
 
     Attributes
     ----------
     address : str
     pipeline : Pipeline
+    depth_format : str
     registers : mapping of str to int
         Registers of the device by name, as `registers["FRAMES_OUT"]`, and their fields, as
         `registers["CONTROL.hold_contact"]`. Each access goes to the device; assignment writes. docs/registers.md lists
@@ -72,13 +78,13 @@ class Device(AbstractContextManager["Device"]):
     Raises
     ------
     InputError
-        The address or the pipeline is not accepted, there is no such port, or the device has another configuration, or
-        speaks another version of the link.
+        The address, the pipeline or the format is not accepted, there is no such port, or the device has another
+        configuration, or speaks another version of the link.
     DeviceError
         The port is in use or cannot be opened, the device does not answer, or pyserial or the simulator is missing.
     """
 
-    def __init__(self, address: str, pipeline: Pipeline) -> None:
+    def __init__(self, address: str, pipeline: Pipeline, *, depth_format: DepthFormatName = "words") -> None:
         if not isinstance(pipeline, Pipeline):
             problem = f" is a {type(pipeline).__name__}"
             raise InputError(Argument("pipeline"), problem, accepted="a Pipeline, as Pipeline(sensor, ..) makes it")
@@ -86,7 +92,8 @@ class Device(AbstractContextManager["Device"]):
             arithmetic = Argument("arithmetic", pipeline.arithmetic)
             remedy = ("make the pipeline with ", Argument("arithmetic", "chip"))
             raise InputError(arithmetic, ": a device has the arithmetic of the hardware", remedy=remedy)
-        self.address, self.pipeline = address, pipeline
+        one_of(Argument("depth_format", depth_format), tuple(FORMATS))
+        self.address, self.pipeline, self.depth_format = address, pipeline, depth_format
         self.registers: MutableMapping[str, int] = Registers(self._open_line)
         self._reader = Reader(pipeline.sensor, pipeline.grid)
         self._codes = {name: self._code(mm) for name, mm in _thresholds_of(pipeline).items()}
@@ -294,7 +301,7 @@ class Device(AbstractContextManager["Device"]):
 
     def _connect(self) -> Channel:
         """Open the line, and compare the device with the pipeline."""
-        line = open_channel(self.address, self.pipeline)
+        line = open_channel(self.address, self.pipeline, self.depth_format)
         try:
             grid = line.status.rows, line.status.columns
             if grid != tuple(self.pipeline.grid):
@@ -377,9 +384,11 @@ class Device(AbstractContextManager["Device"]):
         touch, release, area = (self._codes[name] for name in THRESHOLDS)
         settings = Settings(touch, release, area, minimum_area=1, debounce=1)
         recorder = Recorder(settings, pipeline.config.data_width, pipeline.config.solver == "tridiagonal")
-        units = pipeline.depth_lsb_mm, pipeline.pixel_pitch_mm, pipeline.sensor.pixel_aspect
+        pitch_mm = span_of(frame.depth_format) * pipeline.pixel_pitch_mm
+        units = pipeline.depth_lsb_mm, pitch_mm, pipeline.sensor.pixel_aspect
         counts = frame.number, arrival.time_s, arrival.lost
-        return DeviceFrame(frame.codes, frame.record, *counts, picture, recorder, *units)
+        form = self.depth_format, (pipeline.config.rows, pipeline.config.columns)
+        return DeviceFrame(frame.codes, frame.record, *counts, picture, recorder, *units, *form)
 
     # Thresholds.
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from tactile_depth.by_value import ByValue
 from tactile_depth.contact.contact_events import Record
+from tactile_depth.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.result import Contact, Recorder, Result
 
 
@@ -19,13 +20,13 @@ from tactile_depth.result import Contact, Recorder, Result
 class DeviceFrame(ByValue):
     """Depth frame of a device. Rows are in the order of the picture; depth is positive where the gel is pressed in.
 
-    Heights, depths and the mask are those that a `Result` of the same codes and threshold has. Two frames are equal if
-    all their values are.
+    Heights, depths and the mask are those that a `Result` of the same codes and threshold has. The contact is that of
+    the grid of the device, also where the depth is averaged. Two frames are equal if all their values are.
 
     Attributes
     ----------
     codes : int32 array (rows, columns)
-        Depth codes.
+        Depth codes; with the format `averaged` half as many rows and columns as the grid has, rounded down.
     record : Record
         Contact record that the device made, with the frame's number and time in the pipeline.
     number : int
@@ -41,9 +42,13 @@ class DeviceFrame(ByValue):
     recorder : Recorder
         Holds the thresholds.
     depth_lsb_mm, pixel_pitch_mm : float
-        Depth of code 1, and height of a grid pixel, in mm.
+        Depth of code 1 in mm, and height of a pixel of `codes`: with the format `averaged` of two grid pixels.
     pixel_aspect : float
-        Width of a grid pixel over its height.
+        Width of a pixel over its height.
+    depth_format : str
+        Format in which the depth came: `words`, `16-bit` or `averaged`.
+    grid : tuple of int
+        Rows and columns of the device, in whose pixels `record` counts.
     """
 
     codes: npt.NDArray[np.int32]
@@ -56,6 +61,8 @@ class DeviceFrame(ByValue):
     depth_lsb_mm: float
     pixel_pitch_mm: float
     pixel_aspect: float
+    depth_format: DepthFormatName
+    grid: tuple[int, int]
 
     def __repr__(self) -> str:
         rows, columns = self.codes.shape
@@ -107,5 +114,21 @@ class DeviceFrame(ByValue):
 
     @cached_property
     def contact(self) -> Contact:
-        """Contact, with the record that the device made."""
-        return self._result.contact
+        """Contact, with the record that the device made, in pixels of the grid; `mask` is that of the frame."""
+        return replace(self._result.contact, pixel_pitch_mm=self.pixel_pitch_mm / self._span, grid=self.grid)
+
+    @property
+    def origin_mm(self) -> tuple[float, float]:
+        """Row and column of the first value from the upper left corner of the picture, in mm, as `Contact` counts.
+
+        It is (0, 0), but with the format `averaged` the middle of the grid pixels whose mean the value is. The value of
+        row r and column c lies r * `pixel_pitch_mm` below it and c * `pixel_pitch_mm` * `pixel_aspect` to the right.
+        """
+        middle = (self._span - 1) / 2
+        first_row = self.grid[0] % self._span if self.recorder.bottom_first else 0  # the last row to leave is not sent
+        pitch_mm = self.pixel_pitch_mm / self._span
+        return (first_row + middle) * pitch_mm, middle * pitch_mm * self.pixel_aspect
+
+    @property
+    def _span(self) -> int:
+        return span_of(FORMATS[self.depth_format])

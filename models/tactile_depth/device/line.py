@@ -48,13 +48,16 @@ Reply = TypeVar("Reply", ReadReply, WriteReply)
 class Line:
     """Channel to a device at the end of a transport. A thread of its own takes what the device sends.
 
-    The device is told a shift of 16-bit depth that it does not have after a reset, although words of depth have none:
-    a status with another shift shows a reset or a power-up.
+    The device is told a format and a shift that it does not have together after a reset. For depth in words, the format
+    after a reset, that is another shift, although words have none. So a status with others shows a reset or a power-up.
 
     Parameters
     ----------
     transport : Transport
         It is closed with the line, and if the device does not answer.
+    depth_format : DepthFormat
+        Format in which depth comes; a frame that the device began in another one before is dropped. In 16 bits the
+        shift is the least that keeps the range of a depth code.
 
     Attributes
     ----------
@@ -73,8 +76,9 @@ class Line:
 
     quiet_s = QUIET_S
 
-    def __init__(self, transport: Transport) -> None:
+    def __init__(self, transport: Transport, depth_format: DepthFormat = DepthFormat.WORDS) -> None:
         self.broken = False
+        self._format = depth_format
         self._transport, self._pace = transport, transport.pace
         self._frames = DepthFrames()
         self._changed = threading.Condition()
@@ -129,7 +133,7 @@ class Line:
             self._reply = packet
         elif isinstance(packet, Status):
             self._statuses += 1
-        if frame is not None and self._collects:
+        if frame is not None and self._collects and frame.depth_format == self._format:
             if len(self._arrivals) == KEPT:
                 self._arrivals.popleft()
                 self._dropped += 1
@@ -212,9 +216,11 @@ class Line:
         return self._frames.status if self._statuses > count else None
 
     def _select(self) -> None:
-        """Select depth in words, and watch for resets from then on."""
-        after_reset = exact_shift(self.ask().data_width)
-        mark = DepthFormat.WORDS, LARGEST_SHIFT if after_reset != LARGEST_SHIFT else 0
+        """Select the format of depth, and watch for resets from then on."""
+        shift = exact_shift(self.ask().data_width)  # also that after a reset
+        if self._format == DepthFormat.WORDS:
+            shift = LARGEST_SHIFT if shift != LARGEST_SHIFT else 0
+        mark = self._format, shift
         with self._changed:
             self._resets, self._mark = None, mark
         self._repeat(
@@ -318,7 +324,7 @@ class Line:
     def depth_s(self) -> float:
         """Time in which the depth of a picture that was sent comes, as a rule."""
         status = self.status
-        depth = rate(status.rows, status.columns, DepthFormat.WORDS, status.data_width).line_bytes
+        depth = rate(status.rows, status.columns, self._format, status.data_width).line_bytes
         return self._backlog_s + 1.5 * depth * self._pace.byte_s + self._pace.look_s
 
     @property

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +28,17 @@ class DepthFormat(IntEnum):
     """16 bits: the mean of 2 x 2 codes / 2^shift."""
 
 
+DepthFormatName = Literal["words", "16-bit", "averaged"]
+NAMES: Final[dict[DepthFormat, DepthFormatName]] = {
+    DepthFormat.WORDS: "words",
+    DepthFormat.SHORT: "16-bit",
+    DepthFormat.AVERAGED: "averaged",
+}
+"""Names of the formats of depth, for users."""
+FORMATS: Final = {name: depth_format for depth_format, name in NAMES.items()}
+AVERAGED_PIXELS: Final = 2  # rows, and columns, of the grid whose mean a value of the averaged format is
+
+
 def value_bytes(depth_format: DepthFormat, data_width: int) -> int:
     """Return the bytes of a value; `data_width` is the bits of a depth code."""
     return -(-data_width // 8) if depth_format == DepthFormat.WORDS else SHORT_BITS // 8
@@ -35,7 +46,13 @@ def value_bytes(depth_format: DepthFormat, data_width: int) -> int:
 
 def sent_shape(depth_format: DepthFormat, rows: int, columns: int) -> tuple[int, int]:
     """Return the rows and columns of values that are sent of a frame; an odd last row is not averaged and not sent."""
-    return (rows // 2, columns // 2) if depth_format == DepthFormat.AVERAGED else (rows, columns)
+    span = span_of(depth_format)
+    return rows // span, columns // span
+
+
+def span_of(depth_format: DepthFormat) -> int:
+    """Return the rows, and columns, of the grid that a value covers."""
+    return AVERAGED_PIXELS if depth_format == DepthFormat.AVERAGED else 1
 
 
 def exact_shift(data_width: int) -> int:
