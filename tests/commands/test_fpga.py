@@ -5,7 +5,6 @@ import contextlib
 import json
 import re
 import shutil
-import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -145,10 +144,18 @@ def test_a_missing_tool_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_seed_whose_routing_does_not_end_is_given_up(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     def endless(*_words: Any) -> str:
-        raise subprocess.TimeoutExpired("nextpnr", fpga.ROUTE_S)
+        raise fpga.TimeUsedUp
 
     monkeypatch.setattr(fpga, "tool", endless)
     assert fpga.route(fpga.BOARDS["ulx3s"], "ulx3s", Path("ulx3s.lpf"), 2, tmp_path) is None
+
+
+def test_a_tool_may_use_so_much_processor_time(tmp_path: Path) -> None:
+    """Let a tool wait for longer than its processor time, and then use more than that."""
+    assert not fpga.tool("python", ["-c", "import time; time.sleep(1.5)"], tmp_path, "waits.log", 1)
+    with pytest.raises(fpga.TimeUsedUp):
+        fpga.tool("python", ["-c", "while True: pass"], tmp_path, "works.log", 1)
+    assert fpga.tool("python", ["-c", "print('ERROR: no'); exit(2)"], tmp_path, "fails.log", 1) == "ERROR: no"
 
 
 def test_what_does_not_fit_is_named() -> None:
@@ -235,6 +242,10 @@ def test_the_pipelines_clock_is_not_the_cameras() -> None:
     report = {"fmax": fmax, "critical_paths": [*paths, {"from": CAMERA, "to": SYSTEM, "path": [step] * 4}]}
     assert fpga.clock_of(report)["achieved"] == 101.0
     assert fpga.longest_path(report) == ["0.40 ns logic lut.A"]
+    assert fpga.longest_path(report, "camera") == ["0.40 ns logic lut.A"] * 3
+    del fmax[SYSTEM[8:]]
+    with pytest.raises(RuntimeError, match="nextpnr reports no clock of the pipeline"):
+        fpga.clock_of(report)
 
 
 def test_the_clocks_are_those_of_the_boards_module() -> None:
