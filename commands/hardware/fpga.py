@@ -3,8 +3,8 @@
 
 Takes KEY=VALUE arguments: TARGET, SEEDS, MINUTES, CLOCK_MHZ, SENSOR and the variables of `make sim` that choose a
 configuration. FRAMES gives the size of a pixel, REFERENCE the colours without contact, CAMERA the pixel format of a
-camera at the board's header, SENSOR its type. Exit status: 0 when the bitstream meets its clocks, and the bits that cross between
-them are fast enough; 1 when not; 2 on bad input and when the design does not fit.
+camera at the board's header, SENSOR its type. Exit status: 0 when the bitstream meets its clocks, and the bits that
+cross between them are fast enough; 1 when not; 2 on bad input and when the design does not fit.
 """
 
 import importlib.metadata

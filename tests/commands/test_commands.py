@@ -71,7 +71,7 @@ REFUSED = {
     f"{BOARD} SEEDS=0": "SEEDS=0: accepted are different whole numbers from 1 with commas",
     f"{BOARD} SEEDS=1,x": "SEEDS=1,x: accepted are different whole numbers",
     f"{BOARD} SEEDS=2,2": "SEEDS=2,2",
-    f"{BOARD} MINUTES=0": "MINUTES=0: accepted are a whole number from 1 to 1,440",
+    f"{BOARD} MINUTES=0": "MINUTES=0: accepted is a whole number from 1 to 1,440",
     f"{BOARD} SENSOR=ov7725": "SENSOR=ov7725 goes with CAMERA=raw8",
     "mutate JOBS=0": "JOBS=0: accepted is a whole number from 1 to 1,000",
     "mutate MUTANTS=0": "MUTANTS=0: accepted is a whole number from 1 to 100,000",
