@@ -386,9 +386,12 @@ async def random_traffic(checker: Checker, dut: Any, pressure: float) -> None:
     master = master_of(dut)
     done = False
     since_start = 0
-    writable = [register.offset for register in MAP if register.writable] + 30 * [OFFSET["TABLE_LOW"]]
+    writable = [register.offset for register in MAP if register.writable] + 24 * [OFFSET["TABLE_LOW"]]
     unmapped = [address for address in ADDRESSES if address not in OFFSET.values()]
     tables = [table for table, size in checker.build.table_sizes.items() if size]
+
+    if tables:
+        await choose(dut, rng.choice(tables), 0)  # the table of number 0 may not be there
 
     def any_offset() -> int:
         return rng.choice(rng.choice((writable, tuple(OFFSET.values()))) if rng.random() < 0.9 else unmapped)
