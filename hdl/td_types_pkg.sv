@@ -153,12 +153,14 @@ package td_types_pkg;
     logic [15:0] least_column;
   } contact_sums_t;
 
-  // A counter that counts on, and stays at all ones.
+  // A counter that counts on, and stays at all ones; or begins again. A clearing write comes late, behind the sum.
   localparam int StepWidth = 13;
-  function automatic logic [31:0] counted(input logic [31:0] count, input logic [StepWidth-1:0] step);
+  function automatic logic [31:0] counted(
+    input logic [31:0] count, input logic [StepWidth-1:0] step, input logic clear
+  );
     logic [32:0] sum;
     sum = {1'b0, count} + 33'(step);
-    counted = sum[31:0] | {32{sum[32]}};
+    counted = clear ? 32'(step) : sum[31:0] | {32{sum[32]}};
   endfunction
 
   // Nodes of a map: one for each complete block of pixels.

@@ -108,7 +108,9 @@ module fv_depth_packets
     .in_code(value_data), .value(reference)
   );
 
+  logic ended;  // the last byte of a frame left in the clock before
   always_ff @(posedge clk) begin
+    ended <= ~rst & leaves & packet_ends & trailer;
     since <= read_q2 ? '0 : since + 2'(since != 2'd2);
     if (read_q2) codes <= codes + 3'd1;
     if (value_read) reads <= reads + 3'd1;
@@ -228,9 +230,9 @@ module fv_depth_packets
     numbered: assert (sent == number);
     if (started && !rst) begin
       if (was_reset) quiet: assert (!sending);
-      taken: assert (sending == busy && frame_take == (~busy & frame_valid & format != 2'd0));
+      taken: assert (sending == busy && frame_take == (~busy & ~ended & frame_valid & format != 2'd0));
       if (!busy) none: assert (!depth_valid && !value_read);
-      given_back: assert (frame_done == (leaves && trailer && at == 7'd65));
+      given_back: assert (frame_done == ended);
       if (value_read) begin
         own: assert (!trailer && at >= 7'd9 && byte_of_value == '0 && reads < (kind == 2'd3 ? 3'd4 : 3'd1));
         place: assert (32'(value_address) == 32'(read_row) * Columns + 32'(read_column));

@@ -98,8 +98,8 @@ module camera_registers
     faults_q <= faults;
     lost_q <= frames_lost;
     status <= (status & ~(write && write_offset == CameraStatusOffset ? write_ones : '0)) | status_set;
-    dropped <= counted(control[CameraControlClearCountersBit] ? '0 : dropped, StepWidth'(|faults_q));
-    lost <= counted(control[CameraControlClearCountersBit] ? '0 : lost, StepWidth'(lost_q));
+    dropped <= counted(dropped, StepWidth'(|faults_q), control[CameraControlClearCountersBit]);
+    lost <= counted(lost, StepWidth'(lost_q), control[CameraControlClearCountersBit]);
     if (rst) {faults_q, lost_q, status, dropped, lost} <= '0;
   end
 

@@ -125,11 +125,11 @@ module depth_packets
   end
   assign depth_valid = sending & phase != Load & ~stale;
   assign depth_last = part_ends & (phase == Tail | (phase == Value & (packet_full | last_value)));
-  assign frame_take = ~sending & frame_valid & format != 2'd0;
-  assign frame_done = leaves & phase == Tail & part_ends;
+  assign frame_take = ~sending & ~frame_done & frame_valid & format != 2'd0;
   assign sent = number;
 
   always_ff @(posedge clk) begin
+    frame_done <= leaves & phase == Tail & part_ends;
     stale <= leaves & (phase == Tail ? lane == '1 : trailer & part_ends);
     if (leaves || phase == Load) begin
       at <= part_ends ? '0 : at + 6'd1;
@@ -161,6 +161,7 @@ module depth_packets
     end
     if (rst) begin
       sending <= 1'b0;
+      frame_done <= 1'b0;
       stale <= 1'b0;
     end
     if (cold_rst) number <= '0;

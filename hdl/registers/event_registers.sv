@@ -65,7 +65,7 @@ module event_registers
 
   always_ff @(posedge clk) begin
     for (int n = 0; n < Counters; n++) begin
-      counts[32*n+:32] <= counted(counters_cleared ? '0 : counts[32*n+:32], more[StepWidth*n+:StepWidth]);
+      counts[32*n+:32] <= counted(counts[32*n+:32], more[StepWidth*n+:StepWidth], counters_cleared);
     end
     if (rst) counts <= '0;
   end

@@ -153,6 +153,7 @@ class Bench:
         while bool(dut.sending.value):
             assert int(dut.sent.value) == self.sent
             await self.clock()
+        await self.clock()
         assert not self.packet
         assert self.packets == want, f"{[p.hex() for p in self.packets]}, expected {[p.hex() for p in want]}"
         assert not self.reading, "the frame was not given back"
