@@ -127,6 +127,8 @@ class StreamDriver(BusDriver):
     `frame_start` is true.
     """
 
+    lead = 0  # cycles from a start to its word
+
     def __init__(self, dut: Any, name: str, qualifier: str, fields: Any) -> None:
         self._signals = [qualifier, *fields]
         super().__init__(dut, name, dut.clk)
@@ -365,6 +367,8 @@ async def check_bursts(
     interrupts: Any = (),
     strays: int = 0,
     settle: int = 40,
+    driver: Any = None,
+    source: Any = None,
     sink: Any = None,
 ) -> tuple[Any, ...]:
     """Send bursts (count, size, fields); compare the output with the model of the words seen at the input.
@@ -372,16 +376,16 @@ async def check_bursts(
     `model` takes int64 (count, size, fields) and a Monitor, and returns the expected bursts. `latency` is the
     number of cycles from each start at the input to its start at the output, or None if the core regroups bursts. Up to
     `gap` idle cycles lie between bursts. A frame begins every `frame` bursts. `interrupts`: see `interrupt`. `strays`
-    bursts of an incomplete frame come right before; their results are not compared. `sink` is the monitor of an output
-    with several lanes.
+    bursts of an incomplete frame come right before; their results are not compared. `driver`,
+    `source` and `sink` are those of streams with several words per cycle.
 
     Return the monitors of both sides.
     """
     bench = Bench(dut, pause)
     size = bursts.shape[1]
-    driver = StreamDriver(dut, "in", "start", in_fields)
-    source = StreamMonitor(dut, "in", "start", in_fields, length=size)
-    sink = sink or StreamMonitor(dut, "out", "start", out_fields, length=size)
+    driver = driver if driver is not None else StreamDriver(dut, "in", "start", in_fields)
+    source = source if source is not None else StreamMonitor(dut, "in", "start", in_fields, length=size)
+    sink = sink if sink is not None else StreamMonitor(dut, "out", "start", out_fields, length=size)
     await bench.start()
 
     async def send(count: int) -> None:
@@ -396,7 +400,7 @@ async def check_bursts(
             await bench.clocks(bench.random.randint(0, gap))
         driver.frame_start = index % frame == 0
         await driver.send(burst.tolist())
-    await bench.clocks(1)
+    await bench.clocks(driver.lead + 1)
     source.forget_but(len(bursts))
     words_in = np.array(source.words).reshape(bursts.shape)
     np.testing.assert_array_equal(words_in, bursts, "the driver sent other words than the test gave it")

@@ -9,6 +9,7 @@
 module td_rom #(
   parameter int Width = 54,
   parameter int Depth = 128,
+  parameter int Style = 3,  // 0: distributed, 1: block, 3: block above SmallBits, else distributed
   parameter     File  = "rom.hex",
   localparam int AddressWidth = $clog2(Depth)
 ) (
@@ -20,7 +21,7 @@ module td_rom #(
 
   localparam int SmallBits = 4096;  // below this LUTs are cheaper than a block RAM
 
-  if (Width * Depth <= SmallBits) begin : g_distributed
+  if (Style == 0 || (Style == 3 && Width * Depth <= SmallBits)) begin : g_distributed
     (* rom_style = "distributed" *) logic [Width-1:0] words[Depth];
     initial $readmemh(File, words);
     always_ff @(posedge clk) if (en) data <= words[address];
