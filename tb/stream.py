@@ -325,8 +325,7 @@ def check_frame_starts(monitors: Any, frame: Any) -> None:
     """Check that frames begin at every `frame`-th start that a monitor saw, and nowhere else."""
     for monitor in monitors:
         if monitor.frame_pin is not None:
-            marks = getattr(monitor, "marks", 1)  # LanesMonitor: the first burst of each lane
-            want = [index % frame < marks for index in range(len(monitor.starts))]
+            want = [index % frame == 0 for index in range(len(monitor.starts))]
             assert monitor.frame_starts == want, f"{monitor.name}: frames begin at {monitor.frame_starts}"
 
 
@@ -363,6 +362,7 @@ async def check_bursts(
     out_fields: Any,
     frame: int = 3,
     gap: Any = 0,
+    gap_every: int = 1,
     pause: float = 0.0,
     interrupts: Any = (),
     strays: int = 0,
@@ -375,8 +375,8 @@ async def check_bursts(
 
     `model` takes int64 (count, size, fields) and a Monitor, and returns the expected bursts. `latency` is the
     number of cycles from each start at the input to its start at the output, or None if the core regroups bursts. Up to
-    `gap` idle cycles lie between bursts. A frame begins every `frame` bursts. `interrupts`: see `interrupt`. `strays`
-    bursts of an incomplete frame come right before; their results are not compared. `driver`,
+    `gap` idle cycles lie before every `gap_every`-th burst. A frame begins every `frame` bursts. `interrupts`: see
+    `interrupt`. `strays` bursts of an incomplete frame come right before; their results are not compared. `driver`,
     `source` and `sink` are those of streams with several words per cycle.
 
     Return the monitors of both sides.
@@ -396,7 +396,7 @@ async def check_bursts(
     await interrupt(bench, send, interrupts, (source, sink), quiet=(latency or 0) + 4)
     await send(strays * size)
     for index, burst in enumerate(bursts):
-        if gap:
+        if gap and index % gap_every == 0:
             await bench.clocks(bench.random.randint(0, gap))
         driver.frame_start = index % frame == 0
         await driver.send(burst.tolist())
@@ -419,13 +419,10 @@ async def check_bursts(
     return source, sink
 
 
-async def check_frame_memory(
-    dut: Any, words: Any, model: Any, latency: Any, *, rows: int, lanes: int = 1, **behaviour: Any
-) -> None:
+async def check_frame_memory(dut: Any, words: Any, model: Any, latency: Any, *, rows: int, **behaviour: Any) -> None:
     """Check a core that stores frames (count, rows * size) and sends each without a pause after its last row came.
 
-    `latency` is the number of cycles from the start of the last row in to the first start out. Several lanes take
-    turns, each a part of a row behind the one before.
+    `latency` is the number of cycles from the start of the last row in to the first start out.
     """
     count, size = len(words), words.shape[1] // rows
     source, sink = await check_bursts(
@@ -441,7 +438,7 @@ async def check_frame_memory(
     last_rows, first_out = source.starts[rows - 1 :: rows], sink.starts[::rows]
     assert [out - row for out, row in zip(first_out, last_rows, strict=True)] == [latency] * count
     apart = np.diff(np.array(sink.starts).reshape(count, rows), axis=1)
-    assert np.all(apart == size // lanes), "a frame leaves with a pause between two bursts"
+    assert np.all(apart == size), "a frame leaves with a pause between two bursts"
 
 
 async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any:

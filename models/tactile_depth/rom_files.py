@@ -15,6 +15,8 @@ from tactile_depth.poisson.transform.sdf_fft import stages
 from tactile_depth.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors
 from tactile_depth.poisson.transform.wide_commutator import positions
 from tactile_depth.poisson.transform.wide_fft import wide_factors
+from tactile_depth.poisson.wide_solver import tables
+from tactile_depth.poisson.wide_stack import down_positions
 
 
 def write_words(path: Path, words: Iterable[int], width: int) -> None:
@@ -155,8 +157,34 @@ def write_thomas(folder: Path, config: Configuration) -> None:
     )
 
 
+def write_wide_thomas(folder: Path, config: Configuration) -> None:
+    """Write the ROMs of the two tables of wide_solver.sv, the coefficients of a clock side by side in a word."""
+    width, table = config.coefficient_width, thomas_table(config)
+    last = down_positions(config.columns, config.down_words)
+    for name, wide in zip(("wide_down", "wide_up"), tables(config), strict=True):
+        count = wide.words.shape[1]
+        write_words(folder / f"{name}.hex", pack(wide.words.T[::-1], width), count * width)
+        address_width = (len(wide.words) - 1).bit_length()
+        write_words(
+            folder / f"{name}_index.hex",
+            wide.base << wide.settled_width | wide.settled,
+            address_width + wide.settled_width,
+        )
+    words = []
+    for shift, word in zip(table.last_shift[last], pack(table.last[last].T[::-1], width), strict=True):
+        packed = 0
+        for each in shift[::-1].tolist():
+            packed = packed << table.last_shift_width | each
+        words.append(packed << last.shape[1] * width | word)
+    write_words(folder / "wide_down_last.hex", words, last.shape[1] * (table.last_shift_width + width))
+
+
 def write_solver(folder: Path, config: Configuration) -> None:
     """Write the ROMs of the solver."""
+    if config.lanes > 1:
+        write_wide_transform(folder, config.columns, config.down_words, config.lanes, config.coefficient_width)
+        write_wide_thomas(folder, config)
+        return
     write_transform(folder, config.columns, config.coefficient_width)
     if config.solver == "tridiagonal":
         write_thomas(folder, config)

@@ -70,7 +70,7 @@ module wide_fft #(
     sdf_fft #(
       .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Inverse(Inverse)
     ) u_fft (
-      .clk, .rst, .en, .in_start(start_q[1]), .in_frame_start(frame_start_q[1]), .in_re, .in_im,
+      .clk, .rst, .en, .in_start(start_q[1]), .in_frame_start(frame_start_q[1]), .in_re(in_re), .in_im(in_im),
       .out_start, .out_frame_start, .out_re(fft_re), .out_im(fft_im), .saturations(clipped)
     );
     always_ff @(posedge clk) begin

@@ -48,6 +48,13 @@ def wide_factors(size: int, paths: int, block: int, inverse: bool, coefficient_w
     return twiddle_factors(block, inverse, coefficient_width)[positions(size, paths, window) % block]
 
 
+def constant_paths(size: int, paths: int, block: int, inverse: bool) -> int:
+    """Return the number of paths whose twiddle factors of a block are 1 in every beat: they have no multipliers."""
+    places = positions(size, paths, twiddle_window(size, paths, block, inverse)) % block
+    ones = (places < block // 4) | (places % (block // 4) == 0)
+    return int(ones.all(axis=0).sum())
+
+
 def latency(size: int, paths: int) -> int:
     """Return the latency of an FFT; the delays of all commutators add up to the beats of a burst less 1."""
     if paths == 1:
