@@ -8,15 +8,15 @@ import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.wide_commutator import wide_commutator
-from tb.stream import parameters, places
+from tb.stream import parameters, uniform
 from tb.wide import check_wide
 
-BURSTS = 8
+BURSTS = 12
 
 
 async def check(dut: Any, **behaviour: Any) -> None:
     width, paths, beats, delay, up = parameters(dut, "Width", "Paths", "Beats", "Delay", "Up")
-    words = places(BURSTS * beats * paths * 2, width).reshape(BURSTS, beats, paths, 2)
+    words = uniform((BURSTS, beats, paths, 2), width)
 
     def model(x: Any, monitor: Monitor) -> Any:
         return np.stack([wide_commutator(x[..., part], delay, bool(up)) for part in (0, 1)], axis=-1)

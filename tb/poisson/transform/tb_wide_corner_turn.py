@@ -10,10 +10,10 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.wide_commutator import LEAD, from_beats
 from tactile_depth.poisson.transform.wide_corner_turn import latency as wide_corner_turn_latency
 from tactile_depth.poisson.transform.wide_corner_turn import wide_corner_turn
-from tb.stream import parameters, places
+from tb.stream import parameters, uniform
 from tb.wide import RowPairDriver, WideMonitor, check_row_pairs
 
-BURSTS = 8
+BURSTS = 12
 
 
 async def check(dut: Any, **behaviour: Any) -> None:
@@ -26,7 +26,7 @@ async def check(dut: Any, **behaviour: Any) -> None:
 
     await check_row_pairs(
         dut,
-        places(BURSTS * 2 * size, width).reshape(BURSTS, beats, 2 * paths),
+        uniform((BURSTS, beats, 2 * paths), width),
         model,
         wide_corner_turn_latency(size, paths) - LEAD,
         driver=RowPairDriver(dut, "in", ["a", "b"], paths),

@@ -16,8 +16,8 @@ from tb.stream import (
     check_words,
     interrupt,
     parameters,
-    places,
     send_apart,
+    uniform,
 )
 from tb.wide import WideMonitor
 
@@ -33,7 +33,7 @@ async def check(dut: Any, gap: Any = 0.0, pause: float = 0.0, interrupts: Any = 
     source = StreamMonitor(dut, "in", "valid", ["data"])
     sink = WideMonitor(dut, "out", ["data"], beats, paths)
     await bench.start()
-    words = places(ROWS * columns, width).reshape(-1, 1).tolist()
+    words = uniform((ROWS * columns, 1), width).tolist()
 
     async def send(count: int) -> None:
         await send_apart(bench, driver, words[-count:], gap, FRAME * columns)

@@ -6,7 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from formal.entries import Proof
+from formal.tables import transform_roms, wide_roms
 from tactile_depth.poisson.transform.sdf_fft import sdf_fft
+from tactile_depth.poisson.transform.wide_fft import latency as wide_fft_latency
 from tactile_depth.poisson.transform.wide_fft import wide_fft
 from tactile_depth.rom_files import write_direction
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
@@ -36,7 +39,7 @@ STRUCTURES = (
     built(256, 8, 27, 18, 1),
     built(512, 4, 27, 18, 0),
 )
-MUTANTS = Mutants("bursts", flat=False)
+MUTANTS = Mutants(flat=False)
 REFUSED = {
     "Size=4": "Size_must_be_a_power_of_two_at_least_8",
     "Size=24": "Size_must_be_a_power_of_two_at_least_8",
@@ -44,6 +47,16 @@ REFUSED = {
     "Paths=128": "Paths_must_be_a_power_of_two_1_to_Size_2",
     "Paths=3": "Paths_must_be_a_power_of_two_1_to_Size_2",
 }
+PROOFS = tuple(
+    Proof(
+        "start and frame_start leave with their burst, at the latency of its model",
+        "the smallest transform: pair, twiddle and lone butterfly; longer ones chain more of these",
+        {"Size": 8, "Paths": paths, "Inverse": inverse, "Latency": wide_fft_latency(8, paths)},
+        depth=60,
+        roms=wide_roms(paths, 8 // paths) if paths > 1 else transform_roms,
+    )
+    for paths, inverse in ((1, 0), (2, 0), (2, 1), (4, 1))
+)
 
 
 @pytest.mark.parametrize("inverse", [False, True])

@@ -4,12 +4,14 @@
 import numpy as np
 import pytest
 
+from formal.entries import ROUNDING, Proof
+from formal.tables import wide_factor_rom
 from tactile_depth.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors, twiddle_multiply
 from tactile_depth.poisson.transform.wide_commutator import positions, to_beats
 from tactile_depth.poisson.transform.wide_fft import twiddle_window, wide_factors
 from tactile_depth.poisson.transform.wide_twiddle import ones, wide_twiddle
 from tactile_depth.rom_files import write_wide_factors
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 
 PARAMETERS = ("Paths", "Beats", "InWidth", "OutWidth", "CoeffWidth", "Drop", "RealOnly")
@@ -40,13 +42,22 @@ STRUCTURES = (
     built("phase_inverse", 1, 8, 9, 9, 7, 6, 0, on=ICARUS),
     built("phase_inverse", 2, 128, 27, 27, 18, 17, 0),
 )
-MUTANTS = Mutants("bursts")
 REFUSED = {
     "Paths=3": "Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2",
     "Paths=0": "Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2",
     "Beats=24": "Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2",
     "Beats=1": "Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2",
 }
+PROOFS = tuple(
+    Proof(
+        "an arbitrary word meets the factor of its path and beat; latency 5",
+        f"paths with multipliers and without; {ROUNDING}",
+        {"Paths": 2, "Beats": 4, "RealOnly": real_only, "Ones": ones_of_paths},
+        depth=35,
+        roms=wide_factor_rom(2, 4, ones_of_paths),
+    )
+    for real_only, ones_of_paths in ((0, 1), (1, 0))
+)
 
 
 @pytest.mark.parametrize("inverse", [False, True])
