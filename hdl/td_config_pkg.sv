@@ -23,7 +23,7 @@ package td_config_pkg;
   localparam int ZeroLog2 = 8;  // base-2 logarithm of the most frames in a capture of the zero offset
 
   // A configuration is one vector: 32 bits for each number, by its field.
-  localparam int ConfigBits = 1792;
+  localparam int ConfigBits = 1952;
   localparam int ColumnsField = 0;
   localparam int RowsField = 1;
   localparam int LanesField = 2;
@@ -67,19 +67,24 @@ package td_config_pkg;
   localparam int MeanReciprocalField = 40;
   localparam int MeanDropField = 41;
   localparam int WordsPerRowField = 42;
-  localparam int CameraField = 43;
-  localparam int CameraNumeratorField = 44;
-  localparam int CameraDenominatorField = 45;
-  localparam int CameraFormatField = 46;
-  localparam int CameraPhaseField = 47;
-  localparam int CameraPictureColumnsField = 48;
-  localparam int CameraPictureRowsField = 49;
-  localparam int CameraWindowXField = 50;
-  localparam int CameraWindowYField = 51;
-  localparam int CameraBlackLevelField = 52;
-  localparam int CameraRedGainField = 53;
-  localparam int CameraGreenGainField = 54;
-  localparam int CameraBlueGainField = 55;
+  localparam int DownWordsField = 43;
+  localparam int DownTableWordsField = 44;
+  localparam int DownSettledWidthField = 45;
+  localparam int UpTableWordsField = 46;
+  localparam int UpSettledWidthField = 47;
+  localparam int CameraField = 48;
+  localparam int CameraNumeratorField = 49;
+  localparam int CameraDenominatorField = 50;
+  localparam int CameraFormatField = 51;
+  localparam int CameraPhaseField = 52;
+  localparam int CameraPictureColumnsField = 53;
+  localparam int CameraPictureRowsField = 54;
+  localparam int CameraWindowXField = 55;
+  localparam int CameraWindowYField = 56;
+  localparam int CameraBlackLevelField = 57;
+  localparam int CameraRedGainField = 58;
+  localparam int CameraGreenGainField = 59;
+  localparam int CameraBlueGainField = 60;
 
   // The default configuration; options that it leaves out have the numbers of a configuration with the option.
   localparam logic [ConfigBits-1:0] DefaultConfig = {
@@ -96,6 +101,11 @@ package td_config_pkg;
     32'd4,  // CameraDenominator
     32'd15,  // CameraNumerator
     32'd0,  // Camera
+    32'd7,  // UpSettledWidth
+    32'd717,  // UpTableWords
+    32'd7,  // DownSettledWidth
+    32'd1102,  // DownTableWords
+    32'd2,  // DownWords
     32'd1,  // WordsPerRow
     32'd16,  // MeanDrop
     32'd65536,  // MeanReciprocal

@@ -127,6 +127,8 @@ class StreamDriver(BusDriver):
     `frame_start` is true.
     """
 
+    lead = 0  # cycles from a start to its word
+
     def __init__(self, dut: Any, name: str, qualifier: str, fields: Any) -> None:
         self._signals = [qualifier, *fields]
         super().__init__(dut, name, dut.clk)
@@ -323,8 +325,7 @@ def check_frame_starts(monitors: Any, frame: Any) -> None:
     """Check that frames begin at every `frame`-th start that a monitor saw, and nowhere else."""
     for monitor in monitors:
         if monitor.frame_pin is not None:
-            marks = getattr(monitor, "marks", 1)  # LanesMonitor: the first burst of each lane
-            want = [index % frame < marks for index in range(len(monitor.starts))]
+            want = [index % frame == 0 for index in range(len(monitor.starts))]
             assert monitor.frame_starts == want, f"{monitor.name}: frames begin at {monitor.frame_starts}"
 
 
@@ -361,27 +362,30 @@ async def check_bursts(
     out_fields: Any,
     frame: int = 3,
     gap: Any = 0,
+    gap_every: int = 1,
     pause: float = 0.0,
     interrupts: Any = (),
     strays: int = 0,
     settle: int = 40,
+    driver: Any = None,
+    source: Any = None,
     sink: Any = None,
 ) -> tuple[Any, ...]:
     """Send bursts (count, size, fields); compare the output with the model of the words seen at the input.
 
     `model` takes int64 (count, size, fields) and a Monitor, and returns the expected bursts. `latency` is the
     number of cycles from each start at the input to its start at the output, or None if the core regroups bursts. Up to
-    `gap` idle cycles lie between bursts. A frame begins every `frame` bursts. `interrupts`: see `interrupt`. `strays`
-    bursts of an incomplete frame come right before; their results are not compared. `sink` is the monitor of an output
-    with several lanes.
+    `gap` idle cycles lie before every `gap_every`-th burst. A frame begins every `frame` bursts. `interrupts`: see
+    `interrupt`. `strays` bursts of an incomplete frame come right before; their results are not compared. `driver`,
+    `source` and `sink` are those of streams with several words per cycle.
 
     Return the monitors of both sides.
     """
     bench = Bench(dut, pause)
     size = bursts.shape[1]
-    driver = StreamDriver(dut, "in", "start", in_fields)
-    source = StreamMonitor(dut, "in", "start", in_fields, length=size)
-    sink = sink or StreamMonitor(dut, "out", "start", out_fields, length=size)
+    driver = driver if driver is not None else StreamDriver(dut, "in", "start", in_fields)
+    source = source if source is not None else StreamMonitor(dut, "in", "start", in_fields, length=size)
+    sink = sink if sink is not None else StreamMonitor(dut, "out", "start", out_fields, length=size)
     await bench.start()
 
     async def send(count: int) -> None:
@@ -392,11 +396,11 @@ async def check_bursts(
     await interrupt(bench, send, interrupts, (source, sink), quiet=(latency or 0) + 4)
     await send(strays * size)
     for index, burst in enumerate(bursts):
-        if gap:
+        if gap and index % gap_every == 0:
             await bench.clocks(bench.random.randint(0, gap))
         driver.frame_start = index % frame == 0
         await driver.send(burst.tolist())
-    await bench.clocks(1)
+    await bench.clocks(driver.lead + 1)
     source.forget_but(len(bursts))
     words_in = np.array(source.words).reshape(bursts.shape)
     np.testing.assert_array_equal(words_in, bursts, "the driver sent other words than the test gave it")
@@ -415,13 +419,10 @@ async def check_bursts(
     return source, sink
 
 
-async def check_frame_memory(
-    dut: Any, words: Any, model: Any, latency: Any, *, rows: int, lanes: int = 1, **behaviour: Any
-) -> None:
+async def check_frame_memory(dut: Any, words: Any, model: Any, latency: Any, *, rows: int, **behaviour: Any) -> None:
     """Check a core that stores frames (count, rows * size) and sends each without a pause after its last row came.
 
-    `latency` is the number of cycles from the start of the last row in to the first start out. Several lanes take
-    turns, each a part of a row behind the one before.
+    `latency` is the number of cycles from the start of the last row in to the first start out.
     """
     count, size = len(words), words.shape[1] // rows
     source, sink = await check_bursts(
@@ -437,7 +438,7 @@ async def check_frame_memory(
     last_rows, first_out = source.starts[rows - 1 :: rows], sink.starts[::rows]
     assert [out - row for out, row in zip(first_out, last_rows, strict=True)] == [latency] * count
     apart = np.diff(np.array(sink.starts).reshape(count, rows), axis=1)
-    assert np.all(apart == size // lanes), "a frame leaves with a pause between two bursts"
+    assert np.all(apart == size), "a frame leaves with a pause between two bursts"
 
 
 async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any:

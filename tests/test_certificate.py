@@ -28,6 +28,8 @@ WHOLE: list[dict[str, Any]] = [
     {"columns": 16, "rows": 9, "solver": "tridiagonal"},
     {"columns": 16, "rows": 12, "solver": "tridiagonal", "neumann": True, "coefficient_width": 12},
     {"columns": 16, "rows": 8, "solver": "tridiagonal", "depth_range_px": 0.5},
+    {"columns": 16, "rows": 9, "solver": "tridiagonal", "lanes": 4},
+    {"columns": 16, "rows": 8, "solver": "tridiagonal", "lanes": 2, "neumann": True, "coefficient_width": 12},
 ]
 each_whole = pytest.mark.parametrize("choices", WHOLE, ids=lambda c: "-".join(map(str, c.values())))
 

@@ -26,6 +26,7 @@ CASES = [
     {"columns": 512, "rows": 48, "solver": "tridiagonal", "bits_per_channel": 2},  # words three to a memory row
     {"columns": 16, "rows": 9, "solver": "tridiagonal", "lanes": 2, "bits_per_channel": 2},
     {"columns": 64, "rows": 21, "solver": "tridiagonal", "lanes": 8, "zero_offset": True, "neumann": True},
+    {"columns": 64, "rows": 9, "solver": "tridiagonal", "lanes": 32, "bits_per_channel": 2},
 ]
 
 INSTANCES = {  # in the units and solvers
@@ -49,6 +50,14 @@ INSTANCES = {  # in the units and solvers
     "u_capture": "zero_capture",
     "u_events": "contact_events",
 }
+WIDE = {  # in wide_solver
+    "u_rows": "wide_rows",
+    "u_forward": "wide_dst_forward",
+    "u_down": "wide_elimination",
+    "u_stack": "wide_stack",
+    "u_up": "wide_substitution",
+    "u_inverse": "wide_dst_inverse",
+}
 
 
 def elaborated(config: Configuration, folder: Path) -> Any:
@@ -71,8 +80,8 @@ def elaborated(config: Configuration, folder: Path) -> Any:
 
 def core_of(cell: str, lanes: int) -> str:
     """Return the core of a cell, among those that cost.py lists, by the instances in its name."""
-    instance = next(part for part in cell.split(".") if part in INSTANCES)
-    return "corner_turn" if instance == "u_row_out" and lanes > 1 else INSTANCES[instance]
+    instances = INSTANCES if lanes == 1 else INSTANCES | WIDE
+    return instances[next(part for part in cell.split(".") if part in instances)]
 
 
 def operand_width(bits: Any) -> int:

@@ -28,7 +28,7 @@ from tactile_depth.camera.register_lists import pins, write_list
 from tactile_depth.configuration import COLUMNS, POLYNOMIAL, Configuration
 from tactile_depth.depth.zero_offset import no_zero
 from tactile_depth.gradient.flat_field import unit_gains
-from tactile_depth.rom_files import write_gains, write_nodes, write_polynomials, write_words, write_zero
+from tactile_depth.rom_files import write_gains, write_nodes, write_polynomials, write_solver, write_words, write_zero
 from tactile_depth.tactile_depth import default_parameters, hdl_parameters, write_roms
 from tb.settings import RunSettings
 
@@ -168,6 +168,7 @@ def yosys_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
     folder.mkdir(parents=True, exist_ok=True)
     for solver in COLUMNS:
         write_roms(folder, load("synthetic"), Configuration(solver=solver))
+    write_solver(folder, Configuration(solver="tridiagonal", lanes=8))
     words, width = DEFAULT_ROM
     write_words(folder / "rom.hex", range(words), width)
     write_gains(folder, unit_gains(Configuration()), Configuration().gain_width)

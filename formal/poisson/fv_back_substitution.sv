@@ -1,26 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_back_substitution: z[i] = d[i] - c[i] z[i+1] for every row of an arbitrary column, of any frame, 8 enabled clocks
-// behind d[i], in whichever lane it is, with the coefficient of its own row and column; start and frame_start with
-// their burst. No word of the frame before, and none from power-up, enters: the specification has none, and the memory
-// begins with any contents. Rounding is proven of td_round_saturate.
+// behind d[i], with the coefficient of its own row and column; start and frame_start with their burst. No word of the
+// frame before, and none from power-up, enters: the specification has none, and the memory begins with any contents.
+// Rounding is proven of td_round_saturate.
 
 `default_nettype none
 
 module fv_back_substitution #(
   parameter int Rows    = 3,
   parameter int Columns = 8,
-  parameter int Lanes   = 1,
   parameter int Words   = 16,
   localparam int PositionWidth = $clog2(Columns),
-  localparam int RowWidth = $clog2(Rows + 1),
-  localparam int LaneWidth = Lanes > 1 ? $clog2(Lanes) : 1
+  localparam int RowWidth = $clog2(Rows + 1)
 ) (
   input logic                     clk,
   input logic                     rst,
   input logic                     en,
-  input logic [Lanes-1:0]         in_start,
-  input logic [Lanes-1:0]         in_frame_start,
-  input logic [2*Lanes-1:0]       in_data,
+  input logic                     in_start,
+  input logic                     in_frame_start,
+  input logic signed [1:0]        in_data,
   input logic [PositionWidth-1:0] chosen
 );
 
@@ -34,54 +32,28 @@ module fv_back_substitution #(
   localparam int Aligned = InWidth - Drop + CoeffWidth - 1;
   localparam int ExactWidth = (Aligned > Width + CoeffWidth ? Aligned : Width + CoeffWidth) + 1;
 
-  logic [PositionWidth-1:0] column;  // chosen in the first clock, then constant
-  logic allowed, started;
-  logic [Lanes-1:0] active, present;  // present: the word of the column
-  logic [Lanes*PositionWidth-1:0] position;
-  logic [Lanes*RowWidth-1:0] row;
-  lane_places #(.Columns(Columns), .Lanes(Lanes), .RowWidth(RowWidth)) u_places (
-    .clk, .reset(rst), .en, .start(in_start), .frame_start(in_frame_start[0]), .active, .position, .row
-  );
-  logic [Lanes-1:0] out_start, out_frame_start;
-  logic [Lanes*Width-1:0] out_data;
-  logic [$clog2(Lanes+1)-1:0] saturations;
+  logic allowed, started, active, last_row, present;  // present: the word of the column
+  logic [PositionWidth-1:0] position, column;  // column: chosen in the first clock, then constant
+  logic [RowWidth-1:0] row;
+  logic out_start, out_frame_start, saturations;
+  logic signed [Width-1:0] out_data;
   back_substitution #(
-    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .InWidth(InWidth),
-    .Drop(Drop),
+    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .InWidth(InWidth), .Drop(Drop),
     .TableWords(Words), .SettledWidth(SettledWidth)
   ) dut (.*);
-  protocol_back_substitution #(.Columns(Columns), .Rows(Rows), .Lanes(Lanes)) u_protocol (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .holds(allowed)
+  protocol_bursts #(.Columns(Columns), .Rows(Rows)) u_protocol (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row, .holds(allowed)
   );
   assumed u_assumed (.clk, .rst, .allowed, .started);
-
-  // The word of the column, and z of the one before it when that leaves.
-  logic [LaneWidth-1:0] lane, lane_q, lane_q2;
-  logic [RowWidth-1:0] burst;
-  logic signed [InWidth-1:0] in_word;
-  logic signed [Width-1:0] out_word;
-  always_comb begin
-    lane = '0;
-    burst = '0;
-    in_word = '0;
-    out_word = '0;
-    for (int e = 0; e < Lanes; e++) begin
-      present[e] = active[e] && position[e*PositionWidth+:PositionWidth] == column;
-      if (present[e]) lane = LaneWidth'(e);
-      if (present[e]) burst = row[e*RowWidth+:RowWidth];
-      if (present[e]) in_word = in_data[e*InWidth+:InWidth];
-      if (Lanes == 1 || lane_q2 == LaneWidth'(e)) out_word = out_data[e*Width+:Width];
-    end
-  end
+  assign present = active & (position == column);
 
   // The last row comes first; there the coefficient meets zero, so its shift does not matter.
   logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Columns];
   initial $readmemh("square.hex", square);
 
-  // The recursion: a step in each clock in which the word followed is so old, as the multiplier takes it. A step from
-  // lane to lane is as long as the way from the product on, so the next word of the column finds the last one done.
-  // Before the product there may be a word already (d, c, lane_q), behind it another (d_q, c_q, lane_q2).
-  logic [Latency*Lanes-1:0] start_q, frame_start_q;
+  // The recursion: a step in each clock in which the word followed is so old, as the multiplier takes it. Bursts are as
+  // long as the way, so the next word of the column finds the last one done.
+  logic [Latency-1:0] start_q, frame_start_q;
   logic [Latency-1:0] old;  // old[n]: a word of the column was present n + 1 enabled clocks ago
   logic signed [InWidth-1:0] d, d_q;
   logic signed [CoeffWidth-1:0] c, c_q;
@@ -95,23 +67,22 @@ module fv_back_substitution #(
   );
 
   logic held;
-  kept #(.Width(Lanes * (Width + 2))) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_data}), .held);
+  kept #(.Width(Width + 2)) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_data}), .held);
   always_ff @(posedge clk) begin
     if (!started) column <= chosen;
     if (en) begin
-      start_q <= (Latency * Lanes)'({start_q, in_start});
-      frame_start_q <= (Latency * Lanes)'({frame_start_q, in_frame_start});
-      old <= Latency'({old, |present});
-      if (|present) begin
-        lane_q <= lane;
-        d <= in_word;
-        {unused_shift, c} <= square[(Rows - 1 - 32'(burst)) * Columns + 32'(column)];
-        of_last_row <= burst == '0;
-        of_first_row <= burst == RowWidth'(Rows - 1);
+      start_q <= Latency'({start_q, in_start});
+      frame_start_q <= Latency'({frame_start_q, in_frame_start});
+      old <= Latency'({old, present});
+      if (present) begin
+        d <= in_data;
+        {unused_shift, c} <= square[(Rows - 1 - 32'(row)) * Columns + 32'(column)];
+        of_last_row <= row == '0;
+        of_first_row <= row == RowWidth'(Rows - 1);
       end
       if (old[3]) begin
         below_q <= of_last_row ? '0 : below;
-        {d_q, c_q, lane_q2, of_first_row_q} <= {d, c, lane_q, of_first_row};
+        {d_q, c_q, of_first_row_q} <= {d, c, of_first_row};
       end
       if (old[4]) product <= below_q * c_q;
       if (old[5]) exact <= (ExactWidth'(d_q) <<< (CoeffWidth - 1 - Drop)) - ExactWidth'(product);
@@ -126,9 +97,9 @@ module fv_back_substitution #(
 
   always_comb begin
     if (started) begin
-      start_when_due: assert (out_start == start_q[(Latency-1)*Lanes+:Lanes]);
-      frame_start_when_due: assert (out_frame_start == frame_start_q[(Latency-1)*Lanes+:Lanes]);
-      if (old[Latency-1]) substituted: assert (out_word == below);
+      start_when_due: assert (out_start == start_q[Latency-1]);
+      frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
+      if (old[Latency-1]) substituted: assert (out_data == below);
       last_out: cover (old[Latency-1] && of_first_row_q && below != '0 && held);
     end
   end

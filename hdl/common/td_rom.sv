@@ -9,6 +9,7 @@
 module td_rom #(
   parameter int Width = 54,
   parameter int Depth = 128,
+  parameter int Style = 3,  // 0: distributed, 1: block, 3: block above DistributedBits, else distributed
   parameter     File  = "rom.hex",
   localparam int AddressWidth = $clog2(Depth)
 ) (
@@ -18,7 +19,7 @@ module td_rom #(
   output logic [Width-1:0]        data
 );
 
-  if (Width * Depth <= td_types_pkg::DistributedBits) begin : g_distributed
+  if (Style == 0 || (Style == 3 && Width * Depth <= td_types_pkg::DistributedBits)) begin : g_distributed
     (* rom_style = "distributed" *) logic [Width-1:0] words[Depth];
     initial $readmemh(File, words);
     always_ff @(posedge clk) if (en) data <= words[address];

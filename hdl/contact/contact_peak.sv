@@ -155,8 +155,8 @@ module contact_peak
   if (Columns < 2 || Columns > 1024) begin : g_refused_2
     Columns_must_be_2_to_1024 u_refused ();
   end
-  if (Lanes < 1 || Lanes > 32 || Lanes != (1 << $clog2(Lanes)) || Columns % Lanes != 0) begin : g_refused_3
-    Lanes_must_be_a_power_of_two_up_to_32_that_divides_Columns u_refused ();
+  if (Lanes < 1 || Lanes > 64 || Lanes != (1 << $clog2(Lanes)) || Columns % Lanes != 0) begin : g_refused_3
+    Lanes_must_be_a_power_of_two_up_to_64_that_divides_Columns u_refused ();
   end
 
 endmodule

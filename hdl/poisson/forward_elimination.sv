@@ -140,47 +140,15 @@ module forward_elimination #(
 
   logic [1:0] clipped_mean;
   if (Neumann != 0) begin : g_mean
-    // Sum over rows of (row + 1) d at position 0, then times 1 / Rows: Columns cycles lie between the last addend and
-    // its use.
-    localparam int MomentWidth = Width + 2 * RowWidth + 2;
-    logic [RowWidth:0] weight;  // of d, row + 1
-    logic signed [Width+RowWidth+1:0] addend;
-    logic signed [MomentWidth-1:0] moment;
-    logic signed [Width-1:0] sum, sum_q, mean;
-    logic signed [ProductWidth-1:0] scaled;
-    logic [3:0] after;  // cycles since d at position 0 was there
-    logic [1:0] clipped_now;
-    td_multiply #(.AWidth(Width), .BWidth(RowWidth + 2)) u_addend (
-      .clk, .en(en & start_q[ToState-1]), .a(d), .b({1'b0, weight}), .product(addend)
+    logic signed [Width-1:0] mean;
+    column_mean #(
+      .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .MomentDrop(MomentDrop), .MeanReciprocal(MeanReciprocal),
+      .MeanDrop(MeanDrop)
+    ) u_mean (
+      .clk, .rst, .en, .in_next(start_q[ToState-2]), .in_frame_start(frame_start_q[ToState-2]), .in_data(d), .mean,
+      .clipped(clipped_mean)
     );
-    td_multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_scaled (
-      .clk, .en(en & after[2]), .a(sum_q), .b(CoeffWidth'(-MeanReciprocal)), .product(scaled)
-    );
-    td_round_saturate #(.InWidth(MomentWidth), .Drop(MomentDrop), .OutWidth(Width)) u_sum (
-      .in(moment), .out(sum), .clipped(clipped_now[0])
-    );
-    td_round_saturate #(.InWidth(ProductWidth), .Drop(MeanDrop), .OutWidth(Width)) u_mean (
-      .in(scaled), .out(mean), .clipped(clipped_now[1])
-    );
-    logic ends;  // the mean is used when the last row begins, so the last addend is that of the row before
-    assign ends = weight == (RowWidth + 1)'(Rows - 1);
-    logic signed [Width-1:0] mean_q;
-    always_ff @(posedge clk) begin
-      if (en) begin
-        after <= {after[2:0], start_q[ToState-1]};
-        if (start_q[ToState-2]) weight <= (frame_start_q[ToState-2] ? '0 : weight) + (RowWidth + 1)'(1);
-        if (after[0]) moment <= (weight == (RowWidth + 1)'(1) ? '0 : moment) + MomentWidth'(addend);
-        if (after[1]) sum_q <= sum;
-        if (after[3]) mean_q <= mean;
-        last_mean <= singular_q[ToState-4] ? mean_q : '0;
-      end
-      clipped_mean[0] <= en & after[1] & clipped_now[0] & ends;
-      clipped_mean[1] <= en & after[3] & clipped_now[1] & ends;
-      if (rst) begin
-        after <= '0;
-        clipped_mean <= '0;
-      end
-    end
+    always_ff @(posedge clk) if (en) last_mean <= singular_q[ToState-4] ? mean : '0;
   end else begin : g_no_mean
     assign last_mean = '0;
     assign clipped_mean = '0;

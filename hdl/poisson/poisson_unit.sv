@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// poisson_unit: depth from slopes: the divergence, then one of the two solvers of the Poisson equation.
+// poisson_unit: depth from slopes: the divergence, then one of the solvers of the Poisson equation.
 //
-//   slope -> divergence -> spectral_solver or tridiagonal_solver -> depth
+//   slope -> divergence -> spectral_solver, tridiagonal_solver or wide_solver -> depth
 //
 //   spectral_solver:     row_reorder -> dst_forward -> transpose -> dst_forward -> spectral_divide
 //                        -> dst_inverse -> transpose -> dst_inverse -> row_reorder
 //   tridiagonal_solver:  row_reorder -> dst_forward -> forward_elimination -> frame_stack
-//                        -> back_substitution -> dst_inverse -> row_reorder; with several lanes, each has its own
-//                        dst_inverse, and corner_turn takes the place of the last row_reorder
+//                        -> back_substitution -> dst_inverse -> row_reorder
+//   wide_solver:         the same with several words a clock: wide_rows -> wide_dst_forward -> wide_elimination
+//                        -> wide_stack -> wide_substitution -> wide_dst_inverse
 //
 // Stream in: slopes in raster order. Stream out: a burst of Columns / Lanes beats for each row, Lanes depth codes in a
 // beat, the first in the lowest bits; `burst_start` with the first beat of a row and depth_frame_start with the first
@@ -53,7 +54,13 @@ module poisson_unit
     .out_valid(divergence_valid), .out_frame_start(divergence_frame_start), .out_data(divergence_data)
   );
 
-  if (Tridiagonal != 0) begin : g_tridiagonal
+  if (Tridiagonal != 0 && Lanes > 1) begin : g_wide
+    wide_solver #(.TableFolder(TableFolder), .Config(Config)) u_solver (
+      .clk, .rst, .en,
+      .in_valid(divergence_valid), .in_frame_start(divergence_frame_start), .in_data(divergence_data),
+      .out_start(burst_start), .out_frame_start(depth_frame_start), .out_data(depth_data), .saturations
+    );
+  end else if (Tridiagonal != 0) begin : g_tridiagonal
     tridiagonal_solver #(.TableFolder(TableFolder), .Config(Config)) u_solver (
       .clk, .rst, .en,
       .in_valid(divergence_valid), .in_frame_start(divergence_frame_start), .in_data(divergence_data),

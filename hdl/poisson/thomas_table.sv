@@ -5,13 +5,15 @@
 //
 // A position and a row in, its coefficient out 5 enabled cycles later. Down the rows a coefficient soon settles; what
 // follows its last change is not stored: word base + min(row, settled). The last row has a table of its own, and a
-// shift, since its coefficients exceed 1 under Neumann. A user that multiplies nothing in that row leaves it out.
+// shift, since its coefficients exceed 1 under Neumann. A user that multiplies nothing in that row leaves it out. For
+// several modes in a clock, a coefficient and a shift are those of all of them side by side.
 // Bit-accurate model: models/tactile_depth/poisson/thomas_table.py, which also writes the ROMs.
 
 `default_nettype none
 
 module thomas_table #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
+  parameter Table       = "thomas",  // begin of their names
   parameter int CoeffWidth     = 18,
   parameter int Rows           = 128,
   parameter int Columns        = 128,   // modes in a row
@@ -37,7 +39,7 @@ module thomas_table #(
   logic [1:0][RowWidth-1:0] row_q;
   logic [AddressWidth-1:0] base, address;
   logic [SettledWidth-1:0] settled;
-  td_rom #(.Width(AddressWidth + SettledWidth), .Depth(Columns), .File({TableFolder, "thomas_index.hex"})) u_index (
+  td_rom #(.Width(AddressWidth + SettledWidth), .Depth(Columns), .File({TableFolder, Table, "_index.hex"})) u_index (
     .clk, .en, .address(position_q), .data({base, settled})
   );
 
@@ -51,7 +53,7 @@ module thomas_table #(
   end
 
   logic signed [CoeffWidth-1:0] inner;
-  td_rom #(.Width(CoeffWidth), .Depth(Words), .File({TableFolder, "thomas.hex"})) u_inner (
+  td_rom #(.Width(CoeffWidth), .Depth(Words), .File({TableFolder, Table, ".hex"})) u_inner (
     .clk, .en, .address, .data(inner)
   );
 
@@ -60,7 +62,7 @@ module thomas_table #(
     logic [1:0] last_row;                          // behind row_q
     logic signed [CoeffWidth-1:0] last;
     logic [LastShiftWidth-1:0] last_shift;
-    td_rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Columns), .File({TableFolder, "thomas_last.hex"})) u_last (
+    td_rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Columns), .File({TableFolder, Table, "_last.hex"})) u_last (
       .clk, .en, .address(last_position[1]), .data({last_shift, last})
     );
     always_ff @(posedge clk) begin

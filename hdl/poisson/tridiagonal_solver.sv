@@ -4,8 +4,8 @@
 //   five-point Laplacian of z = f; z = 0 half a pixel outside the frame, or (Neumann) zero slope at its edge, mean zero
 //
 // Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes, bottom row first,
-// one burst of Columns / Lanes cycles a row, Lanes codes a cycle, the first in the lowest bits. Latency: fixed, 3.5
-// Columns and a few registers behind the last pixel; in the model. Formats:
+// one burst of Columns cycles a row. Latency: fixed, 3.5 Columns and a few registers behind the last pixel; in the
+// model. Several depth codes a clock: wide_solver. Formats:
 // models/tactile_depth/configuration.py. Bit-accurate model: models/tactile_depth/poisson/tridiagonal_solver.py.
 
 `default_nettype none
@@ -17,7 +17,6 @@ module tridiagonal_solver
   parameter logic [ConfigBits-1:0] Config = DefaultConfig,
   localparam int Rows           = value(Config, RowsField),
   localparam int Columns        = value(Config, ColumnsField),  // a power of two
-  localparam int Lanes          = value(Config, LanesField),  // rows at a time on the way up, depth codes in a cycle
   localparam int DataWidth      = value(Config, DataWidthField),  // of a stored word, and of a depth code
   localparam int CoeffWidth     = value(Config, CoeffWidthField),
   localparam int Neumann        = value(Config, NeumannField),  // by cosine transforms
@@ -34,19 +33,18 @@ module tridiagonal_solver
   localparam int WordsPerRow    = value(Config, WordsPerRowField),  // of its memory
   localparam int GradientWidth  = value(Config, GradientWidthField),
   localparam int InWidth        = GradientWidth + 2,  // of a divergence
-  localparam int Width          = DataWidth + GuardBits,  // of the arithmetic
-  localparam int ClippedWidth   = 8 + $clog2(Lanes)
+  localparam int Width          = DataWidth + GuardBits  // of the arithmetic
 ) (
-  input  wire                        clk,
-  input  wire                        rst,
-  input  wire                        en,
-  input  wire                        in_valid,
-  input  wire                        in_frame_start,   // the first word of a frame
-  input  wire  signed [InWidth-1:0]  in_data,          // divergence, the fraction bits of a slope
-  output logic                       out_start,
-  output logic                       out_frame_start,  // the first burst of a frame
-  output logic [Lanes*DataWidth-1:0] out_data,         // depth codes, signed
-  output logic [ClippedWidth-1:0]    saturations       // clip count, delayed
+  input  wire                         clk,
+  input  wire                         rst,
+  input  wire                         en,
+  input  wire                         in_valid,
+  input  wire                         in_frame_start,   // the first word of a frame
+  input  wire  signed [InWidth-1:0]   in_data,          // divergence, the fraction bits of a slope
+  output logic                        out_start,
+  output logic                        out_frame_start,  // the first burst of a frame
+  output logic [DataWidth-1:0]        out_data,         // depth code, signed
+  output logic [7:0]                  saturations       // clip count, delayed
 );
 
   localparam int Sine = Neumann != 0 ? 0 : 1;
@@ -55,14 +53,12 @@ module tridiagonal_solver
   logic [InWidth-1:0] row_data;
   logic signed [Width-1:0] modes;
   logic signed [DataWidth-1:0] eliminated;
-  logic [Lanes-1:0] stacked_start, stacked_frame_start, solved_start, solved_frame_start;
-  logic [Lanes-1:0] depth_start, depth_frame_start;
-  logic [Lanes*DataWidth-1:0] stacked, depth;
-  logic [Lanes*Width-1:0] solved;
-  logic [7:0] clipped_forward;
-  logic [8*Lanes-1:0] clipped_inverse;
+  logic stacked_start, stacked_frame_start, solved_start, solved_frame_start, depth_start, depth_frame_start;
+  logic signed [DataWidth-1:0] stacked, depth;
+  logic signed [Width-1:0] solved;
+  logic [7:0] clipped_forward, clipped_inverse;
   logic [2:0] clipped_down;
-  logic [$clog2(Lanes+1)-1:0] clipped_up;
+  logic clipped_up;
 
   row_reorder #(.Width(InWidth), .Columns(Columns), .ToBurst(1)) u_row_in (
     .clk, .rst, .en, .in_valid, .in_frame_start, .in_data(in_data),
@@ -89,57 +85,40 @@ module tridiagonal_solver
   );
 
   frame_stack #(
-    .Width(DataWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .WordsPerRow(WordsPerRow), .Style(StoreStyle)
+    .Width(DataWidth), .Rows(Rows), .Columns(Columns), .WordsPerRow(WordsPerRow), .Style(StoreStyle)
   ) u_stack (
     .clk, .rst, .en, .in_start(eliminated_start), .in_frame_start(eliminated_frame_start), .in_data(eliminated),
     .out_start(stacked_start), .out_frame_start(stacked_frame_start), .out_data(stacked)
   );
 
   back_substitution #(
-    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes),
+    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns),
     .InWidth(DataWidth), .Drop(-GuardBits), .TableWords(TableWords), .SettledWidth(SettledWidth)
   ) u_up (
     .clk, .rst, .en, .in_start(stacked_start), .in_frame_start(stacked_frame_start), .in_data(stacked),
     .out_start(solved_start), .out_frame_start(solved_frame_start), .out_data(solved), .saturations(clipped_up)
   );
 
-  for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
-    dst_inverse #(
-      .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
-      .InWidth(Width), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
-    ) u_row_inverse (
-      .clk, .rst, .en, .in_start(solved_start[lane]), .in_frame_start(solved_frame_start[lane]),
-      .in_data(solved[lane*Width+:Width]), .out_start(depth_start[lane]), .out_frame_start(depth_frame_start[lane]),
-      .out_data(depth[lane*DataWidth+:DataWidth]), .saturations(clipped_inverse[8*lane+:8])
-    );
-  end
+  dst_inverse #(
+    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
+    .InWidth(Width), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
+  ) u_row_inverse (
+    .clk, .rst, .en, .in_start(solved_start), .in_frame_start(solved_frame_start), .in_data(solved),
+    .out_start(depth_start), .out_frame_start(depth_frame_start), .out_data(depth), .saturations(clipped_inverse)
+  );
 
-  if (Lanes == 1) begin : g_one_lane
-    logic depth_valid;
-    logic [$clog2(Columns)-1:0] unused_position;
-    td_burst_counter #(.Words(Columns)) u_depth_valid (
-      .clk, .rst, .en, .start(depth_start[0]), .position(unused_position), .active(depth_valid)
-    );
-    row_reorder #(.Width(DataWidth), .Columns(Columns), .ToBurst(0)) u_row_out (
-      .clk, .rst, .en, .in_valid(depth_valid), .in_frame_start(depth_frame_start[0]), .in_data(depth),
-      .out_start, .out_frame_start, .out_data
-    );
-  end else begin : g_lanes
-    corner_turn #(.Width(DataWidth), .Columns(Columns), .Lanes(Lanes)) u_row_out (
-      .clk, .rst, .en, .in_start(depth_start), .in_frame_start(depth_frame_start[0]), .in_data(depth),
-      .out_start, .out_frame_start, .out_data
-    );
-    logic unused_frame_starts;
-    assign unused_frame_starts = ^depth_frame_start;
-  end
+  logic depth_valid;
+  logic [$clog2(Columns)-1:0] unused_position;
+  td_burst_counter #(.Words(Columns)) u_depth_valid (
+    .clk, .rst, .en, .start(depth_start), .position(unused_position), .active(depth_valid)
+  );
+  row_reorder #(.Width(DataWidth), .Columns(Columns), .ToBurst(0)) u_row_out (
+    .clk, .rst, .en, .in_valid(depth_valid), .in_frame_start(depth_frame_start), .in_data(depth),
+    .out_start, .out_frame_start, .out_data
+  );
 
-  logic [ClippedWidth-1:0] clipped;
-  always_comb begin
-    clipped = ClippedWidth'(clipped_forward) + ClippedWidth'(clipped_down) + ClippedWidth'(clipped_up);
-    for (int lane = 0; lane < Lanes; lane++) clipped = clipped + ClippedWidth'(clipped_inverse[8*lane+:8]);
-  end
   always_ff @(posedge clk) begin
-    saturations <= clipped;
+    saturations <= clipped_forward + 8'(clipped_down) + 8'(clipped_up) + clipped_inverse;
     if (rst) saturations <= '0;
   end
 

@@ -25,6 +25,7 @@ class Bounds:
     column_inverse: float
     depth_modes: float
     row_inverse: float
+    row_pair: float
 
 
 def l1(response: np.ndarray) -> np.ndarray:
@@ -103,6 +104,13 @@ def bounds(size: int, neumann: bool = False) -> Bounds:
         along, across = l1(response), _variation(response)
         return np.maximum.reduce([v * along + u * across for u, v in zip(l1(modes), _variation(modes), strict=True)])
 
+    def pair() -> float:
+        """Two rows in one complex transform: the real part of the one meets the imaginary part of the other."""
+        norms = {name: l1(response) for name, response in inverse.nodes.items()}
+        alone = [norm for name, norm in norms.items() if not name.endswith((".re", ".im"))]
+        sums = [norm + norms[name[:-3] + ".im"] for name, norm in norms.items() if name.endswith(".re")]
+        return max(float(norm.max()) for norm in alone + sums)
+
     largest_mode = float(l1(modes).max())
     return Bounds(
         row_forward=largest(forward, row),
@@ -111,4 +119,5 @@ def bounds(size: int, neumann: bool = False) -> Bounds:
         column_inverse=largest_mode * max(largest(inverse, l1), largest_mode),
         depth_modes=largest_mode,
         row_inverse=largest(inverse, l1),
+        row_pair=pair(),
     )

@@ -25,13 +25,15 @@ from tactile_depth import reference
 from tactile_depth.bounds import Responses, l1
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration, Format
-from tactile_depth.poisson import spectral_solver, tridiagonal_solver
+from tactile_depth.poisson import spectral_solver, tridiagonal_solver, wide_solver
 from tactile_depth.poisson.back_substitution import back_substitution
 from tactile_depth.poisson.forward_elimination import forward_elimination
 from tactile_depth.poisson.frame_stack import frame_stack
 from tactile_depth.poisson.spectral_divide import reciprocals
-from tactile_depth.poisson.thomas_table import thomas_table
+from tactile_depth.poisson.thomas_table import ahead_rows, thomas_table
 from tactile_depth.poisson.transform.orders import makhoul
+from tactile_depth.poisson.wide_elimination import wide_elimination
+from tactile_depth.poisson.wide_substitution import wide_substitution
 
 BLOCK_BYTES = 1 << 26  # bytes of responses held at a time
 TRIED = 1 << 32  # most products computed for a node of the inverse row transform, whose words are tried one by one
@@ -92,6 +94,8 @@ def node_format(name: str, config: Configuration) -> Format:
     core, _, rest = name.partition(".")
     width = config.arithmetic_width
     if core == "row_inverse":
+        if rest.startswith("pair"):
+            return config.elimination
         return config.depth if rest == "output" else config.row_inverse
     if config.solver == "spectral":
         if core == "row_forward":
@@ -101,7 +105,7 @@ def node_format(name: str, config: Configuration) -> Format:
         return config.column_inverse if core == "spectral_divide" else config.column_forward
     if core == "row_forward" and rest != "phase.re":
         return config.row_forward
-    if rest == "store":
+    if rest in ("store", "ahead"):
         return config.elimination_store
     drop = config.moment_drop if rest == "moment" else 0
     return Format(width, config.elimination.fraction - drop)
@@ -169,10 +173,17 @@ class _Survey:
         self.slope = config.gradient_limit / config.gradient_lsb  # largest slope and depths, in codes
         self.depth_in = config.depth_range_px / config.gradient_lsb  # depth field whose Laplacian enters
         self.depth_out = config.depth_range_px / config.depth_lsb_px
+        self.wide = config.lanes > 1
         stages = spectral_solver if config.solver == "spectral" else tridiagonal_solver
         forward, inverse = Responses(), Responses()
-        self.modes = stages.row_forward(np.eye(config.columns), config, forward)  # (column, mode's position)
-        self.to_row = stages.row_inverse(np.eye(config.columns), config, inverse)  # (mode's position, column)
+        unit = np.eye(config.columns)
+        self.modes = stages.row_forward(unit, config, forward)  # (column, mode's position)
+        # (mode's position, column); a row alone in its pair
+        self.to_row = (
+            wide_solver.row_inverse(unit[:, None], config, inverse)[:, 0]
+            if self.wide
+            else stages.row_inverse(unit, config, inverse)
+        )
         self.forward, self.inverse = forward.nodes, inverse.nodes
         self.from_row = np.linalg.inv(self.to_row)  # (column, mode's position): modes of a row of depth codes
         self.mode_l1, self.mode_variation = l1(self.modes), _variation(self.modes, self.neumann)
@@ -210,6 +221,22 @@ class _Survey:
 
     # Inverse row transform. `sources` maps some rows of depth to the response (modes, rows) of the modes of that row.
 
+    def groups(self) -> list[tuple[int, ...]]:
+        """Return the rows of `places`, or the pairs of rows that they are in: the row that leaves first, the next."""
+        rows = places(self.config.rows)
+        if not self.wide:
+            return [(row,) for row in rows]
+        last = self.config.rows - 1
+        firsts = sorted({last - (last - row) // 2 * 2 for row in (*rows, self.config.rows // 2 + 1)})
+        return [(first, first - 1) if first else (first,) for first in firsts]
+
+    def partner(self, name: str) -> np.ndarray:
+        """Return the words of a node (mode's position, words) for the second row of a pair: its modes come times j."""
+        other = name[:-3] + {".re": ".im", ".im": ".re"}.get(name[-3:], "")
+        if other not in self.inverse:
+            return np.zeros_like(self.inverse[name])
+        return -self.inverse[other] if name.endswith(".re") else self.inverse[other]
+
     def row_inverse(self, sources: dict[int, np.ndarray]) -> None:
         size = self.config.columns
         output = list(self.inverse)[-1]
@@ -217,43 +244,57 @@ class _Survey:
         def response(row: int, word: np.ndarray) -> np.ndarray:
             return (sources[row] * word[:, None]).T @ self.modes.T
 
-        def norm(row: int, word: np.ndarray) -> float:
-            seen = response(row, word)
+        def of_group(group: tuple[int, ...], words: tuple[np.ndarray, ...]) -> np.ndarray:
+            return np.sum([response(row, word) for row, word in zip(group, words, strict=False)], axis=0)
+
+        def norm(seen: np.ndarray) -> float:
             return float(sum(np.abs(steps(seen, self.neumann, axis)).sum() for axis in (0, 1))) * self.slope
 
-        depths = {name: l1(self.from_row @ words) * self.depth_out for name, words in self.inverse.items()}
         deepest = {}  # norm of each position of a row
         for row in sources:
-            deepest[row] = np.array([norm(row, self.to_row[:, column]) for column in range(size)])
+            deepest[row] = np.array([norm(response(row, self.to_row[:, column])) for column in range(size)])
             self.progress(1 / len(sources) / 2)
         modes = {row: self.column_norm(source.T, slice(None)) for row, source in sources.items()}
         most = max(1, TRIED // (self.config.rows * size * size))
         for name, words in self.inverse.items():
             worst = self.at(name)
             if name == output:
-                worst.depths = float(depths[name].max())
+                worst.depths = float((l1(self.from_row @ words) * self.depth_out).max())
                 row = max(sources, key=lambda row: float(deepest[row].max()))
                 column = int(np.argmax(deepest[row]))
                 worst.slopes = worst.reached = float(deepest[row][column])
                 worst.response = response(row, self.to_row[:, column])
                 continue
-            # A word is a sum over the depths of its row, and a sum over the modes of its row. Both give an upper bound.
-            # The words with the largest bounds are tried first, until no other bound exceeds the value reached.
-            by_depth, by_mode = np.abs(self.from_row @ words), np.abs(words)
-            atmost = np.stack([np.minimum(deepest[row] @ by_depth, modes[row] @ by_mode) for row in sources])
-            worst.depths = float(np.minimum(atmost.max(axis=0), depths[name]).max())
+            # A word is a sum over the depths of its rows, and a sum over the modes of its rows. Both give an upper
+            # bound. The words with the largest bounds are tried first, until no other bound exceeds the value reached.
+            parts = (words, self.partner(name)) if self.wide else (words,)
+            by_depth, by_mode = [np.abs(self.from_row @ part) for part in parts], [np.abs(part) for part in parts]
+            groups = self.groups()
+            atmost = np.stack(
+                [
+                    np.sum(
+                        [
+                            np.minimum(deepest[row] @ depth, modes[row] @ mode)
+                            for row, depth, mode in zip(group, by_depth, by_mode, strict=False)
+                        ],
+                        axis=0,
+                    )
+                    for group in groups
+                ]
+            )
+            depths = np.sum([l1(part) for part in by_depth], axis=0) * self.depth_out
+            worst.depths = float(np.minimum(atmost.max(axis=0), depths).max())
             order = np.argsort(atmost, axis=None)[::-1]
-            rows = list(sources)
-            worst.reached, reaching = 0.0, (0, np.zeros(size))
+            worst.reached = 0.0
             for tries, index in enumerate(order):
                 place, column = np.unravel_index(index, atmost.shape)
                 worst.slopes = max(worst.reached, float(atmost[place, column]))
                 if worst.reached >= atmost[place, column] or tries == most:
                     break
-                reached = norm(rows[place], words[:, column])
-                if reached > worst.reached:
-                    worst.reached, reaching = reached, (rows[place], words[:, column])
-            worst.response = response(*reaching)
+                seen = of_group(groups[place], tuple(part[:, column] for part in parts))
+                reached = norm(seen)
+                if reached > worst.reached or not tries:
+                    worst.reached, worst.response = reached, seen
             self.progress(1 / len(self.inverse) / 2)
 
 
@@ -313,6 +354,11 @@ class _Spectral(_Survey):
 
 
 class _Tridiagonal(_Survey):
+    @property
+    def up(self) -> str:
+        """Node of the way up of Thomas's algorithm."""
+        return "wide_substitution" if self.wide else "back_substitution"
+
     def columns(self) -> dict[int, np.ndarray]:
         rows, size = self.config.rows, self.config.columns
         block = max(1, BLOCK_BYTES // (8 * rows * size))
@@ -344,7 +390,7 @@ class _Tridiagonal(_Survey):
 
             self.at(node).see(slopes, self.in_depths(node, row), later)
 
-        sources = {row: np.empty((size, rows)) for row in places(rows)}
+        sources = {row: np.empty((size, rows)) for group in self.groups() for row in group}
         for first in starts:
 
             def collect(node: str, row: int, response: np.ndarray, first: int = first) -> None:
@@ -352,7 +398,7 @@ class _Tridiagonal(_Survey):
                 samples = slice(first, first + len(response))
                 if at == row:
                     columns[node][samples] = response[:, mode]
-                if node == "back_substitution" and row in sources:
+                if node == self.up and row in sources:
                     sources[row][:, samples] = response.T
 
             self.run(first, min(first + block, rows), collect)
@@ -366,26 +412,34 @@ class _Tridiagonal(_Survey):
 
         `hear` is called with node, row and response (samples, modes), for all modes or for position 0 only.
         """
-        rows, size = self.config.rows, self.config.columns
+        rows, size, up = self.config.rows, self.config.columns, self.up
         calls: dict[str, int] = {}
 
         class Told(Monitor):
             def linear(self, node: str, response: np.ndarray) -> None:
                 if response.ndim == 3:
-                    for row in range(rows):
+                    for row in range(response.shape[1]):
                         hear(node, row, response[:, row])
                     return
+                if node.endswith(".store"):  # of wide_elimination: d of the last row
+                    hear(node, rows - 1, response)
+                    return
                 call = calls[node] = calls.get(node, -1) + 1
-                row = rows - 1 - call if node == "back_substitution" else call
+                row = rows - 1 - call if node == up else call
                 hear(node, row, response if response.ndim == 2 else response[:, None])
 
         lone = np.zeros((stop - first, rows, size))
         lone[np.arange(stop - first), np.arange(first, stop)] = 1
-        down = forward_elimination(lone, self.config, Told())
-        back_substitution(frame_stack(down), self.config, Told())
+        if self.wide:
+            wide_substitution(frame_stack(wide_elimination(lone, self.config, Told())), self.config, Told())
+            return
+        back_substitution(frame_stack(forward_elimination(lone, self.config, Told())), self.config, Told())
 
     def in_depths(self, node: str, row: int) -> np.ndarray:
-        """Return the largest words over all depths: d[i] is z[i] + c[i] z[i+1], and c[i] multiplies d[i] / c[i]."""
+        """Return the largest words over all depths: d[i] is z[i] + c[i] z[i+1], and c[i] multiplies d[i] / c[i].
+
+        With a look ahead, e[i] is z[i] - c[i] c[i+1] z[i+2].
+        """
         config = self.config
         part = node.partition(".")[2]
         z = self.mode_depth
@@ -399,7 +453,10 @@ class _Tridiagonal(_Survey):
         with np.errstate(divide="ignore"):
             if part == "difference":
                 return z / np.abs(c) + z * below
-        drop = config.elimination.fraction - config.elimination_store.fraction if part == "store" else 0
+        drop = config.elimination.fraction - config.elimination_store.fraction if part in ("store", "ahead") else 0
+        if part == "ahead":
+            both = ahead_rows(config)[row] / 2.0 ** (config.coefficient_width - 1) if row < config.rows - 2 else 0 * c
+            return z * (1 + np.abs(both)) / 2**drop
         return z * (1 + np.abs(c) * below) / 2**drop
 
     @cached_property

@@ -34,8 +34,8 @@ ULTRA_WORDS, ULTRA_WIDTH = 4096, 72
 COLUMNS = {"spectral": (16, 512), "tridiagonal": (16, 1024)}
 ROWS = (8, 1024)
 EXACT_LENGTHS = (8, 4096)  # rows and columns of a grid in double precision
-MOST_LANES = 32
-COLUMNS_PER_LANE = 4  # at least: a lane has the row below so many clocks after it began, the loop of the recursion
+MOST_LANES = 64
+COLUMNS_PER_LANE = 2  # at least: the second row of a pair comes so many clocks after the first
 DATA_WIDTHS = (12, 32)
 COEFFICIENT_WIDTHS = (10, 24)
 GRADIENT_MODELS = ("lut", "quadratic", "cubic")
@@ -306,6 +306,14 @@ class Configuration:
         return self.rows >> self.reference_block_log2, self.columns >> self.reference_block_log2
 
     @property
+    def down_words(self) -> int:
+        """Modes per clock on the way down, at most the square root of those on the way up, but at least 2.
+
+        More would cost more, and fewer would delay the last row, on which the whole map waits.
+        """
+        return max(2, 1 << (self.lanes.bit_length() - 1) // 2)
+
+    @property
     def store_style(self) -> int:
         """Style of the memory of a frame store, or of each lane's bank of it, BLOCK or ULTRA."""
         rows = -(-self.rows // self.lanes)
@@ -403,7 +411,7 @@ class Configuration:
 
     @cached_property
     def row_inverse(self) -> Format:
-        return Format.holding(self._bounds.row_inverse / DEPTH_HEADROOM, self.arithmetic_width)
+        return Format.holding(self._row_inverse_bound / DEPTH_HEADROOM, self.arithmetic_width)
 
     @property
     def depth(self) -> Format:
@@ -443,8 +451,16 @@ class Configuration:
         return bounds(self.columns, self.neumann)
 
     @property
+    def _row_inverse_bound(self) -> float:
+        """Bound of the inverse row transform, which takes two rows at a time where several depths leave in a clock."""
+        return self._bounds.row_inverse if self.lanes == 1 else self._bounds.row_pair
+
+    @property
     def _elimination_bounds(self) -> dict[str, float]:
-        """Bounds of the nodes with format `elimination`; |d| = |z[i] + c z[i+1]| <= twice the largest depth mode."""
+        """Bounds of the nodes with format `elimination`, where z is at most the largest depth mode.
+
+        |d| = |z[i] + c z[i+1]| and |e| = |z[i] - c c' z[i+2]| are at most twice it, as is a sum of modes of two rows.
+        """
         by_slopes, by_depths = difference_bounds(self.rows, self.columns, self.neumann)
         slope = self.gradient_limit / self.depth_limit_px
         difference = float(np.minimum(by_slopes * slope, by_depths / DEPTH_HEADROOM).max())
@@ -460,7 +476,7 @@ class Configuration:
         steep, deep = self.gradient_limit / self.unit_px, 1 / DEPTH_HEADROOM
         found = {
             "row_forward": (self._bounds.row_forward * steep, self.row_forward),
-            "row_inverse": (self._bounds.row_inverse * deep, self.row_inverse),
+            "row_inverse": (self._row_inverse_bound * deep, self.row_inverse),
             "row_inverse.output": (deep, self.depth),
         }
         if self.solver == "tridiagonal":

@@ -14,6 +14,9 @@ from tactile_depth.poisson.back_substitution import back_substitution
 from tactile_depth.poisson.forward_elimination import forward_elimination
 from tactile_depth.poisson.transform.dst_forward import dst_forward
 from tactile_depth.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.poisson.transform.wide_dst_inverse import wide_dst_inverse
+from tactile_depth.poisson.wide_elimination import wide_elimination
+from tactile_depth.poisson.wide_substitution import wide_substitution
 
 Model = Callable[..., np.ndarray]
 
@@ -25,10 +28,16 @@ class Cores(NamedTuple):
     dst_inverse: Model
     forward_elimination: Model
     back_substitution: Model
+    wide_dst_inverse: Model
+    wide_elimination: Model
+    wide_substitution: Model
     settled: Model
 
 
-NUMPY = Cores(dst_forward, dst_inverse, forward_elimination, back_substitution, settled)
+NUMPY = Cores(
+    *(dst_forward, dst_inverse, forward_elimination, back_substitution),
+    *(wide_dst_inverse, wide_elimination, wide_substitution, settled),
+)
 """The reference, with which RTL is compared."""
 
 
@@ -39,4 +48,4 @@ def fastest() -> Cores:
         from tactile_depth import fast
     except (ImportError, RuntimeError):
         return NUMPY
-    return Cores(*(getattr(fast, name) for name in Cores._fields))
+    return NUMPY._replace(**{name: getattr(fast, name) for name in Cores._fields if hasattr(fast, name)})

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from tactile_depth.common import td_node_map
@@ -25,7 +25,10 @@ from tactile_depth.configuration import (
 )
 from tactile_depth.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
+from tactile_depth.poisson.transform import wide_corner_turn
 from tactile_depth.poisson.transform.sdf_fft import stages
+from tactile_depth.poisson.transform.wide_dst_inverse import latency as wide_inverse_latency
+from tactile_depth.poisson.transform.wide_fft import constant_paths
 from tactile_depth.sensor import CUBIC
 from tactile_depth.tactile_depth import top_parameters
 
@@ -34,9 +37,11 @@ CORES = (  # that have multipliers or memories, in the order of the data
     *("flat_field", "gradient_lookup", "light_gains", "polynomial_gradient"),
     *("divergence", "row_reorder", "dst_forward"),
     *("transpose", "spectral_divide", "forward_elimination", "frame_stack", "back_substitution", "dst_inverse"),
-    *("corner_turn", "zero_offset", "zero_capture", "contact_events"),
+    *("wide_rows", "wide_dst_forward", "wide_elimination", "wide_stack", "wide_substitution", "wide_dst_inverse"),
+    *("zero_offset", "zero_capture", "contact_events"),
 )
 LONGEST_SHIFT = 4  # delays up to this are registers, hdl/common/td_delay_line.sv
+LOOP = 4  # clocks of wide_substitution.sv from a word to the product with it and back
 PIXEL_MARKS = 1 + 4  # dark, and the position: they travel with a pixel through td_node_map
 DEPTH_MARKS = 3  # the position: it travels with a depth
 
@@ -136,14 +141,14 @@ Parts = list[Multiplier | Memory]
 
 def _pipeline(p: dict[str, int]) -> Parts:
     """Count the parts of hdl/tactile_depth.sv."""
-    size, slope, data, lanes = p["Columns"], p["GradientWidth"], p["DataWidth"], p["Lanes"]
-    last_rows = "row_reorder" if lanes == 1 else "corner_turn"
+    size, slope, data = p["Columns"], p["GradientWidth"], p["DataWidth"]
+    solver = _spectral if not p["Tridiagonal"] else _tridiagonal if p["Lanes"] == 1 else _wide
+    reorder = [Memory("row buffers", width, 2 * size, "row_reorder") for width in (slope + 2, data)]
     return [
         *_colours(p),
         Memory("row buffers", slope, size, "divergence"),  # the row above
-        Memory("row buffers", slope + 2, 2 * size, "row_reorder"),
-        *[Memory("row buffers", data, 2 * size, last_rows)] * lanes,
-        *(_tridiagonal(p) if p["Tridiagonal"] else _spectral(p)),
+        *(reorder if p["Lanes"] == 1 else []),
+        *solver(p),
         *_zero(p),
         *_contact(p),
     ]
@@ -191,6 +196,75 @@ def _zero(p: dict[str, int]) -> Parts:
     ]
 
 
+def _wide(p: dict[str, int]) -> Parts:
+    """Count the parts of wide_solver.sv."""
+    size, rows, data, width, coeff = (
+        p["Columns"],
+        p["Rows"],
+        p["DataWidth"],
+        p["DataWidth"] + GUARD_BITS,
+        p["CoeffWidth"],
+    )
+    down, up, core = p["DownWords"], p["Lanes"], "wide_elimination"
+    clocks, beats = size // down, size // up
+    group = min(down, up // 2)  # words in a memory of wide_stack.sv
+    wait = beats * 2 - LOOP
+    product = Multiplier(width, coeff)
+    return [
+        *[Memory("row buffers", p["GradientWidth"] + 2, 2 * clocks, "wide_rows")] * down,
+        *_wide_fft(p, down, False, "wide_dst_forward"),
+        *[replace(product, core="wide_dst_forward")] * (2 * down),
+        Memory("tables", 3 * coeff * down, clocks, "wide_dst_forward"),
+        *[replace(product, core=core)] * (2 * down),
+        Memory("row buffers", down * (coeff + width), clocks, core),
+        *_table(down * coeff, p["DownTableWords"], p["DownSettledWidth"], clocks, core),
+        Memory("tables", down * (p["LastShiftWidth"] + coeff), clocks, core),
+        *_mean(p, core),
+        *[Memory("row buffers", group * data, beats, "wide_stack")] * (up // group),
+        *[Memory("frame stores", group * data, (rows - 1) * beats, "wide_stack")] * (up // group),
+        *[replace(product, core="wide_substitution")] * up,
+        *([Memory("delay lines", width, wait, "wide_substitution")] * up if wait > LONGEST_SHIFT else []),
+        *_table(up * coeff, p["UpTableWords"], p["UpSettledWidth"], beats, "wide_substitution"),
+        *_wide_inverse(p, "wide_dst_inverse"),
+    ]
+
+
+def _wide_inverse(p: dict[str, int], core: str) -> Parts:
+    """Count the parts of wide_dst_inverse.sv with its pairs of rows and its corner turn."""
+    size, data, width, paths = p["Columns"], p["DataWidth"], p["DataWidth"] + GUARD_BITS, p["Lanes"] // 2
+    beats = size // paths
+    pairs = [Memory("delay lines", width, beats // 2, core)] * (2 * paths) if beats // 2 > LONGEST_SHIFT else []
+    turned = beats // 2 * 2 if paths == 1 else 2 * beats  # words of a memory of the corner turn
+    return [
+        *pairs,
+        *[Memory("row buffers", 2 * width, beats // 2, core)] * (2 * paths),
+        *[Multiplier(width, p["CoeffWidth"], core)] * (4 * paths),
+        Memory("tables", 3 * p["CoeffWidth"] * paths, beats, core),
+        *_wide_fft(p, paths, True, core),
+        Memory("delay lines", 1, wide_inverse_latency(size, 2 * paths) - wide_corner_turn.latency(size, paths), core),
+        *[Memory("row buffers", data, turned, core)] * (4 if paths == 1 else 2 * paths),
+    ]
+
+
+def _wide_fft(p: dict[str, int], paths: int, inverse: bool, core: str) -> Parts:
+    """Count the parts of wide_fft.sv: a line for each path in each commutator, and no product for factors of 1."""
+    if paths == 1:
+        return _fft(p, inverse, core)
+    size, width, coeff = p["Columns"], p["DataWidth"] + GUARD_BITS, p["CoeffWidth"]
+    beats = size // paths
+    delays = [1 << bit for bit in range(beats.bit_length() - 1)]
+    parts: Parts = [
+        *[Memory("delay lines", 2 * width, delay, core) for delay in delays if delay > LONGEST_SHIFT] * paths
+    ]
+    for stage in stages(size, inverse):
+        if not stage.delay:
+            parts += [Multiplier(width, coeff, core)] * (
+                4 * (paths - constant_paths(size, paths, stage.block, inverse))
+            )
+            parts.append(Memory("tables", 3 * coeff * paths, beats, core))
+    return parts
+
+
 def _spectral(p: dict[str, int]) -> Parts:
     size, data, width, coefficient = p["Columns"], p["DataWidth"], p["DataWidth"] + GUARD_BITS, p["CoeffWidth"]
     return [
@@ -204,34 +278,41 @@ def _spectral(p: dict[str, int]) -> Parts:
 
 
 def _tridiagonal(p: dict[str, int]) -> Parts:
-    size, rows, data, width, lanes = p["Columns"], p["Rows"], p["DataWidth"], p["DataWidth"] + GUARD_BITS, p["Lanes"]
+    size, rows, data, width = p["Columns"], p["Rows"], p["DataWidth"], p["DataWidth"] + GUARD_BITS
     packed, core = p["WordsPerRow"], "forward_elimination"
-    row_number = (rows - 1).bit_length() + 2  # 1 to rows, signed
-    mean = [Multiplier(width, row_number, core), Multiplier(width, p["CoeffWidth"], core)] if p["Neumann"] else []
-    bank = Memory("frame stores", data * packed, -(-rows // lanes) * -(-size // packed), "frame_stack")
     return [
         *_forward(p),
-        *_thomas(p, size, core),
+        *_thomas(p, core),
         Memory("tables", p["LastShiftWidth"] + p["CoeffWidth"], size, core),
-        *mean,
-        *[bank] * lanes,
-        *_thomas(p, size // lanes, "back_substitution") * lanes,
-        *_inverse(p, width) * lanes,
+        *_mean(p, core),
+        Memory("frame stores", data * packed, rows * -(-size // packed), "frame_stack"),
+        *_thomas(p, "back_substitution"),
+        *_inverse(p, width),
     ]
 
 
-def _thomas(p: dict[str, int], running: int, core: str) -> Parts:
-    """Count the parts of an elimination, or of a lane of the substitution, with so many words of the running row.
+def _mean(p: dict[str, int], core: str) -> Parts:
+    """Count the multipliers of column_mean.sv, which only Neumann has."""
+    if not p["Neumann"]:
+        return []
+    width, row_number = p["DataWidth"] + GUARD_BITS, (p["Rows"] - 1).bit_length() + 2  # 1 to rows, signed
+    return [Multiplier(width, row_number, core), Multiplier(width, p["CoeffWidth"], core)]
 
-    The table of the last row is not among them: only the elimination has one.
-    """
-    width, coefficient, words = p["DataWidth"] + GUARD_BITS, p["CoeffWidth"], p["TableWords"]
+
+def _thomas(p: dict[str, int], core: str) -> Parts:
+    """Count the parts of an elimination or substitution; of the table of the last row only the elimination has one."""
+    width, coefficient = p["DataWidth"] + GUARD_BITS, p["CoeffWidth"]
     return [
         Multiplier(width, coefficient, core),
-        Memory("row buffers", width, running, core),
-        Memory("tables", coefficient, words, core),
-        Memory("tables", (words - 1).bit_length() + p["SettledWidth"], p["Columns"], core),
+        Memory("row buffers", width, p["Columns"], core),
+        *_table(coefficient, p["TableWords"], p["SettledWidth"], p["Columns"], core),
     ]
+
+
+def _table(width: int, words: int, settled_width: int, clocks: int, core: str) -> Parts:
+    """Count the two ROMs of thomas_table.sv without that of the last row."""
+    index = (words - 1).bit_length() + settled_width
+    return [Memory("tables", width, words, core), Memory("tables", index, clocks, core)]
 
 
 def _forward(p: dict[str, int]) -> Parts:

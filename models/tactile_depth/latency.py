@@ -12,13 +12,12 @@ from tactile_depth.common import td_axis_skid
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth import zero_offset
 from tactile_depth.gradient import flat_field, gradient_lookup, light_gains, polynomial_gradient
-from tactile_depth.poisson import divergence, spectral_solver, tridiagonal_solver
+from tactile_depth.poisson import divergence, spectral_solver, tridiagonal_solver, wide_solver
 from tactile_depth.video import frame_guard
 
 
 def by_core(config: Configuration) -> list[tuple[str, str, int]]:
     """Return unit, core and cycles on the way from the last pixel of a frame to its first depth, for any gaps."""
-    solver = tridiagonal_solver if config.solver == "tridiagonal" else spectral_solver
     zero = zero_offset.latency(config.lanes, config.reference_block_log2)
     return [
         ("video_unit", "td_axis_skid", td_axis_skid.LATENCY),
@@ -29,10 +28,23 @@ def by_core(config: Configuration) -> list[tuple[str, str, int]]:
         if config.polynomials
         else ("gradient_unit", "gradient_lookup", gradient_lookup.LATENCY),
         ("poisson_unit", "divergence", divergence.LATENCY),
-        *(("poisson_unit", *step) for step in solver.latency_by_core(config.columns, config.lanes)),
+        *(("poisson_unit", *step) for step in by_solver_core(config)),
         ("depth_unit", "zero_offset", zero if config.zero_offset else 0),
         ("contact_unit", "depth_gate", td_axis_skid.LATENCY),
     ]
+
+
+def by_solver_core(config: Configuration) -> list[tuple[str, int]]:
+    """Return cores of the solver and cycles from the last divergence word of a frame to its first depth."""
+    if config.lanes > 1:
+        return wide_solver.latency_by_core(config.columns, config.down_words, config.lanes)
+    solver = tridiagonal_solver if config.solver == "tridiagonal" else spectral_solver
+    return solver.latency_by_core(config.columns)
+
+
+def solver_latency(config: Configuration) -> int:
+    """Return the cycles of the solver from the last divergence word of a frame to its first depth, for any gaps."""
+    return sum(cycles for _, cycles in by_solver_core(config))
 
 
 def frame_latency(config: Configuration) -> int:

@@ -13,6 +13,10 @@ from tactile_depth.poisson.spectral_divide import reciprocal_rom, reciprocals
 from tactile_depth.poisson.thomas_table import thomas_table
 from tactile_depth.poisson.transform.sdf_fft import stages
 from tactile_depth.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors
+from tactile_depth.poisson.transform.wide_commutator import positions
+from tactile_depth.poisson.transform.wide_fft import wide_factors
+from tactile_depth.poisson.wide_solver import tables
+from tactile_depth.poisson.wide_stack import down_positions
 
 
 def write_words(path: Path, words: Iterable[int], width: int) -> None:
@@ -72,6 +76,40 @@ def write_transform(folder: Path, size: int, width: int) -> None:
         write_factors(folder / f"phase_{direction}.hex", phase_factors(size, inverse, width), width)
 
 
+def write_wide_factors(path: Path, factors: np.ndarray, width: int) -> None:
+    """Write complex factors (beats, paths, 2) as wide_twiddle.sv reads them: {-Im, Im, Re} of each path, 0 lowest."""
+    re, im = np.moveaxis(factors[:, ::-1], -1, 0)
+    fields = np.stack((-im, im, re), axis=-1).reshape(len(re), -1)
+    write_words(path, pack(fields.T, width), fields.shape[1] * width)
+
+
+def write_direction(folder: Path, size: int, paths: int, inverse: bool, width: int) -> None:
+    """Write the ROMs of wide_fft in one direction, and the phases of the transform around it.
+
+    One path has the twiddle factors of sdf_fft.
+    """
+    direction = "inverse" if inverse else "forward"
+    blocks = sorted({s.block for s in stages(size, inverse) if s.delay == 0}, reverse=True)
+    for pair, block in enumerate(blocks):
+        if paths == 1:
+            path = folder / f"twiddle_{direction}_{pair}.hex"
+            write_factors(path, twiddle_factors(block, inverse, width), width)
+        else:
+            path = folder / f"wide_twiddle_{direction}_{pair}.hex"
+            write_wide_factors(path, wide_factors(size, paths, block, inverse, width), width)
+    phases = phase_factors(size, inverse, width)[positions(size, paths, 0)]
+    write_wide_factors(folder / f"wide_phase_{direction}.hex", phases, width)
+
+
+def write_wide_transform(folder: Path, size: int, words_down: int, words_up: int, width: int) -> None:
+    """Write the ROMs of wide_dst_forward and wide_dst_inverse: `words_down` and `words_up` words per cycle.
+
+    The inverse has half as many paths as words, because it transforms two rows at once.
+    """
+    write_direction(folder, size, words_down, False, width)
+    write_direction(folder, size, words_up // 2, True, width)
+
+
 def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
     """Write slope codes (bins, 2) as gradient_lookup.sv reads them: {gy, gx}."""
     write_words(path, pack((codes[:, 1], codes[:, 0]), width), 2 * width)
@@ -119,8 +157,34 @@ def write_thomas(folder: Path, config: Configuration) -> None:
     )
 
 
+def write_wide_thomas(folder: Path, config: Configuration) -> None:
+    """Write the ROMs of the two tables of wide_solver.sv, the coefficients of a clock side by side in a word."""
+    width, table = config.coefficient_width, thomas_table(config)
+    last = down_positions(config.columns, config.down_words)
+    for name, wide in zip(("wide_down", "wide_up"), tables(config), strict=True):
+        count = wide.words.shape[1]
+        write_words(folder / f"{name}.hex", pack(wide.words.T[::-1], width), count * width)
+        address_width = (len(wide.words) - 1).bit_length()
+        write_words(
+            folder / f"{name}_index.hex",
+            wide.base << wide.settled_width | wide.settled,
+            address_width + wide.settled_width,
+        )
+    words = []
+    for shift, word in zip(table.last_shift[last], pack(table.last[last].T[::-1], width), strict=True):
+        packed = 0
+        for each in shift[::-1].tolist():
+            packed = packed << table.last_shift_width | each
+        words.append(packed << last.shape[1] * width | word)
+    write_words(folder / "wide_down_last.hex", words, last.shape[1] * (table.last_shift_width + width))
+
+
 def write_solver(folder: Path, config: Configuration) -> None:
     """Write the ROMs of the solver."""
+    if config.lanes > 1:
+        write_wide_transform(folder, config.columns, config.down_words, config.lanes, config.coefficient_width)
+        write_wide_thomas(folder, config)
+        return
     write_transform(folder, config.columns, config.coefficient_width)
     if config.solver == "tridiagonal":
         write_thomas(folder, config)

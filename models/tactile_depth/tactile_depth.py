@@ -55,7 +55,7 @@ from tactile_depth.gradient.polynomial_gradient import (
 )
 from tactile_depth.gradient.reference_capture import reference_capture_parameters
 from tactile_depth.latency import frame_latency
-from tactile_depth.poisson import spectral_solver, tridiagonal_solver
+from tactile_depth.poisson import spectral_solver, tridiagonal_solver, wide_solver
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.registers.device_description import description_parameters
 from tactile_depth.rom_files import write_gains, write_gradient, write_polynomials, write_solver, write_zero
@@ -232,6 +232,8 @@ def _lit_deviations(
 
 def solve(f: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY) -> np.ndarray:
     """Return the depth codes of divergence codes (..., rows, columns) by the configuration's solver."""
+    if config.lanes > 1:
+        return wide_solver.wide_solver(f, config, monitor, cores)
     if config.solver == "tridiagonal":
         return tridiagonal_solver.tridiagonal_solver(f, config, monitor, cores)
     return spectral_solver.spectral_solver(f, config, monitor, cores)
@@ -252,7 +254,8 @@ def top_parameters(
 def default_parameters() -> MappingProxyType[str, int]:
     """Return the fields of the default configuration, in the order of the vector."""
     flat = [Configuration(flat_field=True, gradient_model=model) for model in ("cubic", "lut")]
-    options = [*flat, Configuration(zero_offset=True), Configuration(solver="tridiagonal")]
+    solvers = [Configuration(solver="tridiagonal", lanes=lanes) for lanes in (8, 1)]
+    options = [*flat, Configuration(zero_offset=True), *solvers]
     merged: dict[str, int] = {}
     for config in (*options, Configuration()):
         merged |= _own_parameters(config)
@@ -278,7 +281,7 @@ def hdl_parameters(
 def _own_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[str, int]:
     """Return the fields that a configuration uses."""
     tridiagonal = config.solver == "tridiagonal"
-    solver = tridiagonal_solver if tridiagonal else spectral_solver
+    solver = wide_solver if config.lanes > 1 else tridiagonal_solver if tridiagonal else spectral_solver
     parameters = {"Size": config.columns, **solver.solver_parameters(config)}
     del parameters["Columns"]
     return {

@@ -15,7 +15,6 @@ from tactile_depth.poisson.back_substitution import LATENCY as BACK_SUBSTITUTION
 from tactile_depth.poisson.back_substitution import back_substitution
 from tactile_depth.poisson.forward_elimination import LATENCY as FORWARD_ELIMINATION
 from tactile_depth.poisson.forward_elimination import forward_elimination
-from tb.lanes import LanesMonitor, check_lanes
 from tb.stream import MANY, check_bursts, configuration, sample, uniform, with_and_without_en
 
 MODELS = {"forward_elimination": forward_elimination, "back_substitution": back_substitution}
@@ -36,11 +35,6 @@ async def check(dut: Any, amplitude: Any, frames: int = 3, **behaviour: Any) -> 
     width = config.arithmetic_width if core == "forward_elimination" else config.data_width
     shape = (frames * config.rows, config.columns, 1)
     words = np.full(shape, (1 << width - 1) - 1) if amplitude == math.inf else uniform(shape, width, amplitude)
-    if config.lanes > 1 and core == "back_substitution":
-        sink = LanesMonitor(dut, "out", config.columns, config.lanes)
-        stack = words.reshape(frames, config.rows, config.columns)
-        await check_lanes(dut, stack, model, BACK_SUBSTITUTION, lanes=config.lanes, sink=sink, **behaviour)
-        return
     behaviour |= {"in_fields": ["data"], "out_fields": ["data"], "frame": config.rows}
     await check_bursts(dut, words, model, LATENCIES[core], **behaviour)
 

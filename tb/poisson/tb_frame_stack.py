@@ -6,19 +6,16 @@ from typing import Any
 import cocotb
 
 from tactile_depth.poisson.frame_stack import LATENCY, frame_stack
-from tb.lanes import LanesMonitor
 from tb.stream import check_frame_memory, parameters, places, sample
 
 FRAMES = 4  # in place, the order of rows in the memory flips with every frame
 
 
 async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
-    columns, width, rows, lanes = parameters(dut, "Columns", "Width", "Rows", "Lanes")
+    columns, width, rows = parameters(dut, "Columns", "Width", "Rows")
     # One word per frame is left out, so that every bit of a position changes from frame to frame.
     words = places(frames * (rows * columns + 1), width).reshape(frames, -1)[:, 1:]
-    if lanes > 1:
-        behaviour["sink"] = LanesMonitor(dut, "out", columns, lanes)
-    await check_frame_memory(dut, words, frame_stack, LATENCY, rows=rows, lanes=lanes, **behaviour)
+    await check_frame_memory(dut, words, frame_stack, LATENCY, rows=rows, **behaviour)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")

@@ -1,114 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tridiagonal_solver against its model: codes, fixed latency of each row, throughput, saturations."""
+"""tridiagonal_solver against its model: the tests that it shares with wide_solver."""
 
-from typing import Any
-
-import cocotb
-import numpy as np
-
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.tridiagonal_solver import latency as tridiagonal_solver_latency
-from tactile_depth.poisson.tridiagonal_solver import tridiagonal_solver
-from tb.lanes import BeatMonitor
-from tb.stream import (
-    MANY,
-    Bench,
-    StreamDriver,
-    StreamMonitor,
-    check_frame_starts,
-    check_maps,
-    configuration,
-    interrupt,
-    sample,
-    send_apart,
-    uniform,
+from tb.poisson.solver_bench import (
+    a_frame_begins_afresh,
+    a_frame_does_not_know_the_one_before,
+    frames,
+    full_scale_saturates,
+    many_frames,
+    reset_in_mid_frame,
 )
 
-
-async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrupts: Any = (), strays: int = 0) -> Any:
-    """Send frames f (frames, rows, columns) and compare; for `interrupts` see stream.interrupt."""
-    config = configuration()
-    pixels = config.rows * config.columns
-    bench = Bench(dut, pause)
-    driver = StreamDriver(dut, "in", "valid", ["data"])
-    source = StreamMonitor(dut, "in", "valid", ["data"])
-    sink = BeatMonitor(dut, "out", config.columns // config.lanes, config.lanes)
-    await bench.start()
-    words = f.reshape(-1, 1).tolist()
-    latency = tridiagonal_solver_latency(config.columns, config.lanes)
-
-    async def send(count: int) -> None:
-        await send_apart(bench, driver, words[:count], gap, pixels)
-
-    await interrupt(bench, send, interrupts, (source, sink), quiet=latency + pixels)
-    await send_apart(bench, driver, words[:strays], gap, pixels)
-    await send_apart(bench, driver, words, gap, pixels)
-    await bench.clocks(latency + pixels + config.columns)
-
-    source.forget_but(len(words))
-    sink.forget_but(len(words) // config.columns)
-    monitor = Monitor()
-    z = tridiagonal_solver(np.array(source.words).reshape(f.shape), config, monitor)
-    check_maps(sink.words, z)
-    assert strays or bench.saturations == monitor.saturations.total()
-    check_frame_starts([source], pixels)
-    check_frame_starts([sink], config.rows)
-    last_pixels, first_depths = source.starts[pixels - 1 :: pixels], sink.starts[:: config.rows]
-    assert {depth - pixel for depth, pixel in zip(first_depths, last_pixels, strict=True)} == {latency}
-    rows_apart = np.diff(np.array(sink.starts).reshape(-1, config.rows), axis=1)
-    assert np.all(rows_apart == config.columns // config.lanes), "a frame leaves with a pause between two rows"
-    if not gap:
-        assert set(np.diff(first_depths)) == {pixels}
-    return monitor.saturations
-
-
-def codes(frames: int, amplitude: float) -> Any:
-    """Return a random divergence, whose depth fits at 0.002 of full scale. None: mostly the lowest and the highest
-    word."""
-    config = configuration()
-    shape, width = (frames, config.rows, config.columns), config.divergence.width
-    return uniform(shape, width, amplitude)
-
-
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.3, 0.0), (0.0, 0.3), (0.3, 0.3)])))
-async def frames(dut: Any, gap: float, pause: float) -> None:
-    assert not await check(dut, codes(4, 0.002), gap, pause)
-
-
-@cocotb.test(timeout_time=200, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.002, 0.05, None])
-async def many_frames(dut: Any, amplitude: float) -> None:
-    """Reach ties of every rounding, and clip every value that can clip."""
-    await check(dut, codes(MANY, amplitude))
-
-
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def full_scale_saturates(dut: Any) -> None:
-    assert await check(dut, codes(3, 1.0)), "full scale everywhere must clip somewhere"
-
-
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def a_frame_does_not_know_the_one_before(dut: Any) -> None:
-    f = codes(3, 0.002)
-    f[2] = f[0]
-    await check(dut, f)
-
-
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.002, 1.0])
-async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
-    """Reset at positions in a row of the second frame as the first one leaves: every core is active, and clips if it
-    can."""
-    config = configuration()
-    first = 3 * config.rows * config.columns // 2 + 3
-    places = [first + step * (config.columns // 4 + 1) for step in range(4)]
-    await check(dut, codes(2, amplitude), interrupts=places)
-
-
-@cocotb.test(timeout_time=100, timeout_unit="ms")
-@cocotb.parametrize(rows=[1, 3])
-async def a_frame_begins_afresh(dut: Any, rows: int) -> None:
-    """Start a frame after rows of an incomplete frame, and after part of another row."""
-    columns = configuration().columns
-    await check(dut, codes(2, 0.002), strays=rows * columns + 5)
+__all__ = [
+    "a_frame_begins_afresh",
+    "a_frame_does_not_know_the_one_before",
+    "frames",
+    "full_scale_saturates",
+    "many_frames",
+    "reset_in_mid_frame",
+]

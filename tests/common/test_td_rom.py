@@ -11,18 +11,22 @@ from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 
 
-def built(width: int, depth: Any, **runs: Any) -> Structure:
+def built(width: int, depth: Any, style: int, **runs: Any) -> Structure:
     chance = random.Random(depth)
     words = [chance.getrandbits(width) for _ in range(depth)]
     return Structure(
-        {"Width": width, "Depth": depth}, roms=lambda folder: write_words(folder / "rom.hex", words, width), **runs
+        {"Width": width, "Depth": depth, "Style": style},
+        roms=lambda folder: write_words(folder / "rom.hex", words, width),
+        **runs,
     )
 
 
 STRUCTURES = (
-    built(54, 128, on=VERILATOR),
-    built(10, 36, on=ICARUS, mutants=True),
-    built(72, 33),
+    built(54, 128, 3, on=VERILATOR),
+    built(10, 36, 3, on=ICARUS, mutants=True),
+    built(72, 33, 3),
+    built(54, 128, 0),
+    built(10, 36, 1),
 )
 REFUSED = {
     "Depth=1": "Depth_must_be_at_least_2",

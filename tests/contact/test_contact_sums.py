@@ -22,14 +22,14 @@ STRUCTURES = (
     built(32, 5, 16, 1, 1),
     built(12, 9, 4, 1, 0),
     built(24, 5, 16, 2, 0),
-    built(12, 3, 64, 32, 1),
+    built(12, 3, 128, 64, 1),
     built(32, 5, 16, 8, 1),
 )
 REFUSED = {
     "Lanes=3": Refused(
-        "Lanes_must_be_a_power_of_two_up_to_32_that_divides_Columns", {"verilator": "can't find definition of 'first'"}
+        "Lanes_must_be_a_power_of_two_up_to_64_that_divides_Columns", {"verilator": "can't find definition of 'first'"}
     ),
-    "Lanes=64": "Lanes_must_be_a_power_of_two_up_to_32_that_divides_Columns",
+    "Lanes=128": "Lanes_must_be_a_power_of_two_up_to_64_that_divides_Columns",
 }
 PROOFS = tuple(
     Proof(

@@ -35,15 +35,10 @@ def built(choices: Any, store: Any, **runs: Any) -> Structure:
 
 STRUCTURES = (
     built(CHOICES, {}, on=VERILATOR),
-    built(CHOICES | {"columns": 32, "rows": 11, "lanes": 4}, {}, on=VERILATOR),
     built(CHOICES | {"rows": 21, "neumann": True}, {}, on=ICARUS),
-    built(CHOICES | {"lanes": 4, "rows": 9, "neumann": True}, {}, on=ICARUS),
     built(CHOICES | {"columns": 32, "rows": 9, "data_width": 16, "coefficient_width": 10}, {}, mutants=True),
     built(CHOICES | {"data_width": 32, "coefficient_width": 24, "neumann": True, "depth_range_px": 5.3}, {}),
     built(CHOICES | {"columns": 32, "rows": 11}, PACKED),
-    built(CHOICES | {"columns": 64, "rows": 13, "lanes": 8}, PACKED),
-    built(CHOICES | {"lanes": 2, "rows": 9, "neumann": True}, {}, mutants=True),
-    built(CHOICES | {"columns": 64, "rows": 21, "lanes": 16}, {}),  # 32 lanes: the codes of `make regress`
 )
 MUTANTS = Mutants("words", simulators=QUICK_FIRST, flat=False)
 NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"

@@ -53,14 +53,8 @@ def stored(d: np.ndarray, config: Configuration, monitor: Monitor | None, node: 
 
     Under Neumann the last row of mode 0 is first written into `d`: see `forward_elimination`.
     """
-    rows, width = d.shape[-2], config.arithmetic_width
     if config.neumann:
-        reciprocal, mean_drop = mean_reciprocal(config)
-        moment = (d[..., :-1, 0] * np.arange(1, rows)).sum(axis=-1)
-        mean = round_saturate(moment, config.moment_drop, width, monitor, node + ".moment")
-        d[..., -1, 0] = round_saturate(
-            -mean * reciprocal, mean_drop - config.moment_drop, width, monitor, node + ".mean"
-        )
+        zero_mean(d, config, monitor, node)
     return round_saturate(
         d,
         config.elimination.fraction - config.elimination_store.fraction,
@@ -68,3 +62,12 @@ def stored(d: np.ndarray, config: Configuration, monitor: Monitor | None, node: 
         monitor,
         node + ".store",
     )
+
+
+def zero_mean(d: np.ndarray, config: Configuration, monitor: Monitor | None, node: str) -> None:
+    """Write the last row of mode 0 into the rows d (..., rows, columns): see `forward_elimination`."""
+    rows, width = d.shape[-2], config.arithmetic_width
+    reciprocal, mean_drop = mean_reciprocal(config)
+    moment = (d[..., :-1, 0] * np.arange(1, rows)).sum(axis=-1)
+    mean = round_saturate(moment, config.moment_drop, width, monitor, node + ".moment")
+    d[..., -1, 0] = round_saturate(-mean * reciprocal, mean_drop - config.moment_drop, width, monitor, node + ".mean")

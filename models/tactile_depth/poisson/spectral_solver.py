@@ -125,8 +125,8 @@ def row_inverse(
     return row_reorder(depth, to_burst=False)
 
 
-def latency_by_core(size: int, lanes: int = 1) -> list[tuple[str, int]]:
-    """Return cores and cycles from the last divergence word of a frame to its first depth, for any gaps; one lane."""
+def latency_by_core(size: int) -> list[tuple[str, int]]:
+    """Return cores and cycles from the last divergence word of a frame to its first depth, for any gaps."""
     forward, inverse = forward_latency(size), inverse_latency(size)
     return [
         ("row_reorder", ROW_REORDER),

@@ -55,8 +55,8 @@ class ThomasTable:
 
 
 @cache
-def thomas_table(config: Configuration) -> ThomasTable:
-    """Compute the table in double precision, round it and compress it."""
+def _exact(config: Configuration) -> tuple[np.ndarray, np.ndarray]:
+    """Return c of all rows but the last, float64 (rows - 1, columns), and c of the last row, (columns,)."""
     eigenvalue = eigenvalues(config.columns, config.neumann)
     end = eigenvalue - (1 if config.neumann else 3)
     full = np.empty((config.rows - 1, config.columns))
@@ -66,13 +66,67 @@ def thomas_table(config: Configuration) -> ThomasTable:
         c = 1 / (eigenvalue - 2 - c)
     pivot = end - full[-1]
     singular = np.abs(pivot) < 1e-9
-    last = np.where(singular, 0, 1 / np.where(singular, 1, pivot))
+    return full, np.where(singular, 0, 1 / np.where(singular, 1, pivot))
 
+
+def _codes(values: np.ndarray, config: Configuration) -> np.ndarray:
+    """Return negative values down to -1 as words of the coefficient width; the smallest is -1 code."""
     scale = 2 ** (config.coefficient_width - 1)
-    codes = np.clip(np.rint(full * scale), -scale, -1).astype(np.int64)
+    return np.clip(np.rint(values * scale), -scale, -1).astype(np.int64)
+
+
+def _settled(codes: np.ndarray) -> np.ndarray:
+    """Return the row of the last change of each position, from codes (rows, positions)."""
     changed = codes != codes[-1]
-    settled = np.where(changed.any(axis=0), len(codes) - np.argmax(changed[::-1], axis=0), 0)
+    return np.where(changed.any(axis=0), len(codes) - np.argmax(changed[::-1], axis=0), 0)
+
+
+@cache
+def thomas_table(config: Configuration) -> ThomasTable:
+    """Compute the table in double precision, round it and compress it."""
+    full, last = _exact(config)
+    codes = _codes(full, config)
+    settled = _settled(codes)
     base = np.concatenate(([0], np.cumsum(settled + 1)[:-1]))
     words = np.concatenate([codes[: settled[p] + 1, p] for p in range(config.columns)])
     shift = np.maximum(np.frexp(last)[1], 0).astype(np.int64)
+    scale = 2 ** (config.coefficient_width - 1)
     return ThomasTable(words, base, settled, np.rint(last * scale / 2.0**shift).astype(np.int64), shift)
+
+
+def ahead_rows(config: Configuration) -> np.ndarray:
+    """Return the coefficients -c[i] c[i+1] of the substitution that looks ahead, int64 (rows - 2, columns).
+
+    They are rounded from the exact product, and the sign lets the word of -1 hold a product of 1.
+    """
+    full, _ = _exact(config)
+    return _codes(-full[:-1] * full[1:], config)
+
+
+@dataclass(frozen=True)
+class WideTable:
+    """Coefficients of several positions side by side in a word, compressed as those of one position.
+
+    Attributes
+    ----------
+    words : int64 array (count, positions in a word), the coefficients of row i and clock t of a burst at
+        base[t] + min(i, settled[t]), where the last of the positions settles
+    base, settled : int64 arrays (clocks of a burst,)
+    """
+
+    words: np.ndarray
+    base: np.ndarray
+    settled: np.ndarray
+
+    @property
+    def settled_width(self) -> int:
+        return max(1, int(self.settled.max()).bit_length())
+
+
+def wide_table(codes: np.ndarray, positions: np.ndarray) -> WideTable:
+    """Compress coefficients (rows, columns) for bursts whose clocks take `positions` (clocks, positions in a word)."""
+    bursts = codes[:, positions]  # (rows, clocks, positions)
+    settled = np.array([_settled(bursts[:, clock]).max() for clock in range(len(positions))])
+    base = np.concatenate(([0], np.cumsum(settled + 1)[:-1]))
+    words = np.concatenate([bursts[: last + 1, clock] for clock, last in enumerate(settled)])
+    return WideTable(words, base, settled)

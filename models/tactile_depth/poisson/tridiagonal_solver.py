@@ -14,7 +14,6 @@ from tactile_depth.poisson.forward_elimination import mean_reciprocal
 from tactile_depth.poisson.frame_stack import LATENCY as FRAME_STACK
 from tactile_depth.poisson.frame_stack import frame_stack
 from tactile_depth.poisson.thomas_table import thomas_table
-from tactile_depth.poisson.transform.corner_turn import LATENCY as CORNER_TURN
 from tactile_depth.poisson.transform.dst_forward import latency as forward_latency
 from tactile_depth.poisson.transform.dst_inverse import latency as inverse_latency
 from tactile_depth.poisson.transform.row_reorder import LATENCY as ROW_REORDER
@@ -28,7 +27,6 @@ def solver_parameters(config: Configuration) -> dict[str, int]:
     return {
         **config.transform_parameters(),
         "Rows": config.rows,
-        "Lanes": config.lanes,
         "InWidth": config.divergence.width,
         "DataWidth": config.data_width,
         "Neumann": int(config.neumann),
@@ -110,9 +108,8 @@ def row_inverse(
     return row_reorder(depth, to_burst=False)
 
 
-def latency_by_core(size: int, lanes: int = 1) -> list[tuple[str, int]]:
+def latency_by_core(size: int) -> list[tuple[str, int]]:
     """Return cores and cycles from the last divergence word of a frame to its first depth, for any gaps."""
-    last, cycles = ("row_reorder", ROW_REORDER) if lanes == 1 else ("corner_turn", CORNER_TURN)
     return [
         ("row_reorder", ROW_REORDER),
         ("dst_forward, of the last row", forward_latency(size)),
@@ -120,10 +117,10 @@ def latency_by_core(size: int, lanes: int = 1) -> list[tuple[str, int]]:
         ("frame_stack, turns the order of the rows", FRAME_STACK),
         ("back_substitution", BACK_SUBSTITUTION),
         ("dst_inverse, of the first row out", inverse_latency(size)),
-        (f"{last}, waits for the whole row", size - 1 + cycles),
+        ("row_reorder, waits for the whole row", size - 1 + ROW_REORDER),
     ]
 
 
-def latency(size: int, lanes: int = 1) -> int:
+def latency(size: int) -> int:
     """Return the cycles from the last divergence word of a frame to its first depth, for any gaps; rows of `size`."""
-    return sum(cycles for _, cycles in latency_by_core(size, lanes))
+    return sum(cycles for _, cycles in latency_by_core(size))

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// protocol_wide_commutator: bursts of Beats beats, starts 2 enabled clocks before their words.
+
+`default_nettype none
+
+module protocol_wide_commutator #(
+  parameter int Beats = 4
+) (
+  input  logic clk,
+  input  logic rst,
+  input  logic en,
+  input  logic in_start,
+  input  logic in_frame_start,
+  input  logic out_start,
+  output logic holds,
+  output logic counts_out_start,
+  output logic counts_out_frame_start,
+  output logic counts
+);
+
+  protocol_wide_bursts #(.Beats(Beats), .OutBeats(Beats), .OutLead(2)) u_bursts (.*, .counts_saturations());
+
+endmodule
+
+`default_nettype wire

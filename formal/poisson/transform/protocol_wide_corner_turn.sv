@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// protocol_wide_corner_turn: two rows a burst go in, 2 enabled clocks behind their start; a row a burst goes out.
+
+`default_nettype none
+
+module protocol_wide_corner_turn #(
+  parameter int Size  = 8,
+  parameter int Paths = 2
+) (
+  input  logic clk,
+  input  logic rst,
+  input  logic en,
+  input  logic in_start,
+  input  logic in_frame_start,
+  input  logic out_start,
+  output logic holds,
+  output logic counts_out_start,
+  output logic counts_out_frame_start,
+  output logic counts
+);
+
+  protocol_wide_bursts #(
+    .Beats(Size / Paths), .OutBeats(Size / Paths / 2), .OutLead(0)
+  ) u_bursts (.*, .counts_saturations());
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// protocol_wide_dst_inverse: two rows a burst go in, 2 enabled clocks behind their start; a row a burst goes out.
+
+`default_nettype none
+
+module protocol_wide_dst_inverse #(
+  parameter int Size  = 8,
+  parameter int Words = 2
+) (
+  input  logic clk,
+  input  logic rst,
+  input  logic en,
+  input  logic in_start,
+  input  logic in_frame_start,
+  input  logic out_start,
+  output logic holds,
+  output logic counts_out_start,
+  output logic counts_out_frame_start,
+  output logic counts_saturations,
+  output logic counts
+);
+
+  protocol_wide_bursts #(
+    .Beats(2 * Size / Words), .OutBeats(Size / Words), .OutLead(0)
+  ) u_bursts (.*);
+
+endmodule
+
+`default_nettype wire

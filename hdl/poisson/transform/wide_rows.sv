@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// wide_rows: collects a row, then sends it as one burst, Paths words a cycle, in the order of wide_dst_forward.
+//
+// Stream in: words with gaps anywhere; a row begins afresh at a frame's first word. Stream out: bursts of Beats =
+// Columns / Paths beats, one a row, begun when the row is complete, path 0 in the lowest bits; starts come 2 cycles
+// before the first beat. Path l has in beat t the word at position l Beats + t in Makhoul order (0, 2, 4, .., 5, 3, 1).
+// Latency: out_start comes with the last word of a row. Two rows of memory, written and read in turn.
+// Bit-accurate model: models/tactile_depth/poisson/transform/wide_rows.py.
+
+`default_nettype none
+
+module wide_rows #(
+  parameter int Width   = 24,
+  parameter int Columns = 128,
+  parameter int Paths   = 4
+) (
+  input  wire                    clk,
+  input  wire                    rst,
+  input  wire                    en,
+  input  wire                    in_valid,
+  input  wire                    in_frame_start,   // the first word of a frame
+  input  wire  [Width-1:0]       in_data,          // a word of any format, unchanged in out_data
+  output logic                   out_start,
+  output logic                   out_frame_start,  // the first burst of a frame
+  output logic [Paths*Width-1:0] out_data
+);
+
+  localparam int PositionWidth = $clog2(Columns);
+  localparam int Beats = Columns / Paths;
+  localparam int BeatWidth = $clog2(Beats);
+
+  logic write_bank, read_bank, read_start, read_active, frame_start, frame_start_q;
+  logic [PositionWidth-1:0] position, position_q, makhoul;
+  logic [BeatWidth-1:0] beat;
+  td_burst_counter #(.Words(Beats)) u_read (
+    .clk, .rst, .en, .start(read_start), .position(beat), .active(read_active)
+  );
+  assign position = in_frame_start ? '0 : position_q;
+  assign makhoul = {position[0], position[PositionWidth-1:1] ^ {(PositionWidth - 1){position[0]}}};
+
+  for (genvar path = 0; path < Paths; path++) begin : g_path
+    td_ram #(.Width(Width), .Depth(2 * Beats)) u_ram (
+      .clk,
+      .write_en     (en & in_valid & ((makhoul >> BeatWidth) == PositionWidth'(path))),
+      .write_address({write_bank, makhoul[BeatWidth-1:0]}),
+      .write_data   (in_data),
+      .read_en      (en & read_active),
+      .read_address ({read_bank, beat}),
+      .read_data    (out_data[path*Width+:Width])
+    );
+  end
+
+  // The row that is being collected is a frame's first.
+  assign frame_start = position == '0 ? in_frame_start : frame_start_q;
+  assign out_start = in_valid & (position == PositionWidth'(Columns - 1));
+  assign out_frame_start = out_start & frame_start;
+  always_ff @(posedge clk) begin
+    if (en) begin
+      if (in_valid) begin
+        position_q <= position + PositionWidth'(1);
+        frame_start_q <= frame_start;
+      end
+      if (out_start) begin
+        write_bank <= ~write_bank;
+        read_bank <= write_bank;
+      end
+      read_start <= out_start;
+    end
+    if (rst) begin
+      write_bank <= 1'b0;
+      read_bank <= 1'b0;
+      read_start <= 1'b0;
+    end
+  end
+
+  if (Columns < 4 || Columns != (1 << PositionWidth)) begin : g_refused_0
+    Columns_must_be_a_power_of_two_at_least_4 u_refused ();
+  end
+  if (Paths < 1 || Paths != (1 << $clog2(Paths)) || 2 * Paths > Columns) begin : g_refused_1
+    Paths_must_be_a_power_of_two_1_to_Columns_2 u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

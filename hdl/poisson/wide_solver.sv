@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// wide_solver: the Poisson solver of tridiagonal_solver with several depth codes a clock, one row after the other.
+//
+//   five-point Laplacian of z = f; z = 0 half a pixel outside the frame, or (Neumann) zero slope at its edge, mean zero
+//
+// Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes, bottom row first,
+// one burst of Columns / Lanes clocks a row, Lanes codes a clock, the first in the lowest bits; the rows of a frame
+// without a pause. Down the rows go DownWords modes a clock; up the rows goes a row Lanes modes a clock, and every two
+// rows share one complex transform. Latency: fixed, in the model, and the same after any gaps.
+// Bit-accurate model: models/tactile_depth/poisson/wide_solver.py.
+
+`default_nettype none
+
+module wide_solver
+  import td_config_pkg::*;
+#(
+  parameter TableFolder = "./",  // of the .hex files, with a / at its end
+  parameter logic [ConfigBits-1:0] Config = DefaultConfig,
+  localparam int Rows             = value(Config, RowsField),
+  localparam int Columns          = value(Config, ColumnsField),  // a power of two
+  localparam int GivenLanes       = value(Config, LanesField),
+  localparam int Lanes            = GivenLanes > 1 ? GivenLanes : 8,  // modes a clock up the rows, depths a clock
+  localparam int DownWords        = value(Config, DownWordsField),  // modes a clock on the way down
+  localparam int DataWidth        = value(Config, DataWidthField),  // of a stored word, and of a depth code
+  localparam int CoeffWidth       = value(Config, CoeffWidthField),
+  localparam int Neumann          = value(Config, NeumannField),  // by cosine transforms
+  localparam int RowForwardOut    = value(Config, RowForwardOutField),  // fraction bits dropped on the way
+  localparam int RowInverseIn     = value(Config, RowInverseInField),
+  localparam int RowInverseOut    = value(Config, RowInverseOutField),
+  localparam int DownTableWords   = value(Config, DownTableWordsField),
+  localparam int DownSettledWidth = value(Config, DownSettledWidthField),
+  localparam int LastShiftWidth   = value(Config, LastShiftWidthField),
+  localparam int UpTableWords     = value(Config, UpTableWordsField),
+  localparam int UpSettledWidth   = value(Config, UpSettledWidthField),
+  localparam int MomentDrop       = value(Config, MomentDropField),
+  localparam int MeanReciprocal   = value(Config, MeanReciprocalField),
+  localparam int MeanDrop         = value(Config, MeanDropField),
+  localparam int StoreStyle       = value(Config, StoreStyleField),  // of a frame store, hdl/common/td_ram.sv
+  localparam int GradientWidth    = value(Config, GradientWidthField),
+  localparam int InWidth          = GradientWidth + 2,  // of a divergence
+  localparam int Width            = DataWidth + GuardBits,  // of the arithmetic
+  localparam int ClippedWidth     = 8 + $clog2(Lanes)
+) (
+  input  wire                        clk,
+  input  wire                        rst,
+  input  wire                        en,
+  input  wire                        in_valid,
+  input  wire                        in_frame_start,   // the first word of a frame
+  input  wire  signed [InWidth-1:0]  in_data,          // divergence, the fraction bits of a slope
+  output logic                       out_start,
+  output logic                       out_frame_start,  // the first burst of a frame
+  output logic [Lanes*DataWidth-1:0] out_data,         // depth codes, signed
+  output logic [ClippedWidth-1:0]    saturations       // clip count, delayed
+);
+
+  localparam int Sine = Neumann != 0 ? 0 : 1;
+
+  // Starts come some clocks before their words, see each core.
+  logic row_start, modes_start, eliminated_start, stacked_start, solved_start;
+  logic row_frame_start, modes_frame_start, eliminated_frame_start, stacked_frame_start, solved_frame_start;
+  logic stacked_alone, solved_alone;
+  logic [DownWords*InWidth-1:0] row_data;
+  logic [DownWords*Width-1:0] modes;
+  logic [DownWords*DataWidth-1:0] last, ahead;
+  logic [Lanes*DataWidth-1:0] stacked;
+  logic [Lanes*Width-1:0] solved;
+  logic [7+$clog2(DownWords):0] clipped_forward;
+  logic [$clog2(4*DownWords+3)-1:0] clipped_down;
+  logic [$clog2(Lanes+1)-1:0] clipped_up;
+  logic [ClippedWidth-1:0] clipped_inverse;
+
+  wide_rows #(.Width(InWidth), .Columns(Columns), .Paths(DownWords)) u_rows (
+    .clk, .rst, .en, .in_valid, .in_frame_start, .in_data(in_data),
+    .out_start(row_start), .out_frame_start(row_frame_start), .out_data(row_data)
+  );
+
+  wide_dst_forward #(
+    .TableFolder(TableFolder), .Size(Columns), .Words(DownWords), .InWidth(InWidth), .Width(Width),
+    .CoeffWidth(CoeffWidth), .OutputDrop(RowForwardOut), .OutWidth(Width), .Sine(Sine)
+  ) u_forward (
+    .clk, .rst, .en, .in_start(row_start), .in_frame_start(row_frame_start), .in_data(row_data),
+    .out_start(modes_start), .out_frame_start(modes_frame_start), .out_data(modes), .saturations(clipped_forward)
+  );
+
+  wide_elimination #(
+    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns),
+    .Words(DownWords), .StoreDrop(GuardBits), .OutWidth(DataWidth), .Neumann(Neumann), .TableWords(DownTableWords),
+    .SettledWidth(DownSettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
+    .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop)
+  ) u_down (
+    .clk, .rst, .en, .in_start(modes_start), .in_frame_start(modes_frame_start), .in_data(modes),
+    .out_start(eliminated_start), .out_frame_start(eliminated_frame_start), .out_last(last), .out_ahead(ahead),
+    .saturations(clipped_down)
+  );
+
+  wide_stack #(
+    .Width(DataWidth), .Rows(Rows), .Columns(Columns), .InWords(DownWords), .OutWords(Lanes), .Style(StoreStyle)
+  ) u_stack (
+    .clk, .rst, .en, .in_start(eliminated_start), .in_frame_start(eliminated_frame_start), .in_last(last),
+    .in_ahead(ahead), .out_start(stacked_start), .out_frame_start(stacked_frame_start), .out_alone(stacked_alone),
+    .out_data(stacked)
+  );
+
+  wide_substitution #(
+    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Words(Lanes),
+    .InWidth(DataWidth), .Drop(-GuardBits), .TableWords(UpTableWords), .SettledWidth(UpSettledWidth)
+  ) u_up (
+    .clk, .rst, .en, .in_start(stacked_start), .in_frame_start(stacked_frame_start), .in_alone(stacked_alone),
+    .in_data(stacked), .out_start(solved_start), .out_frame_start(solved_frame_start), .out_alone(solved_alone),
+    .out_data(solved), .saturations(clipped_up)
+  );
+
+  wide_dst_inverse #(
+    .TableFolder(TableFolder), .Size(Columns), .Words(Lanes), .InWidth(Width), .InputDrop(RowInverseIn), .Width(Width),
+    .CoeffWidth(CoeffWidth), .OutputDrop(RowInverseOut), .OutWidth(DataWidth), .Sine(Sine)
+  ) u_inverse (
+    .clk, .rst, .en, .in_start(solved_start), .in_frame_start(solved_frame_start), .in_alone(solved_alone),
+    .in_data(solved), .out_start, .out_frame_start, .out_data, .saturations(clipped_inverse)
+  );
+
+  always_ff @(posedge clk) begin
+    saturations <= ClippedWidth'(clipped_forward) + ClippedWidth'(clipped_down) + ClippedWidth'(clipped_up)
+        + clipped_inverse;
+    if (rst) saturations <= '0;
+  end
+
+  if (DataWidth < 2 || DataWidth > 32) begin : g_refused_0
+    DataWidth_must_be_2_to_32 u_refused ();
+  end
+  if (GradientWidth < 2 || GradientWidth > 32 || CoeffWidth < 2 || CoeffWidth > 32) begin : g_refused_1
+    GradientWidth_and_CoeffWidth_must_be_2_to_32 u_refused ();
+  end
+  if (StoreStyle < 0 || StoreStyle > 2) begin : g_refused_2
+    StoreStyle_must_be_0_to_2 u_refused ();
+  end
+  if (DownSettledWidth < 1 || DownSettledWidth > 16 || UpSettledWidth < 1 || UpSettledWidth > 16) begin : g_refused_3
+    DownSettledWidth_and_UpSettledWidth_must_be_1_to_16 u_refused ();
+  end
+  if (LastShiftWidth < 1 || LastShiftWidth > 6) begin : g_refused_4
+    LastShiftWidth_must_be_1_to_6 u_refused ();
+  end
+  if (Neumann != 0 && (MeanReciprocal < 1 || MeanReciprocal > 1 << (CoeffWidth - 1))) begin : g_refused_5
+    MeanReciprocal_must_fit_CoeffWidth u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

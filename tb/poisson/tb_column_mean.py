@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""column_mean against its model: means and clip counts, with pauses; a frame begins afresh."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.poisson.forward_elimination import zero_mean
+from tb.stream import MANY, configuration, drive, uniform
+
+CLOSEST = 6  # cycles between two rows, at least: the way of an addend into the mean
+
+
+async def check(dut: Any, amplitude: float | None, frames: int, pause: float, strays: int = 0) -> None:
+    """Send columns d; `strays` words of an incomplete frame come before the second frame."""
+    config = configuration()
+    rows, width = config.rows, config.arithmetic_width
+    d = uniform((frames, rows, 1), width, amplitude)
+    distances = np.random.default_rng(cocotb.RANDOM_SEED).integers(CLOSEST, CLOSEST + 9, 2 * d.size + strays)
+    apart = iter(distances.tolist())
+    stimuli: list[dict[str, int]] = []
+    used = []  # clocks in which a mean is complete
+    for index, column in enumerate(d[..., 0].tolist()):
+        words = column[:-1] if index != 1 else column[:strays] + column[:-1]
+        begins = {0, strays if index == 1 else 0}
+        for row, word in enumerate(words):
+            stimuli.append({"in_next": 1, "in_frame_start": int(row in begins), "in_data": 0})
+            stimuli += [{"in_next": 0, "in_frame_start": 0, "in_data": word}] * next(apart)
+        used.append(len(stimuli) - 1)
+    pins = await drive(dut, stimuli, ["mean", "clipped"], pause)
+    monitor = Monitor()
+    zero_mean(d, config, monitor, "column_mean")
+    np.testing.assert_array_equal([pins["mean"][clock].to_signed() for clock in used], d[:, -1, 0])
+    if not pause and not strays:
+        clips = [pins["clipped"][clock] for clock in range(CLOSEST, len(stimuli))]
+        assert sum(int(clip).bit_count() for clip in clips) == monitor.saturations.total()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.01, 1.0, None], pause=[0.0, 0.3])
+async def means(dut: Any, amplitude: float | None, pause: float) -> None:
+    await check(dut, amplitude, MANY * 3, pause)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(strays=[1, 5])
+async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
+    await check(dut, 0.5, 3, 0.0, strays)

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+"""wide_commutator against its model: positions, latency; gaps, pauses, reset."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.poisson.transform.wide_commutator import wide_commutator
+from tb.stream import parameters, uniform
+from tb.wide import check_wide
+
+BURSTS = 12
+
+
+async def check(dut: Any, **behaviour: Any) -> None:
+    width, paths, beats, delay, up = parameters(dut, "Width", "Paths", "Beats", "Delay", "Up")
+    words = uniform((BURSTS, beats, paths, 2), width)
+
+    def model(x: Any, monitor: Monitor) -> Any:
+        return np.stack([wide_commutator(x[..., part], delay, bool(up)) for part in (0, 1)], axis=-1)
+
+    await check_wide(dut, words, model, delay, fields=["re", "im"], paths=paths, **behaviour)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3), (2, 0.3)]))
+async def bursts(dut: Any, gap: int, pause: float) -> None:
+    await check(dut, gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def reset_in_mid_burst(dut: Any) -> None:
+    """Reset in each cycle of a burst, as it enters and as it leaves."""
+    beats, delay = parameters(dut, "Beats", "Delay")
+    await check(dut, interrupts=range(1, beats + delay + 2))

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""wide_dst_forward against the model of dst_forward: codes, latency, saturations; gaps, pauses, extremes, reset."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.poisson.transform.wide_dst_forward import latency as wide_dst_forward_latency
+from tactile_depth.poisson.transform.wide_dst_forward import wide_dst_forward
+from tb.stream import MANY, extremes, parameters, sample, uniform, with_and_without_en
+from tb.wide import check_wide
+
+TRANSFORM: Any = wide_dst_forward
+CLOCKS_OF_A_BURST_EDGE = 12  # cycles in which a burst begins to enter, or to leave
+
+
+async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
+    """Send bursts (count, beats, words, 1) and compare the output with the model of the device."""
+    formats = parameters(dut, "Width", "CoeffWidth", "OutputDrop", "OutWidth")
+    (alternate,) = parameters(dut, "Sine")
+    size, paths = parameters(dut, "Size", "Words")
+
+    def model(words: Any, monitor: Monitor) -> Any:
+        return TRANSFORM(words[..., 0], *formats, monitor, alternate=bool(alternate))[..., None]
+
+    return await check_wide(
+        dut, words, model, wide_dst_forward_latency(size, paths), fields=["data"], paths=paths, **behaviour
+    )
+
+
+def shape(dut: Any, bursts: int) -> tuple[int, ...]:
+    size, paths = parameters(dut, "Size", "Words")
+    return bursts, size // paths, paths, 1
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", sample([0.3, 1.0, None])))
+async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
+    (width,) = parameters(dut, "InWidth")
+    await check(dut, uniform(shape(dut, 5), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=50, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.1, None])
+async def many_bursts(dut: Any, amplitude: float) -> None:
+    """Reach ties of every rounding, and clip every value that can clip."""
+    (width,) = parameters(dut, "InWidth")
+    await check(dut, uniform(shape(dut, 4 * MANY), width, amplitude))
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def limits(dut: Any) -> None:
+    size, width = parameters(dut, "Size", "InWidth")
+    _, sink = await check(dut, extremes(size, width).reshape(shape(dut, 8)))
+    assert not np.any(sink.words[: shape(dut, 1)[1]]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("late", "clips"), sample([(False, True), (False, False), (True, False), (True, True)])))
+async def reset_in_mid_burst(dut: Any, late: bool, clips: bool) -> None:
+    """Reset in each cycle in which a burst begins to enter, or to leave; a clip after the reset is not counted."""
+    size, width, paths = parameters(dut, "Size", "InWidth", "Words")
+    first = wide_dst_forward_latency(size, paths) - 3 if late else 1
+    words = uniform(shape(dut, 2), width, None if clips else 1.0)
+    await check(dut, words, interrupts=with_and_without_en(range(first, first + CLOCKS_OF_A_BURST_EDGE)))

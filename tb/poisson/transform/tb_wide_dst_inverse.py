@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""wide_dst_inverse against its model: codes, latency, saturations; rows alone, gaps, pauses, extremes, reset."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.poisson.transform.wide_commutator import LEAD
+from tactile_depth.poisson.transform.wide_corner_turn import wide_corner_turn
+from tactile_depth.poisson.transform.wide_dst_inverse import latency as wide_dst_inverse_latency
+from tactile_depth.poisson.transform.wide_dst_inverse import wide_dst_inverse
+from tactile_depth.poisson.transform.wide_row_pairs import rows_of_bursts
+from tb.stream import MANY, extremes, parameters, sample, uniform, with_and_without_en
+from tb.wide import RowPairDriver, WideMonitor, alone, check_row_pairs
+
+TRANSFORM: Any = wide_dst_inverse
+CLOCKS_OF_A_BURST_EDGE = 12  # cycles in which a burst begins to enter, or to leave
+
+
+def shape(dut: Any, bursts: int) -> tuple[int, ...]:
+    size, words = parameters(dut, "Size", "Words")
+    return bursts, 2 * size // words, words
+
+
+async def check(dut: Any, bursts: Any, **behaviour: Any) -> None:
+    formats = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth")
+    (alternate,) = parameters(dut, "Sine")
+    size, words = parameters(dut, "Size", "Words")
+    beats = size // words
+
+    def model(beats_in: Any, monitor: Monitor) -> Any:
+        single = alone(beats_in)
+        rows = rows_of_bursts(beats_in, single)
+        samples = np.zeros_like(rows)
+        for out, pair, count in zip(samples, rows, 2 - single, strict=True):
+            out[:count] = TRANSFORM(pair[:count], *formats, monitor, alternate=bool(alternate))
+        return wide_corner_turn(samples, words // 2)
+
+    await check_row_pairs(
+        dut,
+        bursts,
+        model,
+        wide_dst_inverse_latency(size, words) - LEAD,
+        driver=RowPairDriver(dut, "in", ["data"], words),
+        source=WideMonitor(dut, "in", ["data"], 2 * beats, words),
+        sink=WideMonitor(dut, "out", ["data"], beats, words, lead=0),
+        **behaviour,
+    )
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", sample([0.3, 1.0, None])))
+async def bursts(dut: Any, gap: int, pause: float, amplitude: float) -> None:
+    (width,) = parameters(dut, "InWidth")
+    await check(dut, uniform(shape(dut, 8), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=50, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.1, None])
+async def many_bursts(dut: Any, amplitude: float) -> None:
+    """Reach ties of every rounding, and clip every value that can clip."""
+    (width,) = parameters(dut, "InWidth")
+    await check(dut, uniform(shape(dut, 4 * MANY), width, amplitude))
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def limits(dut: Any) -> None:
+    size, width = parameters(dut, "Size", "InWidth")
+    await check(dut, extremes(2 * size, width).reshape(shape(dut, 8)))
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("late", "clips"), sample([(False, True), (False, False), (True, False), (True, True)])))
+async def reset_in_mid_burst(dut: Any, late: bool, clips: bool) -> None:
+    """Reset in each cycle in which a burst begins to enter, or to leave; a clip after the reset is not counted."""
+    size, width, words = parameters(dut, "Size", "InWidth", "Words")
+    first = wide_dst_inverse_latency(size, words) - 3 if late else 1
+    bursts = uniform(shape(dut, 3), width, None if clips else 1.0)
+    await check(dut, bursts, interrupts=with_and_without_en(range(first, first + CLOCKS_OF_A_BURST_EDGE)))

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""wide_fft against the model of sdf_fft: codes, latency, saturations; gaps, pauses, extremes, reset."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.poisson.transform.wide_fft import latency as wide_fft_latency
+from tactile_depth.poisson.transform.wide_fft import wide_fft
+from tb.stream import MANY, extremes, parameters, uniform
+from tb.wide import check_wide
+
+
+async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
+    width, coeff, inverse, size, paths = parameters(dut, "Width", "CoeffWidth", "Inverse", "Size", "Paths")
+
+    def model(x: Any, monitor: Monitor) -> Any:
+        return np.stack(wide_fft(x[..., 0], x[..., 1], bool(inverse), width, coeff, monitor), axis=-1)
+
+    return await check_wide(
+        dut, words, model, wide_fft_latency(size, paths), fields=["re", "im"], paths=paths, **behaviour
+    )
+
+
+def shape(dut: Any, bursts: int) -> tuple[int, ...]:
+    size, paths = parameters(dut, "Size", "Paths")
+    return bursts, size // paths, paths, 2
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3), (3, 0.0)]), ("amplitude", [0.3, 1.0]))
+async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
+    (width,) = parameters(dut, "Width")
+    await check(dut, uniform(shape(dut, 8), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=50, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.1, None])
+async def many_bursts(dut: Any, amplitude: float) -> None:
+    """Reach ties of every rounding, and clip every value that can clip."""
+    (width,) = parameters(dut, "Width")
+    await check(dut, uniform(shape(dut, 4 * MANY), width, amplitude))
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+async def limits(dut: Any) -> None:
+    size, width = parameters(dut, "Size", "Width")
+    _, sink = await check(dut, extremes(size, width, 2).reshape(shape(dut, 8)))
+    assert not np.any(sink.words[: shape(dut, 1)[1]]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.parametrize(late=[False, True])
+async def reset_in_mid_burst(dut: Any, late: bool) -> None:
+    """Reset in each cycle in which a burst begins to enter, or to leave."""
+    size, width, paths = parameters(dut, "Size", "Width", "Paths")
+    first = wide_fft_latency(size, paths) - 3 if late else 1
+    await check(dut, uniform(shape(dut, 2), width), interrupts=range(first, first + 8))

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""wide_row_pairs against its model: codes, latency, saturations; rows alone, gaps, pauses, extremes, reset."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.poisson.transform.wide_commutator import to_beats
+from tactile_depth.poisson.transform.wide_row_pairs import latency as wide_row_pairs_latency
+from tactile_depth.poisson.transform.wide_row_pairs import rows_of_bursts, wide_row_pairs
+from tb.stream import check_bursts, extremes, parameters, uniform
+from tb.wide import RowPairDriver, WideMonitor, alone
+
+
+async def check(dut: Any, bursts: Any, **behaviour: Any) -> Any:
+    width, size, paths = parameters(dut, "Width", "Size", "Paths")
+    beats = size // paths
+
+    def model(words: Any, monitor: Monitor) -> Any:
+        rows = rows_of_bursts(words, alone(words))
+        parts = wide_row_pairs(rows[:, 0], rows[:, 1], width, monitor)
+        return np.concatenate([to_beats(part, paths, 0) for part in parts], axis=-1)
+
+    fields = [f"{part}{path}" for part in ("re", "im") for path in range(paths)]
+    return await check_bursts(
+        dut,
+        bursts,
+        model,
+        wide_row_pairs_latency(size, paths),
+        in_fields=[f"data{word}" for word in range(2 * paths)],
+        out_fields=fields,
+        driver=RowPairDriver(dut, "in", ["data"], 2 * paths),
+        source=WideMonitor(dut, "in", ["data"], beats, 2 * paths),
+        sink=WideMonitor(dut, "out", ["re", "im"], beats, paths),
+        **behaviour,
+    )
+
+
+def shape(dut: Any, bursts: int) -> tuple[int, ...]:
+    size, paths = parameters(dut, "Size", "Paths")
+    return bursts, size // paths, 2 * paths
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3), (200, 0.3)]), ("amplitude", [0.4, None]))
+async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
+    (width,) = parameters(dut, "Width")
+    await check(dut, uniform(shape(dut, 12), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def limits(dut: Any) -> None:
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, extremes(2 * size, width).reshape(shape(dut, 8)))
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def reset_in_mid_burst(dut: Any) -> None:
+    """Reset in each cycle of a burst, as it enters and as it leaves; clips after a reset are not counted."""
+    _, beats, _ = shape(dut, 1)
+    (width,) = parameters(dut, "Width")
+    await check(dut, uniform(shape(dut, 3), width, None), interrupts=range(1, 2 * beats + 4))

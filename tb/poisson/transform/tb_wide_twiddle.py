@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""wide_twiddle against its model: codes, latency, saturations; gaps, pauses, extremes, reset."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.poisson.transform.twiddle_multiply import phase_factors
+from tactile_depth.poisson.transform.wide_commutator import positions
+from tactile_depth.poisson.transform.wide_fft import wide_factors
+from tactile_depth.poisson.transform.wide_twiddle import LATENCY, wide_twiddle
+from tb.settings import RUN
+from tb.stream import extremes, parameters, uniform
+from tb.wide import check_wide
+
+
+async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
+    paths, beats, coeff, drop, width, real_only = parameters(
+        dut, "Paths", "Beats", "CoeffWidth", "Drop", "OutWidth", "RealOnly"
+    )
+    inverse = RUN.device["factors"].endswith("inverse")
+    if RUN.device["factors"].startswith("phase"):
+        factors = phase_factors(paths * beats, inverse, coeff)[positions(paths * beats, paths, 0)]
+    else:
+        factors = wide_factors(paths * beats, paths, paths * beats, inverse, coeff)
+
+    def model(x: Any, monitor: Monitor) -> Any:
+        products = wide_twiddle(x[..., 0], x[..., 1], factors, drop, width, monitor, real_only=bool(real_only))
+        return np.stack(products, axis=-1)
+
+    return await check_wide(dut, words, model, LATENCY, fields=["re", "im"], paths=paths, **behaviour)
+
+
+def shape(dut: Any, bursts: int) -> tuple[int, ...]:
+    paths, beats = parameters(dut, "Paths", "Beats")
+    return bursts, beats, paths, 2
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0, None]))
+async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
+    (width,) = parameters(dut, "InWidth")
+    await check(dut, uniform(shape(dut, 12), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def limits(dut: Any) -> None:
+    paths, beats, width = parameters(dut, "Paths", "Beats", "InWidth")
+    _, sink = await check(dut, extremes(paths * beats, width, 2).reshape(shape(dut, 8)))
+    assert not np.any(sink.words[:beats]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def reset_in_mid_burst(dut: Any) -> None:
+    """Reset in each cycle in which a burst enters or leaves."""
+    beats, width = parameters(dut, "Beats", "InWidth")
+    await check(dut, uniform(shape(dut, 3), width, None), interrupts=range(1, beats + LATENCY + 4))

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Driver and monitor of streams with several words per cycle, whose starts come some cycles before their words.
+
+A word of these streams is a beat: a tuple of the words of all paths of the first field, then of those of the next one.
+"""
+
+from collections import deque
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.poisson.transform.wide_commutator import LEAD
+from tb.lanes import LanePin
+from tb.stream import Bench, StreamDriver, StreamMonitor, at_every_edge, check_bursts, check_words, interrupt
+
+
+class LatePin:
+    """Value of a pin some cycles with en ago; it is read once in each of them."""
+
+    def __init__(self, handle: Any, cycles: int) -> None:
+        self.handle, self.cycles = handle, cycles
+        self.clear()
+
+    def clear(self) -> None:
+        self.values: deque[Any] = deque([Zero()] * self.cycles)
+
+    @property
+    def value(self) -> Any:
+        self.values.append(self.handle.value)
+        return self.values.popleft()
+
+
+class Zero(int):
+    """Value of a pin that is 0 and known."""
+
+    is_resolvable = True
+
+
+class WideMonitor(StreamMonitor):
+    """StreamMonitor of beats; `starts` holds the cycles of the first beats."""
+
+    def __init__(self, dut: Any, name: str, fields: Sequence[str], length: int, paths: int, lead: int = LEAD) -> None:
+        self.paths, self.lead, self.late = paths, lead, [LatePin(getattr(dut, f"{name}_start"), lead)]
+        super().__init__(dut, name, "start", fields, length)
+
+    def pins(self) -> tuple[Any, Any, Any]:
+        words = [
+            (LanePin(getattr(self.bus, f), path, self.paths), False) for f in self.fields for path in range(self.paths)
+        ]
+        frame_pin = None
+        if self.frame_pin is not None:
+            frame_pin = LatePin(self.frame_pin, self.lead)
+            self.late.append(frame_pin)
+        return self.late[0], frame_pin, words
+
+    @property
+    def in_reset(self) -> bool:
+        reset = bool(self.entity.rst.value)
+        if reset:
+            for pin in self.late:
+                pin.clear()
+        return reset
+
+
+class WideDriver(StreamDriver):
+    """StreamDriver of beats: the start of a burst goes out at once, its words follow some cycles with en later."""
+
+    lead = LEAD
+
+    def __init__(self, dut: Any, name: str, fields: Sequence[str], paths: int) -> None:
+        self.paths, self.bursts = paths, deque[Any]()
+        self.words = [getattr(dut, f"{name}_{field}") for field in fields]
+        super().__init__(dut, name, "start", [])
+        at_every_edge(self.clock, self._drive())
+
+    async def _driver_send(self, transaction: Any, sync: bool = True) -> None:
+        self.bursts.append(transaction)
+        await super()._driver_send([() for _ in transaction], sync)
+
+    def _drive(self) -> Iterator[None]:
+        """Set the words of each cycle; the start on the pin says when those of the next burst are due."""
+        beats: deque[Any] = deque()
+        begun: deque[Any] = deque([()] * (self.lead - LEAD))  # bursts whose words come later
+        while True:
+            yield
+            if not self.entity.en.value:
+                continue
+            if beats:
+                beat = beats.popleft()
+                for index, pin in enumerate(self.words):
+                    width = len(pin) // self.paths
+                    words = beat[index * self.paths : (index + 1) * self.paths]
+                    pin.value = sum((word & (1 << width) - 1) << path * width for path, word in enumerate(words))
+            begun.append(self.bursts.popleft() if self.bus.start.value else ())
+            beats = deque(begun.popleft()) or beats
+
+
+async def check_wide(
+    dut: Any, words: Any, model: Any, latency: int, *, fields: Sequence[str], paths: int, **behaviour: Any
+) -> Any:
+    """Send bursts (count, beats, paths, fields); `model` takes and returns such arrays. See `check_bursts`."""
+    count, beats = words.shape[:2]
+
+    def flat(words: Any) -> Any:
+        return np.moveaxis(words, -1, 2).reshape(*words.shape[:2], -1)
+
+    def on_beats(flat_words: Any, monitor: Any) -> Any:
+        shaped = flat_words.reshape(count, beats, len(fields), paths)
+        return flat(model(np.moveaxis(shaped, 2, -1), monitor))
+
+    names = [f"{field}{path}" for field in fields for path in range(paths)]
+    return await check_bursts(
+        dut,
+        flat(words),
+        on_beats,
+        latency,
+        in_fields=names,
+        out_fields=names,
+        driver=WideDriver(dut, "in", fields, paths),
+        source=WideMonitor(dut, "in", fields, beats, paths),
+        sink=WideMonitor(dut, "out", fields, beats, paths),
+        **behaviour,
+    )
+
+
+def alone(bursts: Any) -> Any:
+    """Return whether the first row of each burst (count, beats, words) comes alone: its first word is odd."""
+    return np.asarray(bursts)[:, 0, 0] % 2 == 1
+
+
+class RowPairDriver(WideDriver):
+    """WideDriver of bursts of two rows; in_alone counts with a start."""
+
+    async def _driver_send(self, transaction: Any, sync: bool = True) -> None:
+        self.entity.in_alone.value = int(alone([transaction])[0])
+        await super()._driver_send(transaction, sync)
+
+
+async def check_row_pairs(
+    dut: Any,
+    bursts: Any,
+    model: Any,
+    latency: int,
+    *,
+    driver: Any,
+    source: Any,
+    sink: Any,
+    frame: int = 3,
+    gap: int = 0,
+    pause: float = 0.0,
+    interrupts: Any = (),
+) -> None:
+    """Send bursts (count, beats, words) of two rows; compare the rows that leave with the model.
+
+    `model` takes the bursts and a Monitor, and returns the beats (count, 2, beats of a row, words) of both rows.
+    `latency` is the number of cycles from the first beat of a burst to that of its first row; the second row follows.
+    """
+    bench = Bench(dut, pause)
+    await bench.start()
+    count, beats = bursts.shape[:2]
+
+    async def send(words: int) -> None:
+        for index, sent in enumerate(range(0, words, beats)):
+            driver.frame_start = index % frame == 0
+            await driver.send(bursts[index % count, : words - sent].tolist())
+
+    await interrupt(bench, send, interrupts, (source, sink), quiet=latency + LEAD + 4)
+    for index, burst in enumerate(bursts):
+        if gap:
+            await bench.clocks(bench.random.randint(0, gap))
+        driver.frame_start = index % frame == 0
+        await driver.send(burst.tolist())
+    await bench.clocks(latency + 2 * beats + 20)
+    source.forget_but(count)
+    words_in = np.array(source.words).reshape(bursts.shape)
+    np.testing.assert_array_equal(words_in, bursts, "the driver sent other words than the test gave it")
+    clipped = Monitor()
+    rows = model(words_in, clipped)
+    leaves = np.stack((np.ones(count, bool), ~alone(words_in)), axis=1)
+    expected = rows[leaves]
+    check_words(np.array(sink.words), expected.reshape(-1, expected.shape[-1]), expected.shape[1], 0)
+    starts = np.array(source.starts)[:, None] + latency + np.array([0, expected.shape[1]])
+    assert sink.starts == starts[leaves].tolist(), f"rows leave at {sink.starts}, expected {starts[leaves]}"
+    begins = np.stack((np.arange(count) % frame == 0, np.zeros(count, bool)), axis=1)
+    assert sink.frame_starts == begins[leaves].tolist(), f"frames begin at {sink.frame_starts}"
+    total = clipped.saturations.total()
+    assert bench.saturations == total, f"{bench.saturations} values clipped, {total} in the model"

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""wide_elimination: RTL against the model; the model is tested with the whole solver."""
+
+from typing import Any
+
+from tactile_depth.configuration import Configuration
+from tactile_depth.poisson.wide_solver import solver_parameters
+from tactile_depth.rom_files import write_wide_thomas
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tests.rtl import test_rtl as test_rtl
+
+NAMES = ["Width", "CoeffWidth", "Rows", "Columns", "StoreDrop", "Neumann"]
+NAMES += ["LastShiftWidth", "MomentDrop", "MeanReciprocal", "MeanDrop"]
+CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal", "lanes": 4}
+
+
+def built(choices: Any, **runs: Any) -> Structure:
+    config = Configuration(**choices)
+    parameters = solver_parameters(config)
+    return Structure(
+        {name: parameters[name] for name in NAMES}
+        | {"OutWidth": config.data_width, "Words": config.down_words}
+        | {"TableWords": parameters["DownTableWords"], "SettledWidth": parameters["DownSettledWidth"]},
+        device={"configuration": choices},
+        roms=lambda folder: write_wide_thomas(folder, config),
+        **runs,
+    )
+
+
+STRUCTURES = (
+    built(CHOICES | {"neumann": True}, on=VERILATOR),
+    built(CHOICES | {"rows": 9}, on=ICARUS),
+    # Few bits are dropped: ties are common.
+    built(CHOICES | {"neumann": True, "data_width": 12, "coefficient_width": 10, "lanes": 4}, mutants=True, on=ICARUS),
+    built(CHOICES | {"columns": 32, "data_width": 12, "coefficient_width": 10, "lanes": 16}, mutants=True),
+    built(CHOICES | {"rows": 21, "neumann": True, "data_width": 32, "coefficient_width": 24}),
+)
+REFUSED = {
+    "Words=3": "Words_and_Columns_must_be_powers_of_two_with_at_least_8_clocks_in_a_burst",
+    "Words=32": "Words_and_Columns_must_be_powers_of_two_with_at_least_8_clocks_in_a_burst",
+    "Rows=2": "Rows_must_be_at_least_3",
+}
+MUTANTS = Mutants("wide_bursts")

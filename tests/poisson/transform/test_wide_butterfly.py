@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""wide_butterfly: RTL against the model, the model against sdf_butterfly."""
+
+import numpy as np
+import pytest
+
+from formal.entries import ROUNDING, Proof
+from tactile_depth.poisson.transform.sdf_butterfly import Stage, sdf_butterfly
+from tactile_depth.poisson.transform.wide_butterfly import wide_butterfly
+from tactile_depth.poisson.transform.wide_commutator import to_beats
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
+
+built = of_parameters("Width Paths Beats PathBit RotateBit Inverse Halve")
+STRUCTURES = (
+    built(27, 4, 8, 1, 0, 1, 1, on=VERILATOR),
+    built(9, 2, 4, 0, 2, 0, 1, on=ICARUS, mutants=True),
+    built(9, 4, 2, 0, 1, 1, 0, on=ICARUS, mutants=True),
+    built(12, 8, 2, 2, -1, 0, 0, on=ICARUS),
+    built(12, 2, 4, 0, 1, 1, 1, on=ICARUS),
+)
+REFUSED = {
+    "Paths=1": "Paths_and_Beats_must_be_powers_of_two_at_least_2",
+    "Paths=3": "Paths_and_Beats_must_be_powers_of_two_at_least_2",
+    "Beats=1": "Paths_and_Beats_must_be_powers_of_two_at_least_2",
+    "Beats=24": "Paths_and_Beats_must_be_powers_of_two_at_least_2",
+    "PathBit=2": "PathBit_must_be_a_bit_of_the_path_number",
+    "PathBit=-1": "PathBit_must_be_a_bit_of_the_path_number",
+    "RotateBit=0": "RotateBit_must_be_minus_1_or_another_bit_of_beat_and_path",
+    "RotateBit=-2": "RotateBit_must_be_minus_1_or_another_bit_of_beat_and_path",
+    "RotateBit=7": "RotateBit_must_be_minus_1_or_another_bit_of_beat_and_path",
+}
+PROOFS = tuple(
+    Proof(
+        "sums and differences of every pair of a beat, rotated and halved, and their clip count; latency 2",
+        f"rotation by a bit of the path, of the beat, and none; {ROUNDING}",
+        {"Paths": 4, "Beats": 2, "PathBit": bit, "RotateBit": rotate, "Inverse": inverse, "Halve": halve},
+        depth=30,
+    )
+    for bit, rotate, inverse, halve in ((0, 1, 1, 1), (1, 2, 0, 0), (1, -1, 0, 1))
+)
+
+
+@pytest.mark.parametrize("inverse", [False, True])
+def test_the_second_butterfly_of_a_pair_is_that_of_sdf_butterfly(inverse: bool) -> None:
+    """Hold the bits of a block of 8 in the path number: the inverse takes bit 2 with bit 1, the other bit 1 with 2."""
+    re, im = np.random.default_rng(1).integers(-128, 128, (2, 5, 32))
+    stage = Stage(8, delay=4 if inverse else 2, rotate=True, halve=True)
+    want = [to_beats(part, 4, 1) for part in sdf_butterfly(re, im, stage, inverse, 8)]
+    path_bit, rotate_bit = (1, 0) if inverse else (0, 1)
+    got = wide_butterfly(to_beats(re, 4, 1), to_beats(im, 4, 1), path_bit, rotate_bit, inverse, True, 8)
+    np.testing.assert_array_equal(got, want)
+
+
+def test_a_bit_of_the_beat_rotates() -> None:
+    re, im = np.ones((4, 2), np.int64), np.zeros((4, 2), np.int64)
+    got_re, got_im = wide_butterfly(re, im, 0, 2, True, False, 8)  # bit 1 of the beat
+    np.testing.assert_array_equal(got_re + 1j * got_im, [[2, 0], [2, 0], [1 + 1j, 1 - 1j], [1 + 1j, 1 - 1j]])

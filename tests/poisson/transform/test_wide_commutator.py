@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""wide_commutator: RTL against the model, the model against the orders of its words."""
+
+import numpy as np
+import pytest
+
+from formal.entries import ONE_ORDER, WORD_FREE, Proof
+from tactile_depth.poisson.transform.wide_commutator import from_beats, positions, to_beats, wide_commutator
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
+
+built = of_parameters("Width Paths Beats Delay Up")
+STRUCTURES = (
+    built(27, 4, 16, 8, 1, on=VERILATOR),
+    built(12, 2, 4, 2, 0, on=ICARUS),
+    built(12, 8, 2, 1, 1, on=ICARUS),
+    built(9, 4, 8, 2, 0, on=ICARUS, mutants=True),
+    built(12, 4, 16, 8, 0),
+)
+REFUSED = {
+    "Paths=1": "Paths_must_be_a_power_of_two_at_least_2",
+    "Paths=3": "Paths_must_be_a_power_of_two_at_least_2",
+    "Delay=3": "Beats_and_Delay_must_be_powers_of_two_and_Delay_1_to_Beats_2",
+    "Delay=32": "Beats_and_Delay_must_be_powers_of_two_and_Delay_1_to_Beats_2",
+    "Beats=24": "Beats_and_Delay_must_be_powers_of_two_and_Delay_1_to_Beats_2",
+}
+PROOFS = tuple(
+    Proof(
+        "an arbitrary word at its position behind the core; latency Delay",
+        f"{ONE_ORDER}; {WORD_FREE}",
+        {"Paths": paths, "Beats": 4, "Delay": delay, "Up": up},
+        depth=30,
+    )
+    for paths, delay, up in ((4, 2, 1), (4, 1, 0), (2, 2, 0))
+)
+
+
+def test_positions_have_three_fields() -> None:
+    assert positions(16, 4, 0).tolist() == [[0, 1, 2, 3], [4, 5, 6, 7], [8, 9, 10, 11], [12, 13, 14, 15]]
+    assert positions(16, 4, 1).tolist() == [[0, 2, 4, 6], [1, 3, 5, 7], [8, 10, 12, 14], [9, 11, 13, 15]]
+    assert positions(16, 4, 2).tolist() == [[0, 4, 8, 12], [1, 5, 9, 13], [2, 6, 10, 14], [3, 7, 11, 15]]
+
+
+@pytest.mark.parametrize("lowest", [0, 1, 2])
+def test_beats_become_the_burst_again(lowest: int) -> None:
+    words = np.random.default_rng(1).integers(0, 99, (3, 16))
+    np.testing.assert_array_equal(from_beats(to_beats(words, 4, lowest), lowest), words)
+
+
+@pytest.mark.parametrize("delay", [1, 2])
+def test_up_and_down_are_inverse(delay: int) -> None:
+    beats = np.arange(16).reshape(4, 4)
+    np.testing.assert_array_equal(wide_commutator(wide_commutator(beats, delay, True), delay, False), beats)
