@@ -134,7 +134,7 @@ module tactile_depth
 
   assign events.out_of_step = en & out_of_step;
   assign events.frame_in = en & pixel_frame_end & ~pixel_bad;
-  assign events.saturations = 13'(solver_saturations) + 13'(slope_saturations) + 13'(depth_saturations);
+  assign events.saturations = 14'(solver_saturations) + 14'(slope_saturations) + 14'(depth_saturations);
   assign levels.busy = video_busy | depth_busy | m_axis_tvalid;
   assign levels.contact = contact;
   axil_registers #(.Config(Config)) u_registers (

@@ -66,7 +66,7 @@ package td_types_pkg;
     logic        depth_dropped;  // a depth frame was given up
     logic        record_lost;
     logic        record_valid;   // the record of contact is new
-    logic [12:0] saturations;    // values clipped: up to 8 bits of them for each of 32 lanes
+    logic [13:0] saturations;    // values clipped: up to 8 bits of them for each of 64 depths a cycle
   } events_t;
 
   // What STATUS shows as it is.
@@ -154,7 +154,7 @@ package td_types_pkg;
   } contact_sums_t;
 
   // A counter that counts on, and stays at all ones; or begins again. A clearing write comes late, behind the sum.
-  localparam int StepWidth = 13;
+  localparam int StepWidth = 14;
   function automatic logic [31:0] counted(
     input logic [31:0] count, input logic [StepWidth-1:0] step, input logic clear
   );

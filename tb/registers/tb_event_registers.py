@@ -78,7 +78,7 @@ class Bench(RegisterBench):
     def random_inputs(self) -> dict[str, Any]:
         rng = self.random
         members: dict[str, int] = {name: int(rng.random() < 0.1) for name in EVENTS}
-        members["saturations"] = rng.getrandbits(13) if rng.random() < 0.1 else 0
+        members["saturations"] = rng.getrandbits(14) if rng.random() < 0.1 else 0
         return {
             "events": structs.pack("events_t", members),
             "levels": rng.getrandbits(3),
@@ -95,7 +95,7 @@ async def each_event(dut: Any) -> None:
     bench = Bench(dut)
     await bench.start()
     for event in (*EVENTS, "saturations"):
-        for bit in range(13) if event == "saturations" else (0,):
+        for bit in range(14) if event == "saturations" else (0,):
             await bench.happen(*({event} - {"saturations"}), saturations=(event == "saturations") << bit)
             bits = {"STATUS": STATUS.pack(**{STICKY_EVENTS[event]: 1})} if event in STICKY_EVENTS else {"STATUS": 0}
             if event == "saturations":
