@@ -83,9 +83,9 @@ module contact_events
 
   logic signed [31:0] in_force, half_peak, wanted, least_wanted;  // a register behind each choice
   logic signed [Width-1:0] level, level_of_frame, last_level;
-  assign in_force = touching ? off_q : on_q;
   assign half_peak = 32'(last_peak >>> 1);
   always_ff @(posedge clk) begin
+    in_force <= touching ? off_q : on_q;
     wanted <= last_any && half_peak < area_limit ? half_peak : area_limit;
     least_wanted <= wanted > in_force ? wanted : in_force;
     level <= least_wanted[Width-1:0];

@@ -14,7 +14,9 @@
 
 module axil_port
   import td_register_map_pkg::*;
-(
+#(
+  parameter int Sources = 1  // of read_data
+) (
   input  wire                     clk,
   input  wire                     rst,
 
@@ -43,7 +45,7 @@ module axil_port
   input  wire                     write_refused,
   output logic                    read = 1'b0,
   output logic [31:0]             read_offset,
-  input  wire  [31:0]             read_data,
+  input  wire  [32*Sources-1:0]   read_data,     // the word is the OR of all, behind registers
   input  wire                     read_refused,
   input  wire                     read_late,
   input  wire  [31:0]             late_data,
@@ -59,6 +61,9 @@ module axil_port
   logic [3:0] strobe;
   logic [AddressWidth-1:0] read_address;
   logic [3:0] waiting;  // for late_data, one bit a cycle
+  logic [Sources-1:0][31:0] words;
+  logic [31:0] any_word, late_word;
+  logic is_late;
 
   assign s_axil_awready = !address_held && !rst;
   assign s_axil_wready = !data_held && !rst;
@@ -67,6 +72,12 @@ module axil_port
   assign write_mask = {{8{strobe[3]}}, {8{strobe[2]}}, {8{strobe[1]}}, {8{strobe[0]}}};
   assign write_ones = data & write_mask;
   assign read_offset = 32'({read_address[AddressWidth-1:2], 2'b00});
+
+  always_comb begin
+    any_word = '0;
+    for (int n = 0; n < Sources; n++) any_word = any_word | words[n];
+  end
+  assign s_axil_rdata = is_late ? late_word : any_word;
 
   always_ff @(posedge clk) begin
     if (s_axil_awvalid && s_axil_awready) begin
@@ -94,9 +105,13 @@ module axil_port
     if (s_axil_arvalid && s_axil_arready) read_address <= s_axil_araddr;
     waiting <= {waiting[2:0], read && read_late};
     if (s_axil_rready) s_axil_rvalid <= 1'b0;
+    if (read) begin
+      words <= read_data;
+      is_late <= read_late;
+    end
+    if (waiting[3]) late_word <= late_data;
     if ((read && !read_late) || waiting[3]) begin
       s_axil_rvalid <= 1'b1;
-      s_axil_rdata <= waiting[3] ? late_data : read_data;
       s_axil_rresp <= (waiting[3] ? late_refused : read_refused) ? SlaveError : Okay;
     end
 

@@ -114,13 +114,13 @@ module axil_registers
   localparam logic [31:0] SlopeUnitWord =
     (SlopeMantissa << SlopeUnitMantissaLsb) | (SlopeExponent << SlopeUnitExponentLsb);
 
-  logic write, entry_refused, capture_refused;
-  logic read, read_refused, read_late, late_refused;
-  logic [31:0] write_offset, write_ones, write_mask, read_offset, read_data, late_data;
+  logic write, entry_refused, capture_refused, read, read_refused, read_late, late_refused;
+  logic [31:0] write_offset, write_ones, write_mask, read_offset, late_data;
+  logic [6:0][31:0] read_data;  // each that of a source
   register_answer_t camera_answer;
   assign camera_answer = Camera != 0 ? register_answer : '0;
   assign register_command = {write, write_offset, write_ones, write_mask, read_offset};
-  axil_port u_port (
+  axil_port #(.Sources(7)) u_port (
     .clk, .rst, .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
     .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arvalid, .s_axil_arready,
     .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready, .write, .write_offset, .write_ones, .write_mask,
@@ -213,7 +213,7 @@ module axil_registers
       if (read_offset == 32'(RecordEventOffset + 4 * n)) word = word | record[32*n+:32];
     end
   end
-  assign read_data = word | 32'(gain_read) | setting_data | event_data | bank_data | entry_data | camera_answer.data;
+  assign read_data = {word, 32'(gain_read), setting_data, event_data, bank_data, entry_data, camera_answer.data};
   assign read_refused = !(is_register(read_offset) || camera_answer.readable);
 
   logic unused_pins;

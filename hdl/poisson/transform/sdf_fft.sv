@@ -80,14 +80,15 @@ module sdf_fft #(
   assign out_re = re[Stages];
   assign out_im = im[Stages];
 
-  logic [6:0] clipped_all;
+  logic [1:0][6:0] clipped_all, clipped_q;  // in even and in odd stages
   always_comb begin
     clipped_all = '0;
-    for (int i = 0; i < Stages; i++) clipped_all = clipped_all + 7'(clipped[i]);
+    for (int i = 0; i < Stages; i++) clipped_all[i%2] = clipped_all[i%2] + 7'(clipped[i]);
   end
   always_ff @(posedge clk) begin
-    saturations <= clipped_all;
-    if (rst) saturations <= '0;
+    clipped_q <= clipped_all;
+    saturations <= clipped_q[0] + clipped_q[1];
+    if (rst) {clipped_q, saturations} <= '0;
   end
 
   if (Size < 8 || Size != (1 << Log2Size)) begin : g_refused
