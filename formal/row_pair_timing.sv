@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// row_pair_timing: bursts of two rows come as protocol_wide_bursts allows them. The first row of a burst leaves Latency
-// enabled clocks behind its start, the second one Beats / 2 later unless the first came alone; frame_start with the first
-// row of a frame; no other row leaves. `active` and `beat` are those of the words, 2 enabled clocks behind the start.
+// row_pair_timing: bursts of two rows come as protocol_bursts allows them. The first row of a burst leaves Latency
+// enabled clocks behind its start, the second one Beats / 2 later unless the first came alone; frame_start with the
+// first row of a frame; no other row leaves. `active` and `beat` are those of the words, 2 enabled clocks behind it.
 
 `default_nettype none
 

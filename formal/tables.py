@@ -67,30 +67,30 @@ def factor_rom(block: int) -> Callable[[Path], None]:
 
 
 def wide_roms(paths: int, beats: int) -> Callable[[Path], None]:
-    """Factors of 2 bits for a wide transform of `paths` paths: arbitrary ones, no beat like the next."""
+    """Factors of 3 bits for a wide transform of `paths` paths: arbitrary ones, no beat like the next."""
 
     def write(folder: Path) -> None:
-        words = [(5 * n + 9) % 64 for n in range(paths * beats)]
-        packed = [sum(words[beat * paths + path] << 6 * path for path in range(paths)) for beat in range(beats)]
+        words = [(37 * n + 9) % 512 for n in range(paths * beats)]
+        packed = [sum(words[beat * paths + path] << 9 * path for path in range(paths)) for beat in range(beats)]
         for direction in ("forward", "inverse"):
             for kind in ("twiddle", "phase"):
                 name = f"wide_{kind}_{direction}{'_0' * (kind == 'twiddle')}.hex"
-                write_words(folder / name, packed, 6 * paths)
+                write_words(folder / name, packed, 9 * paths)
 
     return write
 
 
 def wide_factor_rom(paths: int, beats: int, ones: int) -> Callable[[Path], None]:
-    """Factors {-Im, Im, Re} of 5 bits, every field of every word another, but 1 in the paths of `ones`."""
+    """Factors {-Im, Im, Re} of 3 bits, every field of every word another, but 1 in the paths of `ones`."""
 
     def factor(beat: int, path: int) -> int:
         n = beat * paths + path
-        return 15 if ones >> path & 1 else (3 * n + 2) % 32 << 10 | (3 * n + 1) % 32 << 5 | 3 * n % 32
+        return 3 if ones >> path & 1 else (3 * n + 2) % 8 << 6 | (3 * n + 1) % 8 << 3 | 3 * n % 8
 
     return lambda folder: write_words(
         folder / "factors.hex",
-        [sum(factor(beat, path) << 15 * path for path in range(paths)) for beat in range(beats)],
-        15 * paths,
+        [sum(factor(beat, path) << 9 * path for path in range(paths)) for beat in range(beats)],
+        9 * paths,
     )
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wide_timing: burst_timing of Beats beats whose words come 2 enabled clocks behind their start; `active` and `beat` are
-// those of the words.
+// wide_timing: burst_timing of Beats beats whose words come 2 enabled clocks behind their start; `active` and `beat`
+// are those of the words.
 
 `default_nettype none
 

@@ -3,8 +3,8 @@
 
 Two thirds of the frames, drawn by SEED, tune the choice by the bit-accurate model; the others prove it in RTL. Cost is
 the fraction of the multipliers plus the fraction of the memory bits that a configuration takes of the device of the
-published design; of two with the same cost the faster is chosen. Lanes change no depth: the tridiagonal solver gets the
-fewest with which the last depth comes within MAX_MAP_LATENCY_US of the last pixel. Takes the variables of
+published design; of two with the same cost the faster is chosen. The tridiagonal solver gets the fewest
+lanes with which the last depth comes within MAX_MAP_LATENCY_US of the last pixel. Takes the variables of
 docs/commands.md as KEY=VALUE arguments. Exit status: 0 found and proven, 1 not, 2 bad input.
 """
 

@@ -3,6 +3,7 @@
 
 from typing import Any
 
+from formal.entries import ROUNDING, Proof
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters
 from tb.structures import ICARUS, VERILATOR, Structure
@@ -24,3 +25,11 @@ STRUCTURES = (
     built(CHOICES | {"rows": 21, "data_width": 12, "coefficient_width": 10}, on=ICARUS, mutants=True),
 )
 REFUSED = {"Rows=1": "Rows_must_be_at_least_2"}
+PROOFS = (
+    Proof(
+        "minus the mean of a column, 6 clocks behind its row before the last; a frame begins afresh",
+        f"rows are only counted; {ROUNDING}",
+        {"Rows": 4},
+        depth=40,
+    ),
+)

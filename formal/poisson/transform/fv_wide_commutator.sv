@@ -39,7 +39,8 @@ module fv_wide_commutator #(
   logic [PositionWidth-1:0] position;
   logic [PathWidth-1:0] path;
   logic [BeatWidth-1:0] leaves;
-  assign position = PositionWidth'((32'(beat) >> Low << (Low + PathWidth)) | (32'(chosen) << Low) | (32'(beat) % (1 << Low)));
+  assign position = PositionWidth'((32'(beat) >> Low << (Low + PathWidth)) | (32'(chosen) << Low)
+      | (32'(beat) % (1 << Low)));
   assign path = PathWidth'(position >> Behind);
   assign leaves = BeatWidth'((32'(position) >> (Behind + PathWidth) << Behind) | (32'(position) % (1 << Behind)));
 

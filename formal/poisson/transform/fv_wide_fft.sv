@@ -9,7 +9,7 @@ module fv_wide_fft #(
   parameter int Paths   = 2,
   parameter int Inverse = 0,
   parameter int Latency = 14,
-  parameter int Width   = 2
+  parameter int Width   = 3
 ) (
   input logic                   clk,
   input logic                   rst,
@@ -23,7 +23,7 @@ module fv_wide_fft #(
   logic out_start, out_frame_start;
   logic [Paths*Width-1:0] out_re, out_im;
   logic [$clog2(2*Paths*($clog2(Size)+($clog2(Size)-1)/2)+1)-1:0] saturations;
-  wide_fft #(.Width(Width), .CoeffWidth(2), .Size(Size), .Paths(Paths), .Inverse(Inverse)) dut (.*);
+  wide_fft #(.Width(Width), .CoeffWidth(Paths == 1 ? 2 : 3), .Size(Size), .Paths(Paths), .Inverse(Inverse)) dut (.*);
 
   wide_timing #(.Beats(Size / Paths), .Latency(Latency)) u_timing (.*, .started(), .active(), .beat());
 

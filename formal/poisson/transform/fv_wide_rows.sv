@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_wide_rows: an arbitrary word leaves at its place, unchanged, in a burst that begins 2 enabled clocks behind the
-// last word of its row; start and frame_start with that last word. Any gaps, any en, and frames that begin inside a row.
+// last word of its row; start and frame_start with that word. Any gaps, any en, and frames that begin inside a row.
 
 `default_nettype none
 
@@ -47,7 +47,7 @@ module fv_wide_rows #(
   logic [PositionWidth-1:0] makhoul;
   assign makhoul = position % 2 == 0 ? position / 2 : PositionWidth'(Columns - 1) - position / 2;
 
-  localparam int PathWidth = Paths > 1 ? $clog2(Paths) : 1;
+  localparam int PathWidth = $clog2(Paths);
   logic due, present, watched;
   logic [BeatWidth-1:0] place;
   logic [PathWidth+Width-1:0] followed;
@@ -58,7 +58,7 @@ module fv_wide_rows #(
   );
 
   logic [PathWidth-1:0] path;
-  assign path = Paths > 1 ? followed[Width+:PathWidth] : '0;
+  assign path = followed[Width+:PathWidth];
   always_comb begin
     if (started) begin
       if (!rst) start_with_last: assert (out_start == row_end);

@@ -1,43 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_wide_twiddle: an arbitrary word of an arbitrary path meets the factor of its path and beat in the ROM and leaves 5
-// enabled clocks later; start and frame_start likewise. The words are 1 or j, so that what leaves is the factor itself,
-// and every field of it is seen; the exact product is proven of td_dot_product, rounding of td_round_saturate.
+// fv_wide_twiddle: 5 enabled clocks behind an arbitrary beat the product of each of its words with the factor of its
+// path and beat in the ROM stands in its path, rounded and saturated; start, frame_start and the clip count of the beat
+// with it. A path of Ones has the same product as with multipliers. Rounding is proven of td_round_saturate.
 
 `default_nettype none
 
 module fv_wide_twiddle #(
   parameter int Paths    = 2,
-  parameter int Beats    = 4,
+  parameter int Beats    = 2,
   parameter int RealOnly = 0,
   parameter int Ones     = 0,
-  localparam int PathWidth = $clog2(Paths),
+  localparam int Width = 3,
   localparam int BeatWidth = $clog2(Beats)
 ) (
-  input logic                 clk,
-  input logic                 rst,
-  input logic                 en,
-  input logic                 in_start,
-  input logic                 in_frame_start,
-  input logic [Paths-1:0]     turned,
-  input logic                 pick,
-  input logic [PathWidth-1:0] chosen
+  input logic                   clk,
+  input logic                   rst,
+  input logic                   en,
+  input logic                   in_start,
+  input logic                   in_frame_start,
+  input logic [Paths*Width-1:0] in_re,
+  input logic [Paths*Width-1:0] in_im
 );
 
   localparam int Latency = 5;
-  localparam int CoeffWidth = 5;
-  localparam int OutWidth = 8;
+  localparam int CoeffWidth = 3;
+  localparam int SumWidth = Width + CoeffWidth + 1;
+  localparam int CountWidth = $clog2(2 * Paths + 1);
 
   logic out_start, out_frame_start, started, active;
-  logic [Paths*OutWidth-1:0] out_re, out_im;
+  logic [Paths*Width-1:0] out_re, out_im;
   logic [BeatWidth-1:0] beat;
-  logic [$clog2(2*Paths+1)-1:0] saturations;
-  logic [2*Paths-1:0] in_re, in_im;
-  for (genvar path = 0; path < Paths; path++) begin : g_word
-    assign in_re[2*path+:2] = turned[path] ? 2'd0 : 2'd1;
-    assign in_im[2*path+:2] = turned[path] ? 2'd1 : 2'd0;
-  end
+  logic [CountWidth-1:0] saturations;
   wide_twiddle #(
-    .InWidth(2), .OutWidth(OutWidth), .CoeffWidth(CoeffWidth), .Drop(0), .Paths(Paths), .Beats(Beats),
+    .InWidth(Width), .OutWidth(Width), .CoeffWidth(CoeffWidth), .Drop(CoeffWidth - 1), .Paths(Paths), .Beats(Beats),
     .RealOnly(RealOnly), .Ones(Ones[Paths-1:0]), .File("factors.hex")
   ) dut (.*);
   wide_timing #(.Beats(Beats), .Latency(Latency)) u_timing (.*);
@@ -45,26 +40,56 @@ module fv_wide_twiddle #(
   logic [3*CoeffWidth*Paths-1:0] factors[Beats];
   initial $readmemh("factors.hex", factors);
   logic [3*CoeffWidth*Paths-1:0] word;
-  logic signed [CoeffWidth-1:0] w_re, w_im, w_minus_im;
   assign word = factors[beat];
-  assign {w_minus_im, w_im, w_re} = word[chosen*3*CoeffWidth+:3*CoeffWidth];
 
-  logic due, held;
-  logic [PathWidth-1:0] path;
-  logic signed [OutWidth-1:0] re, im, factor_re, factor_im;
-  assign factor_re = turned[chosen] ? OutWidth'(w_minus_im) : OutWidth'(w_re);
-  assign factor_im = RealOnly != 0 ? '0 : turned[chosen] ? OutWidth'(w_re) : OutWidth'(w_im);
-  follow_delay #(.Width(2 * OutWidth + PathWidth), .Latency(Latency)) u_follow (
-    .clk, .rst, .en, .pick(pick & active), .in({chosen, factor_re, factor_im}), .due, .word({path, re, im})
-  );
-  kept #(.Width(2 * OutWidth * Paths + 2)) u_kept (
+  logic [Paths*Width-1:0] re, im;  // expected
+  logic [2*Paths-1:0] clipped;
+  for (genvar path = 0; path < Paths; path++) begin : g_path
+    logic signed [CoeffWidth-1:0] w_re, w_im, w_minus_im;
+    logic signed [SumWidth-1:0] a, b, sum_re, sum_im;
+    assign {w_minus_im, w_im, w_re} = word[path*3*CoeffWidth+:3*CoeffWidth];
+    assign a = SumWidth'($signed(in_re[path*Width+:Width]));
+    assign b = SumWidth'($signed(in_im[path*Width+:Width]));
+    assign sum_re = a * w_re + b * w_minus_im;
+    if (RealOnly != 0) begin : g_real
+      assign sum_im = '0;
+    end else begin : g_complex
+      assign sum_im = a * w_im + b * w_re;
+    end
+    td_round_saturate #(.InWidth(SumWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_re (
+      .in(sum_re), .out(re[path*Width+:Width]), .clipped(clipped[2*path])
+    );
+    td_round_saturate #(.InWidth(SumWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_im (
+      .in(sum_im), .out(im[path*Width+:Width]), .clipped(clipped[2*path+1])
+    );
+  end
+
+  logic held;
+  logic [Latency-1:0] active_q;
+  logic [Latency-1:0][2*Paths*Width-1:0] words_q;
+  logic [Latency-2:0][CountWidth-1:0] clipped_q;
+  logic [1:0][CountWidth-1:0] count_q;
+  kept #(.Width(2 * Paths * Width + 2)) u_kept (
     .clk, .rst, .en, .out({out_start, out_frame_start, out_re, out_im}), .held
   );
+  always_ff @(posedge clk) begin
+    if (en) begin
+      active_q <= {active_q[Latency-2:0], active};
+      words_q <= {words_q[Latency-2:0], re, im};
+      clipped_q <= {clipped_q[Latency-3:0], CountWidth'($countones(clipped))};
+    end
+    count_q <= {count_q[0], en && active_q[Latency-2] ? clipped_q[Latency-2] : CountWidth'(0)};
+    if (rst) begin
+      active_q <= '0;
+      count_q <= '0;
+    end
+  end
   always_comb begin
     if (started) begin
-      if (due) own_factor: assert (out_re[path*OutWidth+:OutWidth] == re && out_im[path*OutWidth+:OutWidth] == im);
-      none_clipped: assert (saturations == '0);
-      last_path: cover (due && held && path == PathWidth'(Paths - 1) && re != '0);
+      if (active_q[Latency-1]) products: assert ({out_re, out_im} == words_q[Latency-1]);
+      counted: assert (saturations == count_q[1]);
+      clips: cover (saturations != '0 && held);
+      largest: cover (active_q[Latency-1] && out_re[Paths*Width-1-:Width] == Width'(3));
     end
   end
 

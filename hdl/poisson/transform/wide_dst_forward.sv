@@ -37,15 +37,13 @@ module wide_dst_forward #(
 );
 
   localparam int Beats = Size / Words;
-  localparam int BeatWidth = $clog2(Beats);
   localparam int Stages = $clog2(Size) + ($clog2(Size) - 1) / 2;
 
-  // Samples of odd index are the second half of the row.
-  logic [BeatWidth-1:0] beat;
-  logic [1:0] second_q;
+  // Samples of odd index are the second half of the row, and of the paths.
   logic active, start_q, frame_start_q;
+  logic [$clog2(Beats)-1:0] unused_beat;
   td_burst_counter #(.Words(Beats)) u_counter (
-    .clk, .rst, .en, .start(in_start), .position(beat), .active
+    .clk, .rst, .en, .start(in_start), .position(unused_beat), .active
   );
   logic [1:0] active_q;
   logic [Words-1:0] clipped, clipped_q;
@@ -54,10 +52,8 @@ module wide_dst_forward #(
     logic signed [InWidth-1:0] sample;
     logic signed [InWidth:0] signed_in;
     logic signed [Width-1:0] x;
-    logic negative;
     assign sample = in_data[path*InWidth+:InWidth];
-    assign negative = Sine != 0 && (Words == 1 ? second_q[1] : 2 * path >= Words);
-    assign signed_in = negative ? -$signed({sample[InWidth-1], sample}) : (InWidth + 1)'(sample);
+    assign signed_in = Sine != 0 && 2 * path >= Words ? -$signed({sample[InWidth-1], sample}) : (InWidth + 1)'(sample);
     td_round_saturate #(.InWidth(InWidth + 1), .Drop(0), .OutWidth(Width)) u_input (
       .in(signed_in), .out(x), .clipped(clipped[path])
     );
@@ -94,7 +90,6 @@ module wide_dst_forward #(
   end
   always_ff @(posedge clk) begin
     if (en) begin
-      second_q <= {second_q[0], beat[BeatWidth-1]};
       active_q <= {active_q[0], active};
       start_q <= in_start;
       frame_start_q <= in_frame_start;
@@ -108,6 +103,10 @@ module wide_dst_forward #(
       clipped_q <= '0;
       saturations <= '0;
     end
+  end
+
+  if (Words < 2 || Words != (1 << $clog2(Words)) || 2 * Words > Size) begin : g_refused
+    Words_must_be_a_power_of_two_2_to_Size_2 u_refused ();
   end
 
 endmodule

@@ -76,8 +76,8 @@ module wide_rows #(
   if (Columns < 4 || Columns != (1 << PositionWidth)) begin : g_refused_0
     Columns_must_be_a_power_of_two_at_least_4 u_refused ();
   end
-  if (Paths < 1 || Paths != (1 << $clog2(Paths)) || 2 * Paths > Columns) begin : g_refused_1
-    Paths_must_be_a_power_of_two_1_to_Columns_2 u_refused ();
+  if (Paths < 2 || Paths != (1 << $clog2(Paths)) || 2 * Paths > Columns) begin : g_refused_1
+    Paths_must_be_a_power_of_two_2_to_Columns_2 u_refused ();
   end
 
 endmodule

@@ -58,29 +58,35 @@ module wide_twiddle #(
 
   logic [2*Paths-1:0] clipped;  // real part, imaginary part of each path
   for (genvar path = 0; path < Paths; path++) begin : g_path
-    logic [1:0][InWidth-1:0] word;
-    logic [1:0][SumWidth-1:0] sum;
+    logic [1:0][InWidth-1:0] word;  // real part, imaginary part
     assign word = {in_im[path*InWidth+:InWidth], in_re[path*InWidth+:InWidth]};
 
     if (Ones[path]) begin : g_one
+      // word - word / 2^Drop, the quotient rounded to even: a tie has an even word, so this is the product rounded.
       logic [FactorWidth-1:0] unused_factor;
       assign unused_factor = factors[path*FactorWidth+:FactorWidth];
-      logic [1:0][InWidth-1:0] late;
-      td_delay_line #(.Width(2 * InWidth), .Delay(ToProduct - 1)) u_late (
+      logic [1:0][InWidth-1:0] late, gained_q;
+      td_delay_line #(.Width(2 * InWidth), .Delay(ToProduct)) u_late (
         .clk, .rst, .en, .in(word), .out(late)
       );
       for (genvar part = 0; part < 2; part++) begin : g_part
-        logic [SumWidth-1:0] extended;
-        assign extended = {{(SumWidth - InWidth){late[part][InWidth-1]}}, late[part]};
-        always_ff @(posedge clk) if (en) sum[part] <= (extended << (CoeffWidth - 1)) - extended;
+        logic [InWidth-1:0] quotient, gained;
+        logic up, unused_carry;  // up: the quotient is rounded up
+        assign quotient = {{Drop{late[part][InWidth-1]}}, late[part][InWidth-1:Drop]};
+        assign up = late[part][Drop-1] & (late[part][Drop] | (late[part][Drop-2:0] != '0));
+        assign {gained, unused_carry} = {late[part], 1'b1} + {~quotient, ~up};
+        always_ff @(posedge clk) if (en) gained_q[part] <= gained;
       end
+      assign {out_im[path*OutWidth+:OutWidth], out_re[path*OutWidth+:OutWidth]} = gained_q;
+      assign clipped[2*path+:2] = '0;
     end else begin : g_product
       logic signed [CoeffWidth-1:0] w_re, w_im, w_minus_im;
+      logic [1:0][SumWidth-1:0] sum;
       always_ff @(posedge clk) if (en) {w_minus_im, w_im, w_re} <= factors[path*FactorWidth+:FactorWidth];
       td_dot_product #(.AWidth(InWidth), .BWidth(CoeffWidth)) u_re (
         .clk, .en, .a0(word[0]), .b0(w_re), .a1(word[1]), .b1(w_minus_im), .sum(sum[0])
       );
-      if (RealOnly == 0) begin : g_im
+      if (RealOnly == 0) begin : g_complex
         td_dot_product #(.AWidth(InWidth), .BWidth(CoeffWidth)) u_im (
           .clk, .en, .a0(word[0]), .b0(w_im), .a1(word[1]), .b1(w_re), .sum(sum[1])
         );
@@ -89,18 +95,17 @@ module wide_twiddle #(
         logic unused_w_im;
         assign unused_w_im = ^w_im;
       end
-    end
-
-    for (genvar part = 0; part < 2; part++) begin : g_round
-      logic signed [OutWidth-1:0] rounded, rounded_q;
-      td_round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(OutWidth)) u_round (
-        .in(sum[part]), .out(rounded), .clipped(clipped[2*path+part])
-      );
-      always_ff @(posedge clk) if (en) rounded_q <= rounded;
-      if (part == 0) begin : g_re
-        assign out_re[path*OutWidth+:OutWidth] = rounded_q;
-      end else begin : g_im
-        assign out_im[path*OutWidth+:OutWidth] = rounded_q;
+      for (genvar part = 0; part < 2; part++) begin : g_round
+        logic signed [OutWidth-1:0] rounded, rounded_q;
+        td_round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(OutWidth)) u_round (
+          .in(sum[part]), .out(rounded), .clipped(clipped[2*path+part])
+        );
+        always_ff @(posedge clk) if (en) rounded_q <= rounded;
+        if (part == 0) begin : g_re
+          assign out_re[path*OutWidth+:OutWidth] = rounded_q;
+        end else begin : g_im
+          assign out_im[path*OutWidth+:OutWidth] = rounded_q;
+        end
       end
     end
   end
@@ -137,8 +142,9 @@ module wide_twiddle #(
   if (Paths < 1 || Paths != (1 << $clog2(Paths)) || Beats < 2 || Beats != (1 << BeatWidth)) begin : g_refused_0
     Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2 u_refused ();
   end
-  if (Ones != '0 && RealOnly != 0) begin : g_refused_1
-    Ones_must_be_0_with_RealOnly u_refused ();
+  if (Ones != '0 && (Drop != CoeffWidth - 1 || Drop < 2 || InWidth <= Drop || OutWidth != InWidth || RealOnly != 0))
+  begin : g_refused_1
+    Ones_must_be_0_unless_words_keep_their_format u_refused ();
   end
 
 endmodule

@@ -4,9 +4,10 @@
 import numpy as np
 import pytest
 
+from formal.entries import ONE_ORDER, WORD_FREE, Proof
 from tactile_depth.poisson.transform.orders import makhoul
 from tactile_depth.poisson.transform.wide_corner_turn import wide_corner_turn
-from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
+from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 
 built = of_parameters("Size Width Paths")
@@ -19,12 +20,20 @@ STRUCTURES = (
     built(64, 24, 16),
     built(128, 24, 4),
 )
-MUTANTS = Mutants("bursts")
 REFUSED = {
     "Size=12": "Size_must_be_a_power_of_two_at_least_8",
     "Paths=3": "Paths_must_be_a_power_of_two_1_to_Size_4",
     "Paths=64": "Paths_must_be_a_power_of_two_1_to_Size_4",
 }
+PROOFS = tuple(
+    Proof(
+        "an arbitrary word at its place in its row; rows in turn, one alone; latency Beats + 4",
+        f"{ONE_ORDER}; {WORD_FREE}",
+        {"Size": size, "Paths": paths},
+        depth=45,
+    )
+    for size, paths in ((8, 1), (8, 2), (16, 4))
+)
 
 
 @pytest.mark.parametrize("paths", [1, 2, 8])

@@ -6,7 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from formal.entries import Proof
+from formal.tables import wide_roms
 from tactile_depth.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.poisson.transform.wide_dst_inverse import latency as wide_dst_inverse_latency
 from tactile_depth.poisson.transform.wide_dst_inverse import wide_dst_inverse
 from tactile_depth.rom_files import write_direction
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
@@ -30,12 +33,20 @@ STRUCTURES = (
     built(64, 32, 27, 0, 27, 18, 3, 24, 1),
     built(128, 8, 27, 0, 27, 18, 3, 24, 1),
 )
-MUTANTS = Mutants("bursts", flat=False)
+MUTANTS = Mutants(flat=False)
 REFUSED = {
-    "Words=1": "Words_must_be_a_power_of_two_2_to_Size_2",
     "Words=3": "Words_must_be_a_power_of_two_2_to_Size_2",
     "Words=128": "Words_must_be_a_power_of_two_2_to_Size_2",
 }
+PROOFS = (
+    Proof(
+        "rows leave behind their burst, at the latency of its model; frame_start with the first; a row alone",
+        "the smallest transform, every core of a longer one is in it",
+        {"Size": 8, "Words": 4, "Latency": wide_dst_inverse_latency(8, 4)},
+        depth=80,
+        roms=wide_roms(2, 4),
+    ),
+)
 
 
 # In steps of a word, coefficients being all but exact. Measured on 100 pairs of rows: 3, 4, 5.

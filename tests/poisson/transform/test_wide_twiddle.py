@@ -43,6 +43,9 @@ STRUCTURES = (
     built("phase_inverse", 2, 128, 27, 27, 18, 17, 0),
 )
 REFUSED = {
+    "Ones=1 Drop=16": "Ones_must_be_0_unless_words_keep_their_format",
+    "Ones=1 OutWidth=26": "Ones_must_be_0_unless_words_keep_their_format",
+    "Ones=1 RealOnly=1": "Ones_must_be_0_unless_words_keep_their_format",
     "Paths=3": "Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2",
     "Paths=0": "Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2",
     "Beats=24": "Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2",
@@ -50,11 +53,11 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "an arbitrary word meets the factor of its path and beat; latency 5",
+        "the product of every word with the factor of its path and beat, and the clip count; latency 5",
         f"paths with multipliers and without; {ROUNDING}",
-        {"Paths": 2, "Beats": 4, "RealOnly": real_only, "Ones": ones_of_paths},
+        {"Paths": 2, "Beats": 2, "RealOnly": real_only, "Ones": ones_of_paths},
         depth=35,
-        roms=wide_factor_rom(2, 4, ones_of_paths),
+        roms=wide_factor_rom(2, 2, ones_of_paths),
     )
     for real_only, ones_of_paths in ((0, 1), (1, 0))
 )
