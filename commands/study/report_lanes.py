@@ -65,8 +65,8 @@ def lanes_figure(rows: Sequence[sweep.Row], folder: Path, build: Path = ROOT / "
     axes[0].set_ylabel(f"last pixel to last depth, us at {CLOCK_MHZ:g} MHz")
     axes[0].legend()
     text = (
-        "The tridiagonal solver with 1, 2, 4, .. depth values per clock (LANES, beside the points). More of "
-        "them bring the last depth earlier and take area; from 2 on all give the same codes. Resources of an FPGA and the routed "
+        "The tridiagonal solver with 1, 2, 4, .. depth values per clock (LANES, beside the points). More of them bring "
+        "the last depth earlier and take area; from 2 on all give the same codes. Resources of an FPGA and the routed "
         "clock are shown where `make synth` and `make fpga` have run with this grid and LANES."
     )
     content = picture(figure, folder, "lanes") + table(HEAD, lines)

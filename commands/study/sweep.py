@@ -31,7 +31,7 @@ from tactile_depth.errors import InputError
 
 DEFAULT_OUT = ROOT / "build" / "sweep"
 GRIDS = (32, 64, 128, 256, 512)
-LANE_GRIDS = (128, 256)  # on the second the tridiagonal solver can have the most lanes
+LANE_GRIDS = (128, 256)  # on both the tridiagonal solver can have the most lanes
 ACCEPTED = ("OUT", "DASK_SCHEDULER")
 HEADER = (*CONFIGURATION, *MEASURED)
 CONNECT_S, WORKERS_S = 10, 60  # wait for a cluster, and for its first worker

@@ -197,9 +197,9 @@ module wide_stack #(
   end
 
   if (InWords < 2 || InWords != (1 << $clog2(InWords)) || OutWords < InWords || OutWords != (1 << $clog2(OutWords))
-      || Columns < 2 * OutWords || Columns < 8 * InWords || Columns != (1 << $clog2(Columns)))
+      || Columns < 2 * OutWords || Clocks < 3 + Beats / 2 || Columns != (1 << $clog2(Columns)))
   begin : g_refused_0
-    InWords_OutWords_Columns_must_be_rising_powers_of_two_with_2_beats_and_8_clocks_in_a_row u_refused ();
+    InWords_OutWords_Columns_must_be_rising_powers_of_two_with_2_beats_and_4_clocks_in_a_row u_refused ();
   end
   if (Rows < 3) begin : g_refused_1
     Rows_must_be_at_least_3 u_refused ();

@@ -30,7 +30,7 @@ def test_an_unknown_command_is_refused(refused: Any, words: Any, name: Any) -> N
 
 
 UNTUNABLE = """
-    CLOCK_MHZ=0 FRAMES=cube FRAMES=flat LANES=3 LANES=8 MAX_DSP=0 MAX_LATENCY_US=nan MAX_MAP_LATENCY_US=0 N=100 N=2048
+    CLOCK_MHZ=0 FRAMES=cube FRAMES=flat LANES=3 LANES=16 MAX_DSP=0 MAX_LATENCY_US=nan MAX_MAP_LATENCY_US=0 N=100 N=2048
     SOLVER=multigrid TOLERANCE=-1 TOLERANCE=0 TOLERANCE=little"""
 BOARD = "fpga TARGET=ulx3s"
 REFUSED = {
@@ -126,9 +126,9 @@ def require_library() -> None:
 LANES = {
     "LANES=2 SOLVER=spectral": "LANES=2 with SOLVER=spectral: it puts out one depth value per clock: set LANES=1, or "
     "SOLVER=tridiagonal",
-    "LANES=64 SOLVER=tridiagonal": "LANES=64 with N=128: accepted are 1 to 32",
+    "LANES=128 SOLVER=tridiagonal": "LANES=128 with N=128: accepted are 1 to 64",
     "LANES=6 SOLVER=tridiagonal": "LANES=6 is not a power of two: try LANES=4 or LANES=8",
-    "LANES=0 SOLVER=tridiagonal": "LANES=0 with N=128: accepted are 1 to 32",
+    "LANES=0 SOLVER=tridiagonal": "LANES=0 with N=128: accepted are 1 to 64",
     "LANES=many": "LANES=many: accepted is a whole number",
 }
 

@@ -89,24 +89,24 @@ def test_rows_are_in_the_order_of_the_input(tmp_path: Path) -> None:
                 (64, 64, 8, ["FRAMES=contacts", "GAPS=0.3", "BOUNDARY=neumann"]),
                 (100, 128, 16, ["FRAMES=contacts", "GAPS=0.3", "REFERENCE=flat", "ZERO=flat", "GRADIENT=quadratic"]),
                 (256, 256, 32, ["FRAMES=ball", "REPEAT=2"]),
+                (127, 128, 64, ["FRAMES=ball", "REPEAT=2"]),
                 (21, 64, 8, ["SIM=icarus", "FRAMES=ball", "REPEAT=2", "BOUNDARY=neumann"]),
             )
         ),
     ],
 )
-def test_lanes_bring_the_same_depth_earlier(
-    tmp_path: Path, rows: int, columns: int, lanes: int, words: list[str]
-) -> None:
+def test_lanes_bring_the_depth_earlier(tmp_path: Path, rows: int, columns: int, lanes: int, words: list[str]) -> None:
     grid = [f"ROWS={rows}", f"COLS={columns}", "SOLVER=tridiagonal", *words]
     one = run(tmp_path, *grid)
-    depth = np.load(tmp_path / "out" / "depth.npy")
+    depth_of_one = np.load(tmp_path / "out" / "depth.npy")
     several = run(tmp_path, *grid, f"LANES={lanes}")
     assert (one["lanes"], several["lanes"]) == (1, lanes)
     assert several["registers_agree"]
-    np.testing.assert_array_equal(np.load(tmp_path / "out" / "depth.npy"), depth)
-    first = only(one["last_pixel_to_first_depth_cycles"])
-    assert only(several["last_pixel_to_first_depth_cycles"]) <= first + 8
-    assert only(several["last_pixel_to_last_depth_cycles"]) <= first + rows * columns // lanes + 15
+    depth = np.load(tmp_path / "out" / "depth.npy")
+    np.testing.assert_allclose(depth, depth_of_one, atol=1e-3 * np.abs(depth_of_one).max())
+    first = only(several["last_pixel_to_first_depth_cycles"])
+    assert first <= only(one["last_pixel_to_first_depth_cycles"])
+    assert only(several["last_pixel_to_last_depth_cycles"]) == first + rows * columns // lanes - 1
 
     run(tmp_path, *grid, f"LANES={lanes}", "GAPS=0.2", "STALLS=0.3")
     np.testing.assert_array_equal(np.load(tmp_path / "out" / "depth.npy"), depth)

@@ -146,17 +146,17 @@ def test_a_limit_of_the_whole_map_takes_lanes(tmp_path: Path, capsys: pytest.Cap
     def config(lanes: int) -> Configuration:
         return Configuration(columns=32, solver="tridiagonal", lanes=lanes)
 
-    for lanes in (1, 2, 4, 8):
+    for lanes in (1, 2, 4, 8, 16):
         exact_us = last_pixel_to_last_depth(config(lanes)) / published.CLOCK_MHZ
         assert choose(exact_us + 1e-6) == lanes
-        assert choose(exact_us - 1e-6) == min(2 * lanes, 8)
+        assert choose(exact_us - 1e-6) == min(2 * lanes, 16)
     assert tune.lanes_within(lambda at: None, *tune.parse(["LANES=2", "N=32"])[:2], "tridiagonal") == 2
 
     assert run(tmp_path, "FRAMES=ball", f"MAX_MAP_LATENCY_US={exact_us + 1e-6}") == 0
     chosen = json.loads((tmp_path / "out" / "config.json").read_text())
-    assert (chosen["SOLVER"], chosen["LANES"]) == ("tridiagonal", 8)
+    assert (chosen["SOLVER"], chosen["LANES"]) == ("tridiagonal", 16)
     proof = json.loads((tmp_path / "out" / "proof" / "report.json").read_text())
-    assert proof["lanes"] == 8
+    assert proof["lanes"] == 16
     costs = json.loads((tmp_path / "out" / "report.json").read_text())["chosen"]
     assert set(proof["last_pixel_to_last_depth_cycles"]) == {costs["map_cycles"]}
     assert "us from the last pixel to the last depth" in capsys.readouterr().out
@@ -169,7 +169,7 @@ def test_a_limit_of_the_whole_map_takes_lanes(tmp_path: Path, capsys: pytest.Cap
         (["TOLERANCE=0.001", "MAX_DSP=24"], "the nearest is SOLVER=tridiagonal DATA_WIDTH=24 COEFF_WIDTH="),
         (["MAX_DSP=4"], "beyond MAX_DSP=4"),
         (["MAX_LATENCY_US=1"], "beyond MAX_LATENCY_US=1"),
-        (["SOLVER=tridiagonal", "MAX_MAP_LATENCY_US=2"], "COEFF_WIDTH=10 LANES=8: beyond MAX_MAP_LATENCY_US=2"),
+        (["SOLVER=tridiagonal", "MAX_MAP_LATENCY_US=1"], "COEFF_WIDTH=10 LANES=16: beyond MAX_MAP_LATENCY_US=1"),
         (["MAX_MEMORY_KBIT=1"], "beyond MAX_MEMORY_KBIT=1"),
     ],
 )
