@@ -136,7 +136,9 @@ module polynomial_gradient
       logic [WordWidth-1:0] word, free_word;
       logic [TermWidth-1:0] term;
       assign offset = table_index - IndexWidth'(Terms * Polynomial);
-      assign own_entry = 32'(offset) < $unsigned(Terms);
+      always_ff @(posedge clk) begin  // beside table_index
+        own_entry <= 32'(table_command.index) - $unsigned(Terms * Polynomial) < $unsigned(Terms);
+      end
       always_comb begin
         term = '0;
         for (int t = Terms - 1; t >= FrameTerms; t--) if (row_q[t-FrameTerms+colour]) term = TermWidth'(t);

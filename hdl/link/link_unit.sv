@@ -228,8 +228,15 @@ module link_unit #(
     .in_last(packet_out_last),
     .out_valid(checked_valid), .out_ready(checked_ready), .out_data(checked_data), .out_last(checked_last)
   );
+  logic piece_out_valid, piece_out_ready, piece_out_last;
+  logic [7:0] piece_out_data;
+  td_axis_skid #(.Width(9)) u_checked_slice (
+    .clk, .rst, .s_valid(checked_valid), .s_ready(checked_ready), .s_data({checked_last, checked_data}),
+    .m_valid(piece_out_valid), .m_ready(piece_out_ready), .m_data({piece_out_last, piece_out_data})
+  );
   cobs_encode u_cobs_encode (
-    .clk, .rst, .in_valid(checked_valid), .in_ready(checked_ready), .in_data(checked_data), .in_last(checked_last),
+    .clk, .rst, .in_valid(piece_out_valid), .in_ready(piece_out_ready), .in_data(piece_out_data),
+    .in_last(piece_out_last),
     .out_valid, .out_ready, .out_data
   );
 

@@ -84,7 +84,8 @@ module packet_decode
     endcase
   end
 
-  logic format_good;
+  logic format_good, bad_kind, bad_select;
+  assign bad = bad_kind | bad_select;
   assign takes = in_valid & in_ready;
   assign takes_kind = in_valid & (at == AtKind);
   assign ends_select = in_valid & (at == AtSelect) & in_last;
@@ -97,7 +98,8 @@ module packet_decode
   assign {picture_last, picture_data} = {in_last, in_data};
 
   always_ff @(posedge clk) begin
-    bad <= (takes_kind & known & ~fits) | (ends_select & ~good_select);
+    bad_kind <= takes_kind & known & ~fits;
+    bad_select <= ends_select & ~good_select;
     ask <= takes_kind & (in_data == Ask) & fits;
     select <= ends_select & good_select;
     select_shift <= in_data[4:0];
@@ -112,7 +114,8 @@ module packet_decode
       format_good <= in_data[7:2] == '0;
     end
     if (rst) begin
-      bad <= 1'b0;
+      bad_kind <= 1'b0;
+      bad_select <= 1'b0;
       ask <= 1'b0;
       select <= 1'b0;
       at <= AtKind;

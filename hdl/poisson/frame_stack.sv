@@ -115,7 +115,6 @@ module frame_stack #(
   assign read_start = read_begin | read_more;
   assign read_past = read_begin | read_first_q;
   assign read_remaining = read_start ? FirstRemaining : read_remaining_q;
-  assign read_end = read_active & (read_position == LastPosition);
   assign read_last = read_address == (down ? AddressWidth'(Burst - 1) : AddressWidth'(Depth - 1));
 
   td_ram #(.Width(WordsPerRow * Width), .Depth(Depth), .Style(Style)) u_ram (
@@ -130,6 +129,7 @@ module frame_stack #(
 
   always_ff @(posedge clk) begin
     if (en) begin
+      read_end <= read_active & (read_position == LastPosition - PositionWidth'(1));
       read_more <= read_end & (read_past | ~read_last);
       read_first_q <= read_past & ~read_end;
       read_remaining_q <= remaining_after(read_remaining);
@@ -148,6 +148,7 @@ module frame_stack #(
     end
     if (rst) begin
       read_more <= 1'b0;
+      read_end <= 1'b0;
       start_q <= '0;
       frame_start_q <= '0;
       out_start <= 1'b0;
