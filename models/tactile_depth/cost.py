@@ -253,9 +253,8 @@ def _wide_fft(p: dict[str, int], paths: int, inverse: bool, core: str) -> Parts:
     size, width, coeff = p["Columns"], p["DataWidth"] + GUARD_BITS, p["CoeffWidth"]
     beats = size // paths
     delays = [1 << bit for bit in range(beats.bit_length() - 1)]
-    parts: Parts = [
-        *[Memory("delay lines", 2 * width, delay, core) for delay in delays if delay > LONGEST_SHIFT] * paths
-    ]
+    lines = [Memory("delay lines", 2 * width, delay, core) for delay in delays if delay > LONGEST_SHIFT]
+    parts: Parts = [*lines * paths]
     for stage in stages(size, inverse):
         if not stage.delay:
             parts += [Multiplier(width, coeff, core)] * (
