@@ -112,7 +112,7 @@ def divide_rom(size: int) -> Callable[[Path], None]:
 
 
 def thomas_roms(
-    rows: int, size: int, words: int, width: int, settled_width: int, shift_width: int
+    rows: int, size: int, words: int, width: int, settled_width: int, shift_width: int, table: str = "thomas"
 ) -> Callable[[Path], None]:
     """Tables of arbitrary contents for thomas_table.sv; square.hex: {shift, coefficient} for every row and position."""
 
@@ -125,11 +125,11 @@ def thomas_roms(
         last = [choose.randrange(1 << width) for _ in range(size)]
         shift = [choose.randrange(1 << shift_width) for _ in range(size)]
         assert base[-1] + settled[-1] < words
-        write_words(folder / "thomas.hex", inner, width)
+        write_words(folder / f"{table}.hex", inner, width)
         index = [b << settled_width | s for b, s in zip(base, settled, strict=True)]
-        write_words(folder / "thomas_index.hex", index, address_width + settled_width)
+        write_words(folder / f"{table}_index.hex", index, address_width + settled_width)
         ends = [s << width | c for s, c in zip(shift, last, strict=True)]
-        write_words(folder / "thomas_last.hex", ends, shift_width + width)
+        write_words(folder / f"{table}_last.hex", ends, shift_width + width)
         square = [inner[b + min(row, s)] for row in range(rows - 1) for b, s in zip(base, settled, strict=True)]
         write_words(folder / "square.hex", square + ends, shift_width + width)
 

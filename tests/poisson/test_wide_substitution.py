@@ -3,6 +3,8 @@
 
 from typing import Any
 
+from formal.entries import ROUNDING, Proof
+from formal.tables import thomas_roms
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.wide_solver import solver_parameters
 from tactile_depth.rom_files import write_wide_thomas
@@ -38,3 +40,14 @@ STRUCTURES = (
 RULE = "Words_and_Columns_must_be_powers_of_two_and_Words_2_to_half_of_Columns"
 REFUSED = {"Words=1": RULE, "Words=3": RULE, "Words=128": RULE, "Columns=96": RULE, "Rows=2": "Rows_must_be_at_least_3"}
 MUTANTS = Mutants("wide_pairs")
+PROOFS = tuple(
+    Proof(
+        "the recursion up an arbitrary column, in both rows of a pair, and the clips; latency 2",
+        "z that goes straight into the next product, and z that waits; an even and an odd number of rows; three pairs, "
+        f"so that a product follows a product; each of two words; {ROUNDING}",
+        {"Rows": rows, "Columns": columns, "Words": 2, "Word": word, "TableWords": 16},
+        depth=60,
+        roms=thomas_roms(rows, columns // 2, 16, 6, 3, 1, "wide_up"),
+    )
+    for rows, columns, word in ((5, 4, 0), (4, 4, 1), (5, 8, 1))
+)
