@@ -136,6 +136,8 @@ module polynomial_gradient
       logic [WordWidth-1:0] word, free_word;
       logic [TermWidth-1:0] term;
       assign offset = table_index - IndexWidth'(Terms * Polynomial);
+      logic unused_offset;  // beyond its own entries
+      assign unused_offset = ^offset;
       always_ff @(posedge clk) begin  // beside table_index
         own_entry <= 32'(table_command.index) - $unsigned(Terms * Polynomial) < $unsigned(Terms);
       end

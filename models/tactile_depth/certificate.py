@@ -285,7 +285,7 @@ class _Survey:
             depths = np.sum([l1(part) for part in by_depth], axis=0) * self.depth_out
             worst.depths = float(np.minimum(atmost.max(axis=0), depths).max())
             order = np.argsort(atmost, axis=None)[::-1]
-            worst.reached = 0.0
+            worst.reached, worst.response = 0.0, np.zeros((self.config.rows, size))
             for tries, index in enumerate(order):
                 place, column = np.unravel_index(index, atmost.shape)
                 worst.slopes = max(worst.reached, float(atmost[place, column]))

@@ -33,6 +33,7 @@ ULTRA_WORDS, ULTRA_WIDTH = 4096, 72
 
 COLUMNS = {"spectral": (16, 512), "tridiagonal": (16, 1024)}
 ROWS = (8, 1024)
+ZERO_OFFSET_BEATS = 4  # least beats of depth in a row: its capture adds in three clocks, td_block_sum.sv
 EXACT_LENGTHS = (8, 4096)  # rows and columns of a grid in double precision
 MOST_LANES = 64
 COLUMNS_PER_LANE = 2  # at least: the second row of a pair comes so many clocks after the first
@@ -251,6 +252,10 @@ class Configuration:
         if not 1 <= self.lanes <= most:
             raise InputError(lanes, " with ", Argument("columns", self.columns), accepted=range(1, most + 1))
         power_of_two(lanes)
+        most = self.columns // ZERO_OFFSET_BEATS
+        if self.zero_offset and self.lanes > most:
+            where = (" with ", Argument("columns", self.columns), " and ", Argument("zero_offset", True))
+            raise InputError(lanes, *where, accepted=range(1, most + 1))
 
     def _check_sums(self) -> None:
         """Refuse gains that a capture cannot sum blocks in."""

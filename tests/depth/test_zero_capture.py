@@ -34,8 +34,7 @@ STRUCTURES = (
     built(128, 20, 3, 24, 2, 8),
     built(256, 9, 3, 24, 1, 32),
     built(128, 17, 3, 24, 1, 32),
-    built(128, 17, 3, 24, 1, 64),
-    built(16, 9, 1, 12, 1, 8, on=ICARUS),
+    built(256, 9, 3, 24, 1, 64),
 )
 REFUSED = {
     "BlockLog2=0": "BlockLog2_must_be_at_least_1",
