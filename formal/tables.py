@@ -134,3 +134,19 @@ def thomas_roms(
         write_words(folder / "square.hex", square + ends, shift_width + width)
 
     return write
+
+
+def wide_up_roms(rows: int, beats: int) -> Callable[[Path], None]:
+    """Tables of wide_substitution.sv, two words of 3 bits: none is 0, and none is like that of the next row or word."""
+
+    def write(folder: Path) -> None:
+        inner = [1 + (2 * n + 3) % 7 << 3 | 1 + 2 * n % 7 for n in range(16)]
+        settled = [rows - 2 - beat % 2 for beat in range(beats)]
+        base = [sum(settled[:beat]) + beat for beat in range(beats)]
+        assert base[-1] + settled[-1] < 16
+        write_words(folder / "wide_up.hex", inner, 6)
+        write_words(folder / "wide_up_index.hex", [b << 3 | s for b, s in zip(base, settled, strict=True)], 7)
+        square = [inner[b + min(row, s)] for row in range(rows) for b, s in zip(base, settled, strict=True)]
+        write_words(folder / "square.hex", square, 7)
+
+    return write

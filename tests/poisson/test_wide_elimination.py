@@ -3,6 +3,8 @@
 
 from typing import Any
 
+from formal.entries import ROUNDING, Proof
+from formal.tables import thomas_roms
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.wide_solver import solver_parameters
 from tactile_depth.rom_files import write_wide_thomas
@@ -40,4 +42,16 @@ REFUSED = {
     "Words=32": "Words_and_Columns_must_be_powers_of_two_with_at_least_8_clocks_in_a_burst",
     "Rows=2": "Rows_must_be_at_least_3",
 }
-MUTANTS = Mutants("wide_bursts")
+MUTANTS = Mutants()
+PROOFS = tuple(
+    Proof(
+        "the recursion down an arbitrary column, a row ahead and the clips"
+        + (", and the mean" if neumann else "")
+        + "; latency 9",
+        f"the smallest burst that holds the loop of the recursion; each of two words; {ROUNDING}",
+        {"Rows": 3, "Columns": 16, "Words": 2, "Word": word, "Neumann": neumann, "TableWords": 16},
+        depth=70,
+        roms=thomas_roms(3, 8, 16, 6, 2, 2, "wide_down"),
+    )
+    for word, neumann in ((0, 1), (1, 0))
+)

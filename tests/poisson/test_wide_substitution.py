@@ -4,7 +4,7 @@
 from typing import Any
 
 from formal.entries import ROUNDING, Proof
-from formal.tables import thomas_roms
+from formal.tables import wide_up_roms
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.wide_solver import solver_parameters
 from tactile_depth.rom_files import write_wide_thomas
@@ -47,7 +47,7 @@ PROOFS = tuple(
         f"so that a product follows a product; each of two words; {ROUNDING}",
         {"Rows": rows, "Columns": columns, "Words": 2, "Word": word, "TableWords": 16},
         depth=60,
-        roms=thomas_roms(rows, columns // 2, 16, 6, 3, 1, "wide_up"),
+        roms=wide_up_roms(rows, columns // 2),
     )
     for rows, columns, word in ((5, 4, 0), (4, 4, 1), (5, 8, 1))
 )
