@@ -246,6 +246,10 @@ LANES = {"solver": "tridiagonal"}
         (LANES | {"lanes": 0}, "lanes=0 with columns=128: accepted are 1 to 64"),
         (LANES | {"lanes": -2}, "lanes=-2 with columns=128: accepted are 1 to 64"),
         (LANES | {"lanes": 128}, "lanes=128 with columns=128: accepted are 1 to 64"),
+        (
+            LANES | {"lanes": 64, "zero_offset": True},
+            "lanes=64 with columns=128 and zero_offset=True: accepted are 1 to 32",
+        ),
         (LANES | {"lanes": 128, "columns": 512}, "lanes=128 with columns=512: accepted are 1 to 64"),
         (LANES | {"lanes": 6}, "lanes=6 is not a power of two: try lanes=4 or lanes=8"),
     ],
