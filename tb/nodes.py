@@ -10,7 +10,8 @@ import numpy as np
 from cocotb.triggers import FallingEdge, RisingEdge
 
 from tactile_depth.common.td_node_map import entries_per_node, table_entries
-from tactile_depth.configuration import Configuration, Format, gain_fraction
+from tactile_depth.configuration import Configuration, gain_fraction
+from tactile_depth.fixed_point import Format
 from tb.stream import parameters, places
 from tb.table_bus import READ_CLOCKS, TO_TABLE, TableBus
 

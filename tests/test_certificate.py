@@ -16,8 +16,9 @@ from tactile_depth.bounds import difference_bounds
 from tactile_depth.built_in import load
 from tactile_depth.certificate import certify, deepest, node_format, slope_response
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import DEPTH_HEADROOM, Configuration, Format
+from tactile_depth.configuration import DEPTH_HEADROOM, Configuration
 from tactile_depth.errors import InputError
+from tactile_depth.fixed_point import Format
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.sensor import Camera, Sensor
 from tactile_depth.tactile_depth import solve

@@ -247,7 +247,8 @@ def lanes_within(
     """
     if request.lanes != CHOOSE or solver != "tridiagonal":
         return request.lanes or 1
-    for lanes in (1 << log2 for log2 in range(most_lanes(request.columns).bit_length())):
+    most = most_lanes(request.columns, request.zero is not None)
+    for lanes in (1 << log2 for log2 in range(most.bit_length())):
         config = build(Widths(solver, DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1], lanes))
         if config is None or last_pixel_to_last_depth(config) <= limits.map_latency_us * limits.clock_mhz:
             break

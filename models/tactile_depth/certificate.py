@@ -24,7 +24,8 @@ import numpy as np
 from tactile_depth import reference
 from tactile_depth.bounds import Responses, l1
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration, Format
+from tactile_depth.configuration import Configuration
+from tactile_depth.fixed_point import Format
 from tactile_depth.poisson import spectral_solver, tridiagonal_solver, wide_solver
 from tactile_depth.poisson.back_substitution import back_substitution
 from tactile_depth.poisson.forward_elimination import forward_elimination

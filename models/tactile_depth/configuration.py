@@ -18,6 +18,7 @@ import numpy as np
 
 from tactile_depth.bounds import Bounds, bounds, difference_bounds
 from tactile_depth.errors import Argument, InputError, former_names, one_of, power_of_two, within
+from tactile_depth.fixed_point import Format
 from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
 from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
 
@@ -33,10 +34,10 @@ ULTRA_WORDS, ULTRA_WIDTH = 4096, 72
 
 COLUMNS = {"spectral": (16, 512), "tridiagonal": (16, 1024)}
 ROWS = (8, 1024)
-ZERO_OFFSET_BEATS = 4  # least beats of depth in a row: its capture adds in three clocks, td_block_sum.sv
 EXACT_LENGTHS = (8, 4096)  # rows and columns of a grid in double precision
 MOST_LANES = 64
 COLUMNS_PER_LANE = 2  # at least: the second row of a pair comes so many clocks after the first
+ZERO_OFFSET_COLUMNS_PER_LANE = 4  # at least: the capture of the zero offset adds in three clocks, td_block_sum.sv
 DATA_WIDTHS = (12, 32)
 COEFFICIENT_WIDTHS = (10, 24)
 GRADIENT_MODELS = ("lut", "quadratic", "cubic")
@@ -56,31 +57,9 @@ def gain_fraction(gain_width: int) -> int:
     return gain_width + DARKEST_LOG2
 
 
-def most_lanes(columns: int) -> int:
+def most_lanes(columns: int, zero_offset: bool = False) -> int:
     """Return the largest number of lanes of the tridiagonal solver."""
-    return min(columns // COLUMNS_PER_LANE, MOST_LANES)
-
-
-@dataclass(frozen=True)
-class Format:
-    """A signed fixed-point word: value = code * 2**-fraction."""
-
-    width: int
-    fraction: int
-
-    @classmethod
-    def holding(cls, bound: float, width: int) -> Format:
-        """Return the finest format of `width` bits that holds every magnitude up to `bound`."""
-        return cls(width, width - 1 - math.ceil(math.log2(bound * (1 + 2.0 ** (2 - width)))))
-
-    @property
-    def limit(self) -> float:
-        """Full scale, exclusive."""
-        return 2.0 ** (self.width - 1 - self.fraction)
-
-    @property
-    def lsb(self) -> float:
-        return 2.0**-self.fraction
+    return min(columns // (ZERO_OFFSET_COLUMNS_PER_LANE if zero_offset else COLUMNS_PER_LANE), MOST_LANES)
 
 
 DEVIATION = Format(17, 15)
@@ -242,7 +221,7 @@ class Configuration:
                 )
 
     def _check_lanes(self) -> None:
-        most = most_lanes(self.columns)
+        most = most_lanes(self.columns, self.zero_offset)
         lanes = Argument("lanes", self.lanes)
         if self.solver != "tridiagonal" and self.lanes != 1:
             raise InputError(
@@ -250,12 +229,9 @@ class Configuration:
                 remedy=("set ", Argument("lanes", 1), ", or ", Argument("solver", "tridiagonal")),
             )
         if not 1 <= self.lanes <= most:
-            raise InputError(lanes, " with ", Argument("columns", self.columns), accepted=range(1, most + 1))
+            zero = (" and ", Argument("zero_offset", True)) if self.zero_offset else ()
+            raise InputError(lanes, " with ", Argument("columns", self.columns), *zero, accepted=range(1, most + 1))
         power_of_two(lanes)
-        most = self.columns // ZERO_OFFSET_BEATS
-        if self.zero_offset and self.lanes > most:
-            where = (" with ", Argument("columns", self.columns), " and ", Argument("zero_offset", True))
-            raise InputError(lanes, *where, accepted=range(1, most + 1))
 
     def _check_sums(self) -> None:
         """Refuse gains that a capture cannot sum blocks in."""
@@ -320,9 +296,10 @@ class Configuration:
 
     @property
     def store_style(self) -> int:
-        """Style of the memory of a frame store, or of each lane's bank of it, BLOCK or ULTRA."""
-        rows = -(-self.rows // self.lanes)
-        return ULTRA if rows * self.columns * self.data_width >= 2 * ULTRA_WORDS * ULTRA_WIDTH else BLOCK
+        """Style of a memory of a frame store, BLOCK or ULTRA; with several lanes the store has several memories."""
+        memories = 1 if self.lanes == 1 else self.lanes // min(self.down_words, self.lanes // 2)
+        bits = self.rows * self.columns * self.data_width // memories
+        return ULTRA if bits >= 2 * ULTRA_WORDS * ULTRA_WIDTH else BLOCK
 
     @property
     def words_per_row(self) -> int:

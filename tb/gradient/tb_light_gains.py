@@ -11,7 +11,7 @@ import numpy as np
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Format
+from tactile_depth.fixed_point import Format
 from tactile_depth.gradient.light_gains import LATENCY, RATES, Light
 from tb.cases import on_bench
 from tb.stream import MANY, Bench, StreamDriver, StreamMonitor, check_words, parameters, raster, sample, send_apart

@@ -9,7 +9,8 @@ import pytest
 from formal.entries import ROUNDING, WORD_FREE, Proof
 from formal.tables import gain_rom
 from tactile_depth.common.td_node_map import node_map
-from tactile_depth.configuration import DEVIATION, RATIO, Configuration, Format
+from tactile_depth.configuration import DEVIATION, RATIO, Configuration
+from tactile_depth.fixed_point import Format
 from tactile_depth.gradient.flat_field import (
     CODE,
     captured_gains,

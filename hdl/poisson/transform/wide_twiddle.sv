@@ -41,7 +41,6 @@ module wide_twiddle #(
   localparam int ToSum = 6;      // cycles from its start: ROM, a register behind it, product
   localparam int BeatWidth = $clog2(Beats);
   localparam int FactorWidth = 3 * CoeffWidth;
-  localparam int LargestDistributed = 4096;  // bits of a path; above it a block RAM is cheaper than LUTs
 
   logic [BeatWidth-1:0] beat;
   logic active;
@@ -51,7 +50,7 @@ module wide_twiddle #(
 
   logic [Paths*FactorWidth-1:0] factors;
   td_rom #(
-    .Width(Paths * FactorWidth), .Depth(Beats), .Style(FactorWidth * Beats > LargestDistributed ? 1 : 0), .File(File)
+    .Width(Paths * FactorWidth), .Depth(Beats), .Style(FactorWidth * Beats > td_types_pkg::DistributedBits ? 1 : 0), .File(File)
   ) u_rom (
     .clk, .en, .address(beat), .data(factors)
   );

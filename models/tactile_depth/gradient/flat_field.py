@@ -26,8 +26,9 @@ from tactile_depth.common import td_node_map
 from tactile_depth.common.td_block_sum import block_sum
 from tactile_depth.common.td_node_map import node_map
 from tactile_depth.common.td_round_saturate import Monitor, round_half_even, round_saturate
-from tactile_depth.configuration import DARKEST_LOG2, DEVIATION, RATIO, Configuration, Format
+from tactile_depth.configuration import DARKEST_LOG2, DEVIATION, RATIO, Configuration
 from tactile_depth.errors import Argument, InputError, Part
+from tactile_depth.fixed_point import Format
 from tactile_depth.sensor import Sensor
 
 LATENCY = td_node_map.latency(1, 1) + 3

@@ -23,7 +23,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor, round_half_even, round_saturate
-from tactile_depth.configuration import DEVIATION, LIGHT_GAIN, RATIO, Configuration, Format
+from tactile_depth.configuration import DEVIATION, LIGHT_GAIN, RATIO, Configuration
+from tactile_depth.fixed_point import Format
 
 LATENCY = 2
 NEAR_LOG2 = 3

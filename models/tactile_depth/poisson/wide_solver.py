@@ -19,10 +19,11 @@ from tactile_depth.poisson.transform.row_reorder import row_reorder
 from tactile_depth.poisson.transform.wide_commutator import LEAD
 from tactile_depth.poisson.transform.wide_dst_forward import latency as forward_latency
 from tactile_depth.poisson.transform.wide_dst_inverse import latency as inverse_latency
+from tactile_depth.poisson.transform.wide_row_pairs import up_positions
 from tactile_depth.poisson.transform.wide_rows import LATENCY as WIDE_ROWS
 from tactile_depth.poisson.tridiagonal_solver import row_forward, row_inverse_drops
 from tactile_depth.poisson.wide_elimination import LATENCY as WIDE_ELIMINATION
-from tactile_depth.poisson.wide_stack import down_positions, up_positions
+from tactile_depth.poisson.wide_stack import down_positions
 from tactile_depth.poisson.wide_stack import latency as stack_latency
 from tactile_depth.poisson.wide_substitution import LATENCY as WIDE_SUBSTITUTION
 

@@ -7,7 +7,8 @@ from functools import cache
 
 import numpy as np
 
-from tactile_depth.poisson.transform.orders import mirror, read_only
+from tactile_depth.poisson.transform.orders import read_only
+from tactile_depth.poisson.transform.wide_row_pairs import up_positions
 
 LEAD = 6  # clocks from a start to the first words
 
@@ -21,20 +22,6 @@ def latency(columns: int, in_words: int, out_words: int) -> int:
 def down_positions(columns: int, words: int) -> np.ndarray:
     """Return the positions of each clock on the way down, int64 (clocks, words)."""
     return read_only(np.arange(columns).reshape(-1, words))
-
-
-@cache
-def up_positions(columns: int, words: int) -> np.ndarray:
-    """Return the positions of each beat of a row on the way up, int64 (beats, words).
-
-    Beat u has two blocks of words / 2 positions, 2 u and 2 mirror(u) + 1, so that mode k and mode N - k are together.
-    """
-    beats = columns // words
-    lower = 2 * np.arange(beats)
-    upper = 2 * mirror(beats) + 1
-    blocks = np.stack((lower, upper), axis=1)
-    inside = np.arange(words // 2)
-    return read_only((blocks[..., None] * (words // 2) + inside).reshape(beats, words))
 
 
 def wide_stack(rows: np.ndarray, words: int) -> np.ndarray:
