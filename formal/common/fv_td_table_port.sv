@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_td_table_port: an access of its own table reaches the table one clock later, unless a reset comes with it, or
-// with a write then; no other does. The entry that the table showed behind the last read, each word extended to 32 bits, stands on the bus while the
-// bus named the table in the clock before; otherwise zeros. Whatever the bus says.
+// with a write then; no other does. The entry that the last read named, of those that the table showed behind it, each
+// word extended to 32 bits, stands on the bus while the bus named the table in the clock before; otherwise zeros.
+// Whatever the bus says.
 
 `default_nettype none
 
@@ -12,31 +13,42 @@ module fv_td_table_port
   parameter int IndexWidth = 2,
   parameter int Width      = 2,
   parameter int Words      = 2,
+  parameter int Entries    = 1,
   parameter int Signed     = 1
 ) (
-  input logic                   clk,
-  input logic                   rst,
-  input table_command_t         table_command,
-  input logic [Words*Width-1:0] free_word
+  input logic                           clk,
+  input logic                           rst,
+  input table_command_t                 table_command,
+  input logic [Entries*Words*Width-1:0] free_word
 );
 
   table_answer_t table_answer;
   logic write, read;
   logic [IndexWidth-1:0] index;
   logic [Words*Width-1:0] word;
-  td_table_port #(.Select(Select), .IndexWidth(IndexWidth), .Width(Width), .Words(Words), .Signed(Signed)) dut (.*);
+  td_table_port #(
+    .Select(Select), .IndexWidth(IndexWidth), .Width(Width), .Words(Words), .Entries(Entries), .Signed(Signed)
+  ) dut (.*);
 
   logic started = 1'b0;
   logic own, rst_q, reads_q, known;  // known: an entry was read
   table_command_t command_q;
-  logic [Words-1:0][Width-1:0] entry;
+  logic [Words-1:0][Width-1:0] entry, shown;
+  logic [IndexWidth-1:0] read_index;
+  always_comb begin
+    shown = '0;
+    for (int place = 0; place < Entries; place++) begin
+      if (32'(read_index) % (1 << $clog2(Entries)) == place) shown = free_word[place*Words*Width+:Words*Width];
+    end
+  end
   assign own = command_q.select == 2'(Select);
   always_ff @(posedge clk) begin
     started <= 1'b1;
     rst_q <= rst;
     command_q <= table_command;
     reads_q <= started && own && command_q.read && !rst_q;
-    if (started && reads_q) {known, entry} <= {1'b1, free_word};
+    read_index <= command_q.index[IndexWidth-1:0];
+    if (started && reads_q) {known, entry} <= {1'b1, shown};
     if (!started) known <= 1'b0;
   end
 

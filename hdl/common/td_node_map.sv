@@ -109,14 +109,16 @@ module td_node_map
   logic table_write, table_read;
   logic [NodeWidth+EntryLog2-1:0] table_index;
   logic [Width-1:0] table_word;
-  logic [EntryLog2:0] entry, entry_q;
+  logic [EntryLog2:0] entry;
   logic [Side*Channels-1:0][Tables-1:0] in_use;
   assign entry = (EntryLog2 + 1)'(table_index) & (EntryLog2 + 1)'($unsigned((1 << EntryLog2) - 1));
   assign table_node = NodeWidth'(table_index >> EntryLog2);
   assign table_in_use = &in_use;  // they change over together
-  td_table_port #(.Select(Select), .IndexWidth(NodeWidth + EntryLog2), .Width(Width), .Signed(Signed)) u_port (
+  td_table_port #(
+    .Select(Select), .IndexWidth(NodeWidth + EntryLog2), .Width(Width), .Entries(Side * Channels), .Signed(Signed)
+  ) u_port (
     .clk, .rst, .table_command, .table_answer, .write(table_write), .read(table_read), .index(table_index),
-    .word(table_word), .free_word(Width'(capture_read_words >> (32'(entry_q) * 32'($unsigned(Width)))))
+    .word(table_word), .free_word(capture_read_words)
   );
 
   // Down the column. One table gives a word after the other: their products with 2b - w and w are added. Two give both
@@ -233,7 +235,6 @@ module td_node_map
       begins_q <= {begins_q[ToRun-2:0], run_begins};
       new_runs_q <= new_runs;
     end
-    if (table_read) entry_q <= entry;
     if (rst) {valid_q, frame_start_q, start_q, segment_q, begins_q} <= '0;
   end
 

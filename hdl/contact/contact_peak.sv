@@ -84,15 +84,20 @@ module contact_peak
     end
   end
 
-  // Count. The first beat of the next frame may be here in the cycle of count_valid.
+  // Count. The first beat of the next frame may be here in the cycle of count_valid. `touching` comes late, from the
+  // count itself: it chooses behind the sums.
 
   logic [Lanes-1:0] above, above_q;
+  logic [CountWidth-1:0] count_before, count_on, count_off;
   logic [PeakDelay-1:0] valid_delayed, start_delayed, end_delayed;
   logic [PeakDelay-1:0][ColumnWidth-1:0] column_delayed;
   logic [PeakDelay-1:0][RowWidth-1:0] row_delayed;
   assign above = touching ? above_off : above_on;
+  assign count_before = frame_start_q ? '0 : count;
+  assign count_on = count_before + CountWidth'(ones(above_on));
+  assign count_off = count_before + CountWidth'(ones(above_off));
   always_ff @(posedge clk) begin
-    if (valid_q) count <= (frame_start_q ? '0 : count) + CountWidth'(ones(above));
+    if (valid_q) count <= touching ? count_off : count_on;
     above_q <= above;
     column_delayed <= (PeakDelay * ColumnWidth)'({column_delayed, column_q});
     row_delayed <= (PeakDelay * RowWidth)'({row_delayed, row_q});

@@ -19,8 +19,10 @@ CLOCKS = 6000
 async def accesses(dut: Any) -> None:
     """Drive every member of the bus at random; check what reaches the table, and the answer."""
     chance = random.Random(cocotb.RANDOM_SEED)
-    select, index_width, width, words, signed = parameters(dut, "Select", "IndexWidth", "Width", "Words", "Signed")
-    model = TablePort(select, index_width, width, words, bool(signed))
+    select, index_width, width, words, entries, signed = parameters(
+        dut, "Select", "IndexWidth", "Width", "Words", "Entries", "Signed"
+    )
+    model = TablePort(select, index_width, width, words, entries, bool(signed))
     dut.rst.value, dut.table_command.value, dut.free_word.value = 1, 0, 0
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     await RisingEdge(dut.clk)
@@ -34,7 +36,7 @@ async def accesses(dut: Any) -> None:
             "high": chance.getrandbits(WORD_BITS),
             "low": chance.getrandbits(WORD_BITS),
         }
-        reset, free_word = int(clock == 0 or chance.random() < 0.05), chance.getrandbits(words * width)
+        reset, free_word = int(clock == 0 or chance.random() < 0.05), chance.getrandbits(entries * words * width)
         dut.rst.value, dut.free_word.value = reset, free_word
         dut.table_command.value = structs.pack("table_command_t", command)
         await RisingEdge(dut.clk)

@@ -9,9 +9,9 @@ from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 
 
-def built(select: int, index: int, width: int, words: int, signed: int, **runs: Any) -> Structure:
-    parameters = {"Select": select, "IndexWidth": index, "Width": width, "Words": words, "Signed": signed}
-    return Structure(parameters, **runs)
+def built(select: int, index: int, width: int, words: int, signed: int, entries: int = 1, **runs: Any) -> Structure:
+    numbers = {"Select": select, "IndexWidth": index, "Width": width, "Words": words, "Signed": signed}
+    return Structure({**numbers, "Entries": entries}, **runs)
 
 
 STRUCTURES = (
@@ -21,15 +21,17 @@ STRUCTURES = (
     built(1, 6, 32, 1, 1),
     built(2, 10, 24, 1, 0),
     built(0, 12, 21, 2, 1),
+    built(2, 4, 5, 1, 1, entries=3, on=ICARUS, mutants=True),
+    built(3, 6, 24, 1, 0, entries=4, on=VERILATOR),
 )
 REFUSED = dict.fromkeys(("Width=33", "Words=3"), "an_entry_is_1_or_2_words_of_at_most_32_bits")
 PROOFS = tuple(
     Proof(
         "an access of its own table one clock later, of no other; the entry read, extended, while it is named",
-        "words are only copied and extended; of one word, and of two",
-        {"Signed": signed, "Words": words},
+        "words are only copied and extended; of one word, and of two; one entry, two and three side by side",
+        {"Signed": signed, "Words": words, "Entries": entries},
     )
-    for signed, words in ((1, 2), (0, 1))
+    for signed, words, entries in ((1, 2, 1), (0, 1, 3), (1, 2, 2))
 )
 
 

@@ -17,6 +17,8 @@ class TablePort:
     ----------
     words : int
         Words of an entry: 1, or 2 with the upper one in TABLE_HIGH. An entry is {upper, lower}.
+    entries : int
+        Entries side by side in a word of the table's memory, which the lowest bits of the index tell apart.
     write, read, index, word : int
         Outputs to the table; `write` but for a reset in its cycle.
     """
@@ -25,21 +27,23 @@ class TablePort:
     index_width: int
     width: int
     words: int = 1
+    entries: int = 1
     signed: bool = False
     write: int = 0
     read: int = 0
     index: int = 0
     word: int = 0
-    _fetched: int = 0
+    _fetched: int | None = None
     _selected: int = 0
     _entry: int | None = None
 
     def clock(self, command: Mapping[str, int], free_word: int, reset: int) -> None:
-        """Take a cycle's members of `table_command_t` and the entry that the table shows."""
+        """Take a cycle's members of `table_command_t` and the entries that the table shows."""
         names = int(command["select"] == self.select)
-        if self._fetched:
-            self._entry = free_word
-        self._fetched, self._selected = self.read, names
+        if self._fetched is not None:
+            self._entry = free_word >> self._fetched * self.words * self.width & (1 << self.words * self.width) - 1
+        self._fetched = self.index % (1 << (self.entries - 1).bit_length()) if self.read else None
+        self._selected = names
         self.write, self.read = (int(names and not reset and command[access]) for access in ("write", "read"))
         mask = (1 << self.width) - 1
         self.index = command["index"] & (1 << self.index_width) - 1
