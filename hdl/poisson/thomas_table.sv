@@ -35,47 +35,46 @@ module thomas_table #(
 
   localparam int CompareWidth = RowWidth > SettledWidth ? RowWidth : SettledWidth;
 
-  logic [PositionWidth-1:0] position_q;
-  logic [1:0][RowWidth-1:0] row_q;
+  logic [RowWidth-1:0] row_q;
   logic [AddressWidth-1:0] base, address;
   logic [SettledWidth-1:0] settled;
+  logic signed [CoeffWidth-1:0] inner, inner_q;  // the memory is slow and may be far from the multiplier
   td_rom #(.Width(AddressWidth + SettledWidth), .Depth(Columns), .File({TableFolder, Table, "_index.hex"})) u_index (
-    .clk, .en, .address(position_q), .data({base, settled})
+    .clk, .en, .address(position), .data({base, settled})
   );
 
   always_ff @(posedge clk) begin
     if (en) begin
-      position_q <= position;
-      row_q <= {row_q[0], row};
+      row_q <= row;
       address <= base
-          + (CompareWidth'(row_q[1]) < CompareWidth'(settled) ? AddressWidth'(row_q[1]) : AddressWidth'(settled));
+          + (CompareWidth'(row_q) < CompareWidth'(settled) ? AddressWidth'(row_q) : AddressWidth'(settled));
+      inner_q <= inner;
     end
   end
 
-  logic signed [CoeffWidth-1:0] inner;
   td_rom #(.Width(CoeffWidth), .Depth(Words), .File({TableFolder, Table, ".hex"})) u_inner (
     .clk, .en, .address, .data(inner)
   );
 
   if (HasLastRow) begin : g_last_row
-    logic [1:0][PositionWidth-1:0] last_position;  // behind position_q
-    logic [1:0] last_row;                          // behind row_q
+    logic [2:0][PositionWidth-1:0] last_position;
+    logic [2:0] last_row;  // behind row_q
     logic signed [CoeffWidth-1:0] last;
     logic [LastShiftWidth-1:0] last_shift;
     td_rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Columns), .File({TableFolder, Table, "_last.hex"})) u_last (
-      .clk, .en, .address(last_position[1]), .data({last_shift, last})
+      .clk, .en, .address(last_position[2]), .data({last_shift, last})
     );
     always_ff @(posedge clk) begin
       if (en) begin
-        last_position <= {last_position[0], position_q};
-        last_row <= {last_row[0], row_q[1] == RowWidth'(Rows - 1)};
-        coefficient <= last_row[1] ? last : inner;
-        shift <= last_row[1] ? last_shift : '0;
+        last_position <= {last_position[1:0], position};
+        last_row <= {last_row[1:0], row_q == RowWidth'(Rows - 1)};
+        coefficient <= last_row[2] ? last : inner_q;
+        shift <= last_row[2] ? last_shift : '0;
       end
     end
   end else begin : g_inner_rows
     assign shift = '0;
-    always_ff @(posedge clk) if (en) coefficient <= inner;
+    always_ff @(posedge clk) if (en) coefficient <= inner_q;
   end
 
   if (Columns < 2 || Columns != (1 << $clog2(Columns))) begin : g_refused_0
