@@ -44,15 +44,16 @@ module frame_guard
 
   logic [ColumnWidth-1:0] column;
   logic [RowWidth-1:0] row;
+  position_t place;  // of the pixel that comes, as row and column: in registers, since s_ready depends on it
   logic [31:0] silence;
   logic filling;  // completing a broken frame
   logic hunting;  // dropping up to the next start of frame
 
   logic origin, last_column, frame_end, take, emit;
   logic row_short, row_long, start_missing, start_early, timed_out, fault_in_frame;
-  assign origin = (column == '0) & (row == '0);
-  assign last_column = column == ColumnWidth'(Columns - 1);
-  assign frame_end = last_column & (row == RowWidth'(Rows - 1));
+  assign origin = place.first_column & place.first_row;
+  assign last_column = place.last_column;
+  assign frame_end = last_column & place.last_row;
 
   // A start of frame is taken only where a frame begins; all else is taken at once, as a pixel or to be dropped.
   logic accept;
@@ -77,16 +78,19 @@ module frame_guard
     if (en) begin
       out_valid <= emit;
       if (take) out_data <= s_data;
-      out_position.last_column <= last_column;
-      out_position.last_row <= row == RowWidth'(Rows - 1);
-      out_position.first_column <= column == '0;
-      out_position.first_row <= row == '0;
+      out_position <= place;
       out_frame_start <= take & origin;
       out_frame_end <= emit & frame_end;
       out_bad <= filling | row_long;  // at the end of a frame nothing else can be wrong
       if (emit) begin
         column <= last_column ? '0 : column + ColumnWidth'(1);
-        if (last_column) row <= frame_end ? '0 : row + RowWidth'(1);
+        place.first_column <= last_column;
+        place.last_column <= ~last_column & (column == ColumnWidth'(Columns - 2));
+        if (last_column) begin
+          row <= frame_end ? '0 : row + RowWidth'(1);
+          place.first_row <= frame_end;
+          place.last_row <= ~frame_end & (row == RowWidth'(Rows - 2));
+        end
       end
       silence <= (s_valid | origin | filling) ? '0 : silence + 32'd1;
       filling <= (filling | fault_in_frame) & ~(emit & frame_end);
@@ -100,6 +104,7 @@ module frame_guard
       out_frame_end <= 1'b0;
       column <= '0;
       row <= '0;
+      {place.first_column, place.first_row, place.last_column, place.last_row} <= 4'b1100;
       silence <= '0;
       filling <= 1'b0;
       hunting <= 1'b0;
