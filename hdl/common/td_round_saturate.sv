@@ -22,14 +22,11 @@ module td_round_saturate #(
   logic signed [SumWidth-1:0] sum;
 
   if (Drop > 0) begin : g_round
-    // Just less than half is added, or half where what stays is odd: then a tie goes up. One carry chain.
-    logic [Drop-1:0] half, unused_fraction;
-    if (Drop == 1) begin : g_one
-      assign half = in[1];
-    end else begin : g_many
-      assign half = {in[Drop], {(Drop - 1) {~in[Drop]}}};
-    end
-    assign {sum, unused_fraction} = {in[InWidth-1], in} + {{SumWidth{1'b0}}, half};
+    // Just less than half is added, and a carry where what stays is odd: then a tie goes up. One carry chain, whose
+    // lowest bit makes the carry.
+    localparam logic [Drop-1:0] BelowHalf = {Drop{1'b1}} >> 1;
+    logic [Drop:0] unused_fraction;
+    assign {sum, unused_fraction} = {in[InWidth-1], in, 1'b1} + {{SumWidth{1'b0}}, BelowHalf, in[Drop]};
   end else begin : g_shift
     assign sum = SumWidth'(in) <<< (-Drop);
   end
