@@ -60,11 +60,17 @@ RUNTIME_HEADERS = ("verilated.h", "verilated_dpi.h", "verilated_vpi.h")
 class ClosedVerilator(Verilator):
     """Verilator without --public-flat-rw, which makes every signal visible to Python and is several times slower.
 
-    A .vlt file names the signals that Python needs instead.
+    A .vlt file names the signals that Python needs instead. `program` replaces cocotb's main program.
     """
 
+    program: Path | None = None
+
     def _build_command(self) -> list[list[str]]:
-        return [[word for word in command if word != "--public-flat-rw"] for command in super()._build_command()]
+        def replaced(word: str) -> str:
+            return str(self.program) if self.program and word.endswith("/verilator.cpp") else word
+
+        commands = super()._build_command()
+        return [[replaced(word) for word in command if word != "--public-flat-rw"] for command in commands]
 
 
 def check(simulator: str) -> None:
@@ -96,15 +102,20 @@ def build(
     folder: Path,
     *,
     fast: bool = False,
+    program: Path | None = None,
     waves: bool = False,
     log: Path | None = None,
 ) -> None:
     """Build a testbench, with -Wall; a warning of Verilator is an error.
 
-    With `fast`, Verilator optimises for long runs, and Python sees only what a .vlt file among `files` names.
+    With `fast`, Verilator optimises for long runs, and Python sees only what a .vlt file among `files` names;
+    `program` is then a C++ file in place of cocotb's main program.
     """
     check(simulator)
-    runner: Runner = ClosedVerilator() if simulator == "verilator" and fast else get_runner(simulator)
+    runner: Runner = get_runner(simulator)
+    if simulator == "verilator" and fast:
+        runner = ClosedVerilator()
+        runner.program = program
     arguments = ["-Wall"]
     if simulator == "verilator":
         files = [HDL / "verilator.vlt", *sorted(files, key=lambda file: file.suffix != ".vlt")]  # waivers first

@@ -108,10 +108,11 @@ def build(
     """Return the simulator for a configuration, which is built once for each state of the sources."""
     bench = repository.ROOT / "tb" / BENCH
     sources = [*repository.sources(), bench.with_suffix(".vlt"), bench.with_suffix(".sv")]
+    program = repository.ROOT / "tb" / "frame_main.cpp"
     parameters = top_parameters(config, camera=camera)
     text = wrapper.wrapper("bench", parameters)
     key = hashlib.sha256(json.dumps([simulator, waves, text, simulation.versions()]).encode())
-    for source in (*sources, Path(simulation.__file__)):
+    for source in (*sources, program, Path(simulation.__file__)):
         key.update(source.read_bytes())
 
     def make(folder: Path) -> None:
@@ -122,6 +123,7 @@ def build(
             {**wrapper.grid(parameters), "Camera": parameters["Camera"]},
             folder,
             fast=not waves,
+            program=program,
             waves=waves,
             log=folder / simulation.LOG,
         )
@@ -159,6 +161,7 @@ def play(
         "inputs": {"passes": passes, "total_frames": total_frames, "seed": seed * 2 + 1, "level": level & 0xFFFFFFFF},
         "registers": registers,
         "clocks": clocks,
+        "clocks_itself": simulator == "verilator" and not waves,  # tb/frame_main.cpp
     }
     try:
         count, failed = simulation.run(

@@ -110,24 +110,21 @@ module reference_capture
     gains_valid <= node_ends;
     done <= finished;
     if (gains_valid) divide_node <= divide_node + NodeWidth'(1);
-    if (starts) begin
-      state <= Summing;
-      if (state == Armed) begin
-        log2 <= log2_next;
-        frames_to_come <= (CountWidth'(1) << log2_next) - CountWidth'(1);  // with MaxLog2: all ones
-      end
+    case (state)
+      Armed: if (starts) state <= Summing;
+      Summing: if (ends) state <= in_bad ? Armed : frames_to_come == '0 ? Fetching : Summing;
+      Fetching: if (finished || fetched) state <= finished ? Idle : Dividing;
+      Dividing: if (node_ends) state <= Fetching;
+      default: ;
+    endcase
+    if (starts && state == Armed) begin
+      log2 <= log2_next;
+      frames_to_come <= (CountWidth'(1) << log2_next) - CountWidth'(1);  // with MaxLog2: all ones
     end
-    if (ends) begin
-      frames_to_come <= frames_to_come - CountWidth'(1);
-      if (in_bad) state <= Armed;
-    end
-    if (last || node_ends) begin
-      state <= Fetching;
-      step <= '0;
-    end
+    if (ends) frames_to_come <= frames_to_come - CountWidth'(1);
+    if (last || node_ends) step <= '0;
     if (last) divide_node <= '0;
     if (state == Fetching && fetched) begin
-      state <= Dividing;
       word <= map_read_gains;
       channel <= '0;
       divide_start <= 1'b1;
@@ -137,7 +134,6 @@ module reference_capture
       channel <= channel + 2'd1;
       divide_start <= ~node_ends;
     end
-    if (finished) state <= Idle;
     if (request) begin
       state <= Armed;
       divide_start <= 1'b0;
