@@ -190,6 +190,15 @@ module fv_wide_elimination #(
     end
   end
 
+  // What makes the proof end.
+  wide_elimination_steps #(
+    .Rows(Rows), .Clocks(Clocks), .Words(Words), .Word(Word), .Neumann(Neumann), .TableWords(TableWords), .Width(Width),
+    .CoeffWidth(CoeffWidth), .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentWidth(MomentWidth),
+    .MeanLatency(MeanLatency)
+  ) u_steps (
+    .*, .left(u_protocol.u_bursts.left), .next_row(u_protocol.u_bursts.next_row), .burst_row(u_protocol.u_bursts.row_q)
+  );
+
   bind fv_wide_elimination.dut.u_row_above ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
 
 endmodule

@@ -25,6 +25,8 @@ PROOFS = tuple(
         f"an odd number of rows; {WORD_FREE}",
         {"Rows": rows, "Columns": columns, "InWords": in_words, "OutWords": out_words},
         depth=4 * rows * columns // in_words,
+        engine="smtbmc bitwuzla -- --noincr",
+        steps=2,
     )
     for rows, columns, in_words, out_words in ((3, 8, 2, 4), (4, 8, 2, 4), (4, 16, 2, 2))
 )

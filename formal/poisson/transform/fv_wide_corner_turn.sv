@@ -69,7 +69,15 @@ module fv_wide_corner_turn #(
     end
   end
 
-  bind td_ram ram_check #(.Depth(Depth)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
+  // What makes the proof end.
+  wide_corner_turn_steps #(.Width(Width), .Size(Size), .Paths(Paths)) u_steps (
+    .*, .coming_left(u_timing.u_protocol.left), .active_q(u_timing.active_q), .beat_q(u_timing.beat_q),
+    .picked(pick & active & (~following | watched))
+  );
+
+  bind td_ram ram_check #(.Depth(Depth)) u_check (
+    .clk, .write_en, .write_address, .read_en, .read_address
+  );
 
 endmodule
 

@@ -31,6 +31,8 @@ PROOFS = tuple(
         f"{ONE_ORDER}; {WORD_FREE}",
         {"Size": size, "Paths": paths},
         depth=45,
+        engine="smtbmc bitwuzla -- --noincr",
+        steps=2,
     )
     for size, paths in ((8, 1), (8, 2), (16, 4))
 )
