@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_packet_decode: by its kind and length, a packet is an ask, a select, a request, a picture, a bad one or unknown.
-// Bytes of requests and pictures but the kind leave in the clock in which they come, and are taken there; those of a
-// select are taken at once; of any other packet nothing but the kind is taken. An ask, a select with good fields and
+// A kind is taken in the second clock in which it is offered. Bytes of requests and pictures but the kind leave in the
+// clock in which they come, and are taken there; those of a select are taken at once; of any other packet nothing but
+// the kind is taken. An ask, a select with good fields and
 // one with bad ones are told once, one clock behind the byte that shows it.
 
 `default_nettype none
@@ -55,7 +56,7 @@ module fv_packet_decode (
   end
 
   logic taken, inside_packet, is_request, fields_end, fields_good, was_reset;
-  logic ask_due, select_due, bad_due;
+  logic ask_due, select_due, bad_due, offered;  // offered: a kind, in the clock before, and not taken
   logic [7:0] format_due, shift_due;
   assign taken = in_valid & in_ready;
   assign inside_packet = in_valid & (place != '0);
@@ -65,6 +66,7 @@ module fv_packet_decode (
 
   always_ff @(posedge clk) begin
     was_reset <= rst;
+    offered <= in_valid & (place == '0) & ~in_ready & ~rst;
     if (in_valid && place == '0) kind_q <= begun;
     if (taken && place == 11'd1) format_q <= in_data;
     ask_due <= taken & (kind == IsAsk) & (place == '0);
@@ -90,7 +92,13 @@ module fv_packet_decode (
         unchanged_pixels: assert ({picture_last, picture_data} == {in_last, in_data});
         stalled_pixels: assert (in_ready == picture_ready);
       end
-      if (in_valid && !request_valid && !picture_valid) at_once: assert (in_ready);
+      if (in_valid && place == '0) judged_first: assert (in_ready == offered);
+      as_judged: assert (dut.judged == offered);
+      if (offered && in_valid) begin
+        judged_well: assert ({dut.begins_q, dut.fits_q, dut.wrong_q, dut.asks_q}
+            == {dut.begins, dut.fits, dut.known & ~dut.fits, dut.fits & (dut.begins == 2'd0)});
+      end
+      if (in_valid && place != '0 && kind_q == IsSelect) at_once: assert (in_ready);
       if (in_valid && in_ready) begin
         the_rest: assert (in_drop == (place == '0 && kind inside {Unknown, Wrong, IsAsk}));
       end

@@ -185,12 +185,6 @@ module link_unit #(
     .value_address, .value_data, .record_word, .record_data(frame_record_data), .depth_valid, .depth_ready,
     .depth_data, .depth_last, .sent, .sending
   );
-  logic depth_out_valid, depth_out_ready, depth_out_last;
-  logic [7:0] depth_out_data;
-  td_axis_skid #(.Width(9)) u_depth_slice (
-    .clk, .rst, .s_valid(depth_valid), .s_ready(depth_ready), .s_data({depth_last, depth_data}),
-    .m_valid(depth_out_valid), .m_ready(depth_out_ready), .m_data({depth_out_last, depth_out_data})
-  );
 
   logic record_valid, record_ready, record_last;
   logic [7:0] record_data;
@@ -213,10 +207,21 @@ module link_unit #(
   logic mixed_valid, mixed_ready, mixed_last, packet_out_valid, packet_out_ready, packet_out_last;
   logic checked_valid, checked_ready, checked_last;
   logic [7:0] mixed_data, packet_out_data, checked_data;
+  // Status, reply, record and depth, each through a slice: {last, byte}.
+  logic [3:0] source_ready, valid, ready;
+  logic [3:0][8:0] source_data, data;
+  assign {status_ready, reply_ready, record_ready, depth_ready} = source_ready;
+  assign source_data = {status_last, status_data, reply_last, reply_data, record_last, record_data,
+    depth_last, depth_data};
+  td_axis_skid #(.Width(9)) u_source_slice[3:0] (
+    .clk, .rst, .s_valid({status_valid, reply_valid, record_valid, depth_valid}), .s_ready(source_ready),
+    .s_data(source_data), .m_valid(valid), .m_ready(ready), .m_data(data)
+  );
   packet_mux u_mux (
-    .clk, .rst, .status_valid, .status_ready, .status_data, .status_last, .reply_valid, .reply_ready, .reply_data,
-    .reply_last, .record_valid, .record_ready, .record_data, .record_last, .depth_valid(depth_out_valid),
-    .depth_ready(depth_out_ready), .depth_data(depth_out_data), .depth_last(depth_out_last),
+    .clk, .rst, .status_valid(valid[3]), .status_ready(ready[3]), .status_data(data[3][7:0]), .status_last(data[3][8]),
+    .reply_valid(valid[2]), .reply_ready(ready[2]), .reply_data(data[2][7:0]), .reply_last(data[2][8]),
+    .record_valid(valid[1]), .record_ready(ready[1]), .record_data(data[1][7:0]), .record_last(data[1][8]),
+    .depth_valid(valid[0]), .depth_ready(ready[0]), .depth_data(data[0][7:0]), .depth_last(data[0][8]),
     .out_valid(mixed_valid), .out_ready(mixed_ready), .out_data(mixed_data), .out_last(mixed_last)
   );
   td_axis_skid #(.Width(9)) u_packet_slice (

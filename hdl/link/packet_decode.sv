@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // packet_decode: checks kind, length and fields of packets to the device, and gives each to whom it is for.
 //
-// Packets in as they leave packet_store, good and whole, one after another. An ask gives `ask` and a select gives
-// `select` for one clock, 1 cycle behind its last byte. Reads and writes leave at `request`, pictures at `picture`:
-// their bytes but the kind, under valid and ready, in the cycle in which they come in. A packet of one of these kinds
-// with a wrong length or field gives `bad` for one clock, 1 cycle behind the byte that shows it, and nothing else. A
-// packet of another kind is dropped. Model: unpack in models/tactile_depth/link/packets.py.
+// Packets in as they leave packet_store, good and whole, one after another. A kind is taken in the second cycle in
+// which it is offered, after it was judged. An ask gives `ask` and a select gives `select` for one clock, 1 cycle
+// behind its last byte. Reads and writes leave at `request`, pictures at `picture`: their bytes but the kind, under
+// valid and ready, in the cycle in which they come in. A packet of one of these kinds with a wrong length or field
+// gives `bad` for one clock, 1 cycle behind the byte that shows it, and nothing else. A packet of another kind is
+// dropped. Model: unpack in models/tactile_depth/link/packets.py.
 
 `default_nettype none
 
@@ -47,7 +48,7 @@ module packet_decode
 
   // The byte that comes is a kind, or belongs to a packet of a good kind and length.
   typedef enum logic [1:0] {AtKind, AtSelect, AtRequest, AtPicture} at_t;
-  at_t at, begins;
+  at_t at, begins, begins_q;
 
   // How many bytes the header and from 1 to `most` parts have.
   function automatic logic sized(
@@ -56,7 +57,8 @@ module packet_decode
     return length >= header + part && length <= header + part * most;
   endfunction
 
-  logic known, fits, even, takes, takes_kind, ends_select, good_select;
+  logic known, fits, fits_q, wrong_q, asks_q, judged;  // _q: of the kind that is offered since the cycle before
+  logic even, takes, takes_kind, ends_select, good_select;
   assign even = ~in_length[0];
   always_comb begin
     known = 1'b1;
@@ -87,25 +89,27 @@ module packet_decode
   logic format_good, bad_kind, bad_select;
   assign bad = bad_kind | bad_select;
   assign takes = in_valid & in_ready;
-  assign takes_kind = in_valid & (at == AtKind);
+  assign takes_kind = in_valid & (at == AtKind) & judged;
   assign ends_select = in_valid & (at == AtSelect) & in_last;
   assign good_select = format_good & (in_data <= MostShift);
-  assign in_drop = (at == AtKind) & ~(fits & (begins != AtKind));
-  assign in_ready = (at == AtRequest) ? request_ready : (at == AtPicture) ? picture_ready : 1'b1;
+  assign in_drop = (at == AtKind) & ~(fits_q & (begins_q != AtKind));
+  assign in_ready = (at == AtRequest) ? request_ready : (at == AtPicture) ? picture_ready : (at == AtSelect) | judged;
   assign request_valid = in_valid & (at == AtRequest);
   assign picture_valid = in_valid & (at == AtPicture);
   assign {request_last, request_data} = {in_last, in_data};
   assign {picture_last, picture_data} = {in_last, in_data};
 
   always_ff @(posedge clk) begin
-    bad_kind <= takes_kind & known & ~fits;
+    judged <= in_valid & (at == AtKind) & ~judged;
+    {begins_q, fits_q, wrong_q, asks_q} <= {begins, fits, known & ~fits, fits & (begins == AtKind)};
+    bad_kind <= takes_kind & wrong_q;
     bad_select <= ends_select & ~good_select;
-    ask <= takes_kind & (in_data == Ask) & fits;
+    ask <= takes_kind & asks_q;
     select <= ends_select & good_select;
     select_shift <= in_data[4:0];
     if (takes_kind) begin
       request_write <= in_data == Write;
-      if (fits) at <= begins;
+      if (fits_q) at <= begins_q;
     end else if (takes && in_last) begin
       at <= AtKind;
     end
@@ -119,6 +123,7 @@ module packet_decode
       ask <= 1'b0;
       select <= 1'b0;
       at <= AtKind;
+      judged <= 1'b0;
     end
   end
 

@@ -60,6 +60,7 @@ class Bench:
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.offers, self.request, self.picture = profile(offers), profile(accepts, 1), profile(accepts, 2)
         self.pulse: Event = ()  # due in this clock
+        self.judged = False  # the kind was offered in the clock before
         self.seen: set[str] = set()
 
     async def start(self) -> None:
@@ -94,16 +95,17 @@ class Bench:
                 assert int(getattr(dut, f"{name}_data").value) == word[0], f"{name}_data at byte {place}"
                 assert int(getattr(dut, f"{name}_last").value) == word[1], f"{name}_last at byte {place}"
                 assert name == "picture" or int(dut.request_write.value) == event[1]
+        judged, self.judged = self.judged, word is not None and place == 0 and not self.judged and not reset
         if word is None:
             self.pulse = ()
             return False, reset
-        taken = ready[kind] if kind in ready and place else 1
+        taken = int(judged) if place == 0 else ready.get(kind, 1)
         last = bool(word[1])
         selects = event[0] == "select" if event else False
         drops = place == 0 and not (kind in ("select", *ready) or (kind == "bad" and event[1]))
         assert int(dut.in_ready.value) == taken, f"in_ready at byte {place}"
-        assert int(dut.in_drop.value) == int(drops), f"in_drop at byte {place}"
-        due = drops or (last and (selects or kind == "bad"))
+        assert not taken or int(dut.in_drop.value) == int(drops), f"in_drop at byte {place}"
+        due = taken and (drops or (last and (selects or kind == "bad")))
         self.pulse = event if due and not reset else ()
         return bool(taken), reset
 
