@@ -48,7 +48,7 @@ module protocol_packet_decode (
   assign holds = stays & (~in_valid | consistent);
   assign counts = live;
   assign counts_in_ready = live & in_valid;
-  assign counts_in_drop = live & in_valid & in_ready;
+  assign counts_in_drop = live & in_valid & in_ready & ~rst;
   assign {counts_select_format, counts_select_shift} = {2{live & select}};
   assign {counts_request_data, counts_request_last, counts_request_write} = {3{live & request_valid}};
   assign {counts_picture_data, counts_picture_last} = {2{live & picture_valid}};
