@@ -16,7 +16,7 @@ FRAMES = 4  # in place, the order of rows in the memory flips with every frame
 
 
 async def idle(dut: Any, cycles: int) -> None:
-    """Wait for cycles with en, to an edge with en, as a driver does: in a pause `Bench.clocks` ends one early."""
+    """Wait for as many cycles with en as a driver does, to the last one; `Bench.clocks` ends one early in a pause."""
     for _ in range(cycles):
         await RisingEdge(dut.clk)
         while not dut.en.value:
