@@ -112,9 +112,19 @@ def divide_rom(size: int) -> Callable[[Path], None]:
 
 
 def thomas_roms(
-    rows: int, size: int, words: int, width: int, settled_width: int, shift_width: int, table: str = "thomas"
+    rows: int,
+    size: int,
+    words: int,
+    width: int,
+    settled_width: int,
+    shift_width: int,
+    table: str = "thomas",
+    singular: bool = False,
 ) -> Callable[[Path], None]:
-    """Tables of arbitrary contents for thomas_table.sv; square.hex: {shift, coefficient} for every row and position."""
+    """Tables of arbitrary contents for thomas_table.sv; square.hex: {shift, coefficient} for every row and position.
+
+    `singular`: the last coefficient of position 0 is 0, as it is in every table of a Neumann frame.
+    """
 
     def write(folder: Path) -> None:
         choose = random.Random(1)
@@ -123,6 +133,8 @@ def thomas_roms(
         base = [sum(settled[:position]) + position for position in range(size)]
         inner = [choose.randrange(1 << width) for _ in range(words)]
         last = [choose.randrange(1 << width) for _ in range(size)]
+        if singular:
+            last[0] = 0
         shift = [choose.randrange(1 << shift_width) for _ in range(size)]
         assert base[-1] + settled[-1] < words
         write_words(folder / f"{table}.hex", inner, width)

@@ -136,6 +136,14 @@ module fv_forward_elimination #(
     end
   end
 
+  // What makes the proof end.
+  forward_elimination_steps #(
+    .Rows(Rows), .Columns(Columns), .Neumann(Neumann), .Words(Words), .Width(Width), .CoeffWidth(CoeffWidth),
+    .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentWidth(MomentWidth), .MeanLatency(MeanLatency)
+  ) u_steps (
+    .*, .left(u_protocol.left), .next_row(u_protocol.next_row), .burst_row(u_protocol.row_q)
+  );
+
   bind fv_forward_elimination.dut.u_state_row ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
 
 endmodule
