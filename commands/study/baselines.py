@@ -7,10 +7,12 @@ frames already on it. The method of the tridiagonal solver runs on the CPU too: 
 algorithm by numba down the columns, and on one core in C with SIMD (simd_solver.c), compiled for this machine. The C
 code is timed from the pixels on, too: that is what the pipeline does.
 Every result is checked by tactile_depth.reference before it is timed: WARM_UPS solves, then RUNS that count, or as many
-as the time allows. Each method is timed in its own process, so that no threads of another method run.
+as the time allows. Each method is timed in its own process, pinned to its cores, so that no threads of another method
+run.
 
-Takes GRIDS (64,128,256,512), RUNS, CLOCK_MHZ and OUT as KEY=VALUE arguments. Exit status: 0 done, 1 a result is wrong,
-2 bad input. The row of a method that is not installed says so; `make baselines` installs requirements-baselines.txt.
+Takes GRIDS (64,128,256,512), RUNS, CLOCK_MHZ, MAX_LOAD and OUT as KEY=VALUE arguments. Exit status: 0 done, 1 a result
+is wrong, 2 bad input or a busy machine. The row of a method that is not installed says so; `make baselines` installs
+requirements-baselines.txt.
 """
 
 import gc
@@ -56,6 +58,7 @@ DEFAULT_OUT = repository.ROOT / "build" / "baselines"
 GRIDS = (64, 128, 256, 512)
 SCENE = "bench"
 WARM_UPS, RUNS, FEWEST_RUNS = 100, 1000, 10
+QUIET_LOAD = 0.5  # of other programs, at most, before times are taken
 SECONDS = 480  # for all solves together: if threads or other programs disturb each other, a solve may take 0.1
 # RMS of a result to double precision in % of peak: measured at most 0.00005 (PyTorch's products of matrices at 512).
 TOLERANCE_PERCENT = 0.0001
@@ -139,13 +142,19 @@ def _timed(solve: Solve, inputs: Sequence[Any], wait: Callable[[], None], runs: 
     return times
 
 
+def begin_process(threads: int) -> None:
+    """Let a signal end this process, and pin it to as many cores as it has threads, the last ones."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[-threads:])
+
+
 def in_own_process(job: Job) -> list[dict[str, Any]]:
-    """Run `measure` in its own process, with the threads of the job."""
+    """Run `measure` in its own process, with the threads of the job, each on a core of its own."""
     spawn = multiprocessing.get_context("spawn")
     try:
         with (
             mock.patch.dict(os.environ, dict.fromkeys(THREAD_VARIABLES, str(job.threads))),
-            ProcessPoolExecutor(1, spawn, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_DFL)) as pool,
+            ProcessPoolExecutor(1, spawn, initializer=begin_process, initargs=(job.threads,)) as pool,
         ):
             return pool.submit(measure, job).result()
     except BrokenProcessPool:  # the process ended without a result
@@ -181,12 +190,13 @@ class Request:
     grids: tuple[int, ...]
     runs: int
     clock_mhz: float
+    max_load: float
     out: Path
 
 
 def parse(arguments: Sequence[str]) -> Request:
     """Return the Request of KEY=VALUE arguments. Raises InputError."""
-    values = variables.given(arguments, ("GRIDS", "RUNS", "CLOCK_MHZ", "OUT"))
+    values = variables.given(arguments, ("GRIDS", "RUNS", "CLOCK_MHZ", "MAX_LOAD", "OUT"))
     low, high = COLUMNS["spectral"]
     grids = variables.whole_numbers(values, "GRIDS", GRIDS)
     if not grids or any(not low <= size <= high or size & (size - 1) for size in grids):
@@ -195,6 +205,7 @@ def parse(arguments: Sequence[str]) -> Request:
         grids=tuple(sorted(set(grids))),
         runs=variables.number(values, "RUNS", RUNS, FEWEST_RUNS, 1_000_000),
         clock_mhz=variables.number(values, "CLOCK_MHZ", published.CLOCK_MHZ, 0.001, 10_000, float),
+        max_load=variables.number(values, "MAX_LOAD", QUIET_LOAD, 0, 10_000, float),
         out=Path(values.get("OUT", DEFAULT_OUT)),
     )
 
@@ -413,9 +424,14 @@ def show(document: dict[str, Any]) -> str:
 def run(request: Request) -> None:
     """Measure, print, and write baselines.json and baselines.png, both or none of them.
 
-    Raises InputError, Mismatch or RuntimeError.
+    Raises InputError, Mismatch or RuntimeError; InputError on a busy machine.
     """
     with files.workspace(request.out, RESULTS) as work:
+        if (load := os.getloadavg()[0]) > request.max_load:
+            raise InputError(
+                f"other programs are running: a load of {load:.2g} in the last minute, at most {request.max_load:g} "
+                f"gives times that can be compared: end them, or give MAX_LOAD={math.ceil(load)}"
+            )
         document, rows = measure_all(request)
         print(show(document))
         (work / "baselines.json").write_text(json.dumps(document, indent=1) + "\n")

@@ -14,6 +14,7 @@ from commands.study import baseline_methods, baselines, report
 from commands.study.baseline_methods import METHODS, Method, Prepared
 from commands.study.baselines import WARM_UPS
 from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
 
 
@@ -73,7 +74,8 @@ def test_a_small_run(tmp_path: Path, monkeypatch: Any) -> None:
     absent = Method("absent", METHODS[0].prepare, ("no-such-package",))
     monkeypatch.setattr(baselines, "METHODS", (METHODS[0], absent))
     monkeypatch.setattr(baselines.os, "sched_getaffinity", lambda process: {0})
-    baselines.run(baselines.parse(["GRIDS=16", "RUNS=20", f"OUT={tmp_path}"]))
+    monkeypatch.setattr(baselines.os, "sched_setaffinity", lambda process, cores: None)
+    baselines.run(baselines.parse(["GRIDS=16", "RUNS=20", "MAX_LOAD=10000", f"OUT={tmp_path}"]))
     assert sorted(path.name for path in tmp_path.iterdir()) == ["baselines.json", "baselines.png"]
     document = json.loads((tmp_path / "baselines.json").read_text())
     timed, missing = document["software"]
@@ -88,6 +90,23 @@ def test_a_small_run(tmp_path: Path, monkeypatch: Any) -> None:
     section = report.baselines_figure(report.document_of(baselines, "baselines")).section()
     assert "data:image/png" in section
     assert "no-such-package not installed" in section
+
+
+def test_a_busy_machine_gives_no_times(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(baselines.os, "getloadavg", lambda: (1.23, 0.0, 0.0))
+    with pytest.raises(InputError, match=r"a load of 1\.2 .* MAX_LOAD=2"):
+        baselines.run(baselines.parse([f"OUT={tmp_path}"]))
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_process_is_pinned_to_its_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    pinned: list[list[int]] = []
+    monkeypatch.setattr(baselines.os, "sched_getaffinity", lambda process: {0, 1, 5})
+    monkeypatch.setattr(baselines.os, "sched_setaffinity", lambda process, cores: pinned.append(cores))
+    monkeypatch.setattr(baselines.signal, "signal", lambda *_: None)
+    for threads in (1, 2):
+        baselines.begin_process(threads)
+    assert pinned == [[5], [1, 5]]
 
 
 def test_the_report_runs_what_has_not_been_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
