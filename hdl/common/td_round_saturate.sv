@@ -24,7 +24,7 @@ module td_round_saturate #(
   if (Drop > 0) begin : g_round
     // Just less than half is added, and a carry where what stays is odd: then a tie goes up. One carry chain, whose
     // lowest bit makes the carry.
-    localparam logic [Drop-1:0] BelowHalf = {Drop{1'b1}} >> 1;
+    localparam logic [Drop-1:0] BelowHalf = Drop'({1'b0, {Drop{1'b1}}} >> 1);
     logic [Drop:0] unused_fraction;
     assign {sum, unused_fraction} = {in[InWidth-1], in, 1'b1} + {{SumWidth{1'b0}}, BelowHalf, in[Drop]};
   end else begin : g_shift

@@ -111,6 +111,7 @@ module reference_capture
     done <= finished;
     if (gains_valid) divide_node <= divide_node + NodeWidth'(1);
     case (state)
+      Idle: ;
       Armed: if (starts) state <= Summing;
       Summing: if (ends) state <= in_bad ? Armed : frames_to_come == '0 ? Fetching : Summing;
       Fetching: if (finished || fetched) state <= finished ? Idle : Dividing;
