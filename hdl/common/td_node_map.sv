@@ -109,9 +109,8 @@ module td_node_map
   logic table_write, table_read;
   logic [NodeWidth+EntryLog2-1:0] table_index;
   logic [Width-1:0] table_word;
-  logic [EntryLog2:0] entry;
   logic [Side*Channels-1:0][Tables-1:0] in_use;
-  assign entry = (EntryLog2 + 1)'(table_index) & (EntryLog2 + 1)'($unsigned((1 << EntryLog2) - 1));
+  wire [EntryLog2:0] entry = (EntryLog2 + 1)'(table_index) & (EntryLog2 + 1)'($unsigned((1 << EntryLog2) - 1));
   assign table_node = NodeWidth'(table_index >> EntryLog2);
   assign table_in_use = &in_use;  // they change over together
   td_table_port #(
