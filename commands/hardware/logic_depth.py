@@ -7,7 +7,7 @@ from pathlib import Path
 FILE = "depth.txt"
 NOTE = (
     "Logic depth: 7-series cells in a row, of a core by itself and of the whole flattened; no wires, no times of "
-    "registers, and none of memories of LUTs, which Yosys does not have. A routed path is two to three times as long."
+    "registers, and none of memories of LUTs, which Yosys does not have."
 )
 # Appended to a mapping to 7-series logic. Yosys reads the times of the cells anew: the mapping leaves them without.
 COMMANDS = (
