@@ -77,8 +77,7 @@ int main(int argc, char** argv) {
     }
     if (top.go && !top.done && !level && half_period != kNever) {
       Play(top, half_period);
-      CallValueCallbacks();
-      VerilatedVpi::callCbs(cbReadWriteSynch);
+      Settle(top);
     }
     const uint64_t next = VerilatedVpi::cbNextDeadline();
     if (next == kNever) break;
