@@ -30,7 +30,7 @@ from tqdm import tqdm
 from commands.common import published, repository, run_request, variables
 from commands.common.markdown import table
 from commands.common.signals import threads
-from commands.hardware import logic_depth, synthesis, yosys
+from commands.hardware import synthesis, yosys
 from commands.hardware.fpga_memory import BLOCKS_PER_ULTRA, TOP, Memory, memories, path_of
 from tactile_depth import files
 from tactile_depth.camera_configuration import CameraConfiguration
@@ -100,7 +100,6 @@ NOTES = (
     "Registers beside multipliers are packed as a 7-series DSP takes them, the closest that Yosys knows.",
     "UltraRAM, BRAM36: the plain rule, 4,096 x 72 bits and the widths of a block RAM; 'mapped' is Yosys, which packs "
     "several words into a row of an UltraRAM where Vivado does not.",
-    logic_depth.NOTE,
     "No clock: nothing is placed or routed. constraints/xczu7ev_ooc.tcl does that with Vivado.",
 )
 
@@ -112,7 +111,6 @@ class Core:
     name: str
     path: str
     counts: dict[str, float]
-    depth_ns: float | None  # of its logic; None: between the cores, where it has no meaning
 
 
 @dataclass(frozen=True)
@@ -214,8 +212,8 @@ def logic_counts(cells: Counter[str], modules: Sequence[str]) -> dict[str, float
 
 def mapped(
     lines: Sequence[str], cores: Sequence[str], boxes: Sequence[str], folder: Path, label: str
-) -> tuple[dict[str, Counter[str]], dict[str, Counter[str]], dict[str, float]]:
-    """Return the cells of each module in the two mappings, which run at the same time, and its logic depth in ns.
+) -> tuple[dict[str, Counter[str]], dict[str, Counter[str]]]:
+    """Return the cells of each module in the two mappings, which run at the same time.
 
     The mapping to logic leaves out the modules `boxes`. Raises RuntimeError.
     """
@@ -225,8 +223,7 @@ def mapped(
     scripts = []
     for name, commands in steps.items():
         script = folder / f"{name}.ys"
-        after = logic_depth.COMMANDS if name == "logic" else ()
-        script.write_text("\n".join([*lines, *keep, *commands, f"tee -q -o {name}.json stat -json", *after]) + "\n")
+        script.write_text("\n".join([*lines, *keep, *commands, f"tee -q -o {name}.json stat -json"]) + "\n")
         scripts.append(script)
     with threads(len(scripts)) as pool:
         runs = [pool.submit(yosys.run, script) for script in scripts]
@@ -235,7 +232,7 @@ def mapped(
     if faults:
         raise RuntimeError("; ".join(faults))
     device, logic = (tally(folder / f"{name}.json") for name in steps)
-    return device, logic, logic_depth.depths(folder)
+    return device, logic
 
 
 def misfit(totals: Mapping[str, float], target: Target) -> str:
@@ -263,10 +260,10 @@ def camera_unit(
     """Return the resources of a camera_unit, and its memories. Raises RuntimeError."""
     lines, modules = elaborate(config, calibration, folder, camera)
     arrays = memories(folder / "design.json")
-    device, logic, depths = mapped(lines, [], [], folder, CAMERA_UNIT)
+    device, logic = mapped(lines, [], [], folder, CAMERA_UNIT)
     counts = counted(device[CAMERA_UNIT], logic[CAMERA_UNIT], modules, arrays)
     named = [replace(memory, path=f"{CAMERA_PATH}.{memory.path}") for memory in arrays]
-    return Core(CAMERA_UNIT, CAMERA_PATH, counts, depths[CAMERA_UNIT]), named
+    return Core(CAMERA_UNIT, CAMERA_PATH, counts), named
 
 
 def synthesize(
@@ -289,14 +286,13 @@ def synthesize(
         return design(plain, [])
     boxes = [m for m in modules if any(path_of(m) == memory.path and memory.style == "ultra" for memory in arrays)]
     label = f"{config.solver} {config.rows}x{config.columns}"
-    device, logic, depths = mapped(lines, cores, boxes, folder, label)
+    device, logic = mapped(lines, cores, boxes, folder, label)
     listed = []
     for module in (*cores, TOP):
         path = path_of(module)
         inside = [memory for memory in arrays if memory.path.startswith(f"{path}.")] if path else []
         counts = counted(device[module], logic[module], modules, inside)
-        depth = depths.get(module, 0.0) if path else None
-        listed.append(Core(module.partition("$")[0], path, counts, depth))
+        listed.append(Core(module.partition("$")[0], path, counts))
     if camera is not None:
         core, camera_arrays = camera_unit(config, calibration, camera, folder / CAMERA_UNIT)
         listed.append(core)
@@ -305,26 +301,17 @@ def synthesize(
         details["memory in UltraRAM"] = stores
     totals = {name: sum(core.counts[name] for core in listed) for name in listed[0].counts}
     details |= {name: totals.pop(name) for name in list(totals) if name not in RESOURCES}
-    details["logic depth, ns"] = depths[TOP]
     return design(totals, sorted(listed, key=lambda core: -core.counts["LUT"]))
 
 
 def text(design: Design, target: Target) -> str:
     """Return the printed report of one design."""
-
-    def row(name: str, counts: Mapping[str, float], depth_ns: float | None) -> list[str]:
-        depth = "-" if depth_ns is None else f"{depth_ns:.1f}"
-        return [name, *(f"{counts[resource]:,g}" for resource in RESOURCES), depth]
-
-    by_core = [
-        row(
-            f"{core.name} ({core.path.removeprefix(f'{SOLVER}.')})" if core.path else "between the cores",
-            core.counts,
-            core.depth_ns,
-        )
+    cores = {
+        f"{core.name} ({core.path.removeprefix(f'{SOLVER}.')})" if core.path else "between the cores": core.counts
         for core in sorted(design.cores, key=lambda core: not core.path)
-    ]
-    by_core.append(row("sum, and the whole", design.totals, design.details["logic depth, ns"]))
+    }
+    rows = [*cores.items(), ("sum", design.totals)]
+    by_core = [[name, *(f"{counts[resource]:,g}" for resource in RESOURCES)] for name, counts in rows]
     by_memory = [
         [memory.path, f"{memory.depth:,}", str(memory.width), f"{memory.style or '-'}{', ROM' if memory.rom else ''}"]
         + [f"{count:,g}" for count in memory.plain().values()]
@@ -334,7 +321,7 @@ def text(design: Design, target: Target) -> str:
     use = ", ".join(f"{name} {100 * design.totals[name] / target.has[name]:.1f} %" for name in RESOURCES)
     return "\n".join(
         [
-            table(("core", *RESOURCES, "logic depth, ns"), by_core),
+            table(("core", *RESOURCES), by_core),
             "",
             table(("memory", "words", "bits", "style", "UltraRAM", "BRAM36"), by_memory),
             "",

@@ -63,27 +63,11 @@ def test_a_multiplication_of_27_by_18_bits_is_one_dsp_with_its_registers(tmp_pat
         f"hierarchy -top {synth.TOP}",
         "proc",
     ]
-    device, logic, _ = synth.mapped(lines, [], [], tmp_path, "")
+    device, logic = synth.mapped(lines, [], [], tmp_path, "")
     assert synth.device_counts(device[synth.TOP])["DSP48E2"] == 2
     assert logic[synth.TOP]["DSP48E1"] == 2
     counts = synth.logic_counts(logic[synth.TOP], [])
     assert (counts["LUT"], counts["FF"]) == (0, 0)
-
-
-def test_logic_depth_counts_the_cells_of_the_longest_path(tmp_path: Path) -> None:
-    def depth(inputs: int, of: str) -> float:
-        folder = tmp_path / f"{inputs}"
-        folder.mkdir()
-        text = (
-            f"module {synth.TOP}(input clk, input [{inputs - 1}:0] a, output reg y); always @(posedge clk) y <= {of}; "
-        )
-        (folder / "top.sv").write_text(text + "endmodule\n")
-        lines = [f"read_slang --threads 1 --top {synth.TOP} top.sv", f"hierarchy -top {synth.TOP}", "proc"]
-        _, _, depths = synth.mapped(lines, [], [], folder, "")
-        return depths[synth.TOP]
-
-    one, two, three = depth(6, "&a"), depth(36, "&a"), depth(216, "&a")
-    assert 0 < one < two < three < 4 * one
 
 
 @pytest.mark.parametrize(
