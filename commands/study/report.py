@@ -24,6 +24,7 @@ from commands.common.repository import ROOT
 from commands.hardware import asic, synth
 from commands.run import reflex, reflex_tables, sim
 from commands.study import baselines, extremes, sweep, transform_noise
+from commands.study.rows import Row
 from tactile_depth import files, reference
 from tactile_depth.accuracy import WORST
 from tactile_depth.built_in import synthetic
@@ -207,14 +208,14 @@ def error_figure(runs: dict[str, Run], folder: Path) -> Figure:
 
 
 def curve(
-    rows: Sequence[sweep.Row], choices: sweep.Choices, varied: str, measured: str = "rms_percent_mean"
+    rows: Sequence[Row], choices: sweep.Choices, varied: str, measured: str = "rms_percent_mean"
 ) -> tuple[list[int], list[float]]:
     """Return the widths that vary and an error at each, of the rows that are otherwise `choices`."""
     chosen = sorted(sweep.like(rows, choices, varied), key=lambda row: int(row[varied]))
     return [int(row[varied]) for row in chosen], [float(row[measured]) for row in chosen]
 
 
-def word_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
+def word_figure(rows: Sequence[Row], folder: Path) -> Figure:
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4), layout="constrained", sharey=True)
     default = Configuration()
     for solver in COLUMNS:
@@ -240,7 +241,7 @@ def word_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
     return Figure("words", "Word lengths", text, "make sweep", picture(figure, folder, "words"))
 
 
-def front_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
+def front_figure(rows: Sequence[Row], folder: Path) -> Figure:
     figure, axes = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained", sharey=True)
     columns = (
         ("first_depth_cycles", "cycles, first pixel to first depth", 1.0, FIRST_DEPTH_CYCLES[SIZE]),

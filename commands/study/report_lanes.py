@@ -16,6 +16,7 @@ from commands.common.published import CLOCK_MHZ
 from commands.common.repository import ROOT
 from commands.study import sweep
 from commands.study.report_page import Figure, picture, results, table
+from commands.study.rows import Row
 from tactile_depth.configuration import Configuration
 
 HEAD = (
@@ -25,7 +26,7 @@ HEAD = (
 )
 
 
-def cells(row: sweep.Row, designs: Sequence[dict[str, Any]], routed: Sequence[dict[str, Any]]) -> tuple[str, ...]:
+def cells(row: Row, designs: Sequence[dict[str, Any]], routed: Sequence[dict[str, Any]]) -> tuple[str, ...]:
     """Return a line of the table; "-" where a flow has not run on this configuration."""
     columns, lanes = int(row["columns"]), int(row["lanes"])
     wanted = run_request.described(Configuration(columns=columns, solver="tridiagonal", lanes=lanes))
@@ -41,7 +42,7 @@ def cells(row: sweep.Row, designs: Sequence[dict[str, Any]], routed: Sequence[di
     )
 
 
-def lanes_figure(rows: Sequence[sweep.Row], folder: Path, build: Path = ROOT / "build") -> Figure:
+def lanes_figure(rows: Sequence[Row], folder: Path, build: Path = ROOT / "build") -> Figure:
     """Plot the whole map's latency against multipliers and memory, a point for each number of lanes."""
     figure, axes = plt.subplots(1, 2, figsize=(11, 4), layout="constrained", sharey=True)
     designs = [design for document in results("synth", build) for design in document["designs"]]

@@ -6,24 +6,22 @@ sweep continues where it stopped. Exit status: 0 complete, 2 bad input, 130 inte
 """
 
 import contextlib
-import csv
-import fcntl
-import io
 import logging
 import os
 import re
 import sys
 import zipfile
 from collections.abc import Generator, Iterator, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import joblib
-from tqdm import tqdm
 
 from commands.common import published, variables
 from commands.common.markdown import table
 from commands.common.repository import ROOT
+from commands.study.rows import Row, Table, Wanted
 from tactile_depth import accuracy, files
 from tactile_depth.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
 from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration, most_lanes
@@ -33,12 +31,10 @@ DEFAULT_OUT = ROOT / "build" / "sweep"
 GRIDS = (32, 64, 128, 256, 512)
 LANE_GRIDS = (128, 256)  # on both the tridiagonal solver can have the most lanes
 ACCEPTED = ("OUT", "DASK_SCHEDULER")
-HEADER = (*CONFIGURATION, *MEASURED)
+TABLE = Table("sweep", CONFIGURATION, MEASURED, VERSION)
 CONNECT_S, WORKERS_S = 10, 60  # wait for a cluster, and for its first worker
 
 Choices = dict[str, Any]
-Key = tuple[str, ...]
-Row = dict[str, str]
 
 
 def plan() -> list[Choices]:
@@ -74,73 +70,6 @@ def lane_counts(columns: int) -> list[int]:
 def pixels(choices: Choices) -> int:
     """Return the pixels of a frame; the time of a configuration grows with them."""
     return int(choices.get("columns", Configuration().columns)) ** 2
-
-
-def key(choices: Choices) -> Key:
-    return tuple(configuration_cells(choices).values())
-
-
-# The file. Its header and its rows are only ever appended.
-
-
-def kept(path: Path, content: bytes) -> tuple[dict[Key, Row], int]:
-    """Return the rows of an earlier run and the length of the complete lines; a last line without an end is incomplete.
-
-    Raises InputError: the rows are not of these columns and these models.
-    """
-    mend = "move it away, or give another folder with OUT="
-    complete = content[: content.rfind(b"\n") + 1]
-    if not complete and _line(HEADER).startswith(content):
-        return {}, 0
-    try:
-        lines = [*csv.reader(io.StringIO(complete.decode()), strict=True)]
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{path}: not a readable table ({error}): {mend}") from error
-    if lines[:1] != [list(HEADER)]:
-        raise InputError(f"{path}: its columns are not those of this version: {mend}")
-    rows = {}
-    for number, cells in enumerate(lines[1:], start=2):
-        if len(cells) != len(HEADER):
-            raise InputError(f"{path}: line {number} has {len(cells)} cells in place of {len(HEADER)}: {mend}")
-        row = dict(zip(HEADER, cells, strict=True))
-        if row["models"] != VERSION:
-            raise InputError(f"{path}: line {number} was measured with another version of the models: {mend}")
-        rows[tuple(row[name] for name in CONFIGURATION)] = row
-    return rows, len(complete)
-
-
-def _line(cells: tuple[str, ...]) -> bytes:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerow(cells)
-    return text.getvalue().encode()
-
-
-def _append(file: BinaryIO, cells: tuple[str, ...]) -> None:
-    """Write a line to the disk."""
-    file.write(_line(cells))
-    file.flush()
-    os.fsync(file.fileno())
-
-
-@contextlib.contextmanager
-def opened(folder: Path) -> Iterator[tuple[BinaryIO, dict[Key, Row]]]:
-    """Yield the table in a folder, open to append, and its rows; one sweep at a time. Raises InputError."""
-    path = folder / "sweep.csv"
-    files.make(folder, [path.name])
-    file = path.open("a+b")
-    with file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            raise InputError(f"{path}: another sweep is writing it: wait for it, or give another OUT=") from error
-        file.seek(0)
-        content = file.read()
-        rows, length = kept(path, content)
-        if length < len(content):  # removes a line that a crash cut off
-            file.truncate(length)
-        if not length:
-            _append(file, HEADER)
-        yield file, rows
 
 
 def on_all_cores(rows: list[Choices]) -> Generator[Row]:
@@ -208,23 +137,9 @@ def sweep(rows: list[Choices], folder: Path, scheduler: str | None = None) -> li
 
     Raises InputError or RuntimeError; rows measured before are kept.
     """
-    with contextlib.ExitStack() as stack:
-        client = stack.enter_context(cluster(scheduler)) if scheduler else None
-        file, done = stack.enter_context(opened(folder))
-        left = [choices for choices in rows if key(choices) not in done]
-        if len(left) < len(rows):
-            print(f"{len(rows) - len(left)} of {len(rows)} rows are there already: {os.path.relpath(file.name)}")
-        work = {key(choices): pixels(choices) for choices in left}
-        shape = "{percentage:3.0f}%|{bar}| {postfix} [{elapsed} < {remaining}]"
-        bar = stack.enter_context(tqdm(total=sum(work.values()), bar_format=shape, leave=False, disable=None))
-        measured = on_cluster(client, left) if client else on_all_cores(left)
-        for count, row in enumerate(stack.enter_context(contextlib.closing(measured)), start=1):
-            _append(file, tuple(row[name] for name in HEADER))
-            name = tuple(row[name] for name in CONFIGURATION)
-            done[name] = row
-            bar.set_postfix_str(f"{count} of {len(left)} rows", refresh=False)
-            bar.update(work[name])
-    return [done[key(choices)] for choices in rows]
+    with cluster(scheduler) if scheduler else contextlib.nullcontext() as client:
+        wanted = [Wanted(configuration_cells(choices), choices, pixels(choices)) for choices in rows]
+        return TABLE.complete(wanted, folder, partial(on_cluster, client) if client else on_all_cores)
 
 
 def like(rows: Sequence[Row], choices: Choices, *varied: str) -> list[Row]:

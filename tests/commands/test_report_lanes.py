@@ -6,12 +6,13 @@ from pathlib import Path
 
 from commands.common import run_request
 from commands.study import report_lanes, sweep
+from commands.study.rows import Row
 from tactile_depth.configuration import Configuration
 from tactile_depth.cost import cost
 from tactile_depth.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
 
 
-def row(columns: int, lanes: int) -> sweep.Row:
+def row(columns: int, lanes: int) -> Row:
     """Return what the section reads of a row of the sweep."""
     config = Configuration(columns=columns, solver="tridiagonal", lanes=lanes)
     return sweep.configuration_cells({"solver": "tridiagonal", "columns": columns, "lanes": lanes}) | {

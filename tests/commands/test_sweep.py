@@ -20,6 +20,7 @@ import pytest
 from commands.common import published, repository, run_request
 from commands.run import sim
 from commands.study import sweep
+from commands.study.rows import line
 from tactile_depth import accuracy
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.cost import cost
@@ -65,7 +66,7 @@ def test_lanes_from_2_on_change_the_cost_and_the_latency_alone() -> None:
     config = Configuration(columns=32, solver="tridiagonal", lanes=2)
     assert int(two["last_pixel_to_last_depth_cycles"]) == last_pixel_to_last_depth(config)
     assert int(two["multipliers"]) == cost(config).tiles > int(one["multipliers"])
-    same = [name for name in sweep.HEADER if name.startswith(("rms_", "max_", "true_", "sat"))]
+    same = [name for name in sweep.TABLE.header if name.startswith(("rms_", "max_", "true_", "sat"))]
     assert [four[name] for name in same] == [two[name] for name in same]
     assert float(two["rms_percent_mean"]) < 1.05 * float(one["rms_percent_mean"])
     assert "32 x 32" not in sweep.summary([one, two])
@@ -86,7 +87,7 @@ def test_a_range_that_nothing_leaves() -> None:
 def test_a_row_holds_what_was_measured() -> None:
     row = accuracy.measure({"columns": 32, "solver": "tridiagonal", "data_width": 20})
     config = Configuration(columns=32, solver="tridiagonal", data_width=20)
-    assert list(row) == list(sweep.HEADER)
+    assert list(row) == list(sweep.TABLE.header)
     assert row["problem"] == ""
     assert int(row["frames"]) == 15
     assert 0 < float(row["rms_percent_mean"]) < float(row["rms_percent_worst"]) < float(row["max_percent_worst"]) < 1
@@ -209,8 +210,8 @@ def test_an_interrupted_sweep_goes_on(tmp_path: Any, moment: Any) -> None:
     assert before.count(b"\n") < 1 + len(rows), "it was too quick to be interrupted"
     subprocess.run(command, cwd=repository.ROOT, env=environment, check=True, capture_output=True)
     assert path.read_bytes().startswith(before[: before.rfind(b"\n") + 1])
-    names = [tuple(row[name] for name in sweep.CONFIGURATION) for row in table(tmp_path)]
-    assert sorted(names) == sorted(sweep.key(choices) for choices in rows)
+    names = [tuple(row[name] for name in sweep.TABLE.configuration) for row in table(tmp_path)]
+    assert sorted(names) == sorted(sweep.TABLE.key(sweep.configuration_cells(choices)) for choices in rows)
 
 
 def free_port() -> int:
@@ -265,7 +266,7 @@ def test_the_cluster_of_the_page_measures_the_same(
 def _table(folder: Path, change: Any) -> str:
     folder.mkdir()
     row = accuracy.measure(SMALL[0])
-    (folder / "sweep.csv").write_bytes(change(sweep._line(sweep.HEADER) + sweep._line(tuple(row.values()))))
+    (folder / "sweep.csv").write_bytes(change(line(sweep.TABLE.header) + line(tuple(row.values()))))
     return f"OUT={folder}"
 
 
