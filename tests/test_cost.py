@@ -12,7 +12,8 @@ from commands.common import repository
 from commands.hardware import yosys
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
-from tactile_depth.cost import CORES, KINDS, Multiplier, cost
+from tactile_depth.cost import CORES, KINDS, cost
+from tactile_depth.devices import XCZU7EV
 from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
 from tactile_depth.tactile_depth import hdl_parameters, write_roms
 
@@ -154,4 +155,4 @@ def test_formulas_of_the_readme(size: int) -> None:
     ],
 )
 def test_wide_products_take_several_multipliers(a: Any, b: Any, tiles: Any) -> None:
-    assert Multiplier(a, b).tiles == tiles
+    assert XCZU7EV.multipliers(a, b) == tiles

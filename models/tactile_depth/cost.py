@@ -1,36 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Counts multipliers, memory bits and latency of a configuration, from the parameters of the RTL.
-
-Memories are those in td_ram.sv and td_rom.sv. Registers are not counted, nor are delays of up to LONGEST_SHIFT,
-which are registers. A test elaborates the RTL and compares the counts.
-"""
+"""Multipliers, memories, LUTs, power and latency of a configuration, on two devices."""
 
 from __future__ import annotations
 
-import math
 from collections import Counter
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 
-from tactile_depth.common import td_node_map
-from tactile_depth.configuration import (
-    COLOUR_COEFFICIENT,
-    CORRECTION_WIDTH,
-    DEVIATION,
-    GUARD_BITS,
-    LIGHT_GAIN,
-    POLYNOMIAL,
-    RATIO,
-    Configuration,
-)
-from tactile_depth.depth.zero_capture import LARGEST_LOG2
+from tactile_depth.configuration import Configuration
+from tactile_depth.devices import ECP5, XCZU7EV, Device
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
-from tactile_depth.poisson.transform import wide_corner_turn
-from tactile_depth.poisson.transform.sdf_fft import stages
-from tactile_depth.poisson.transform.wide_dst_inverse import latency as wide_inverse_latency
-from tactile_depth.poisson.transform.wide_fft import constant_paths
-from tactile_depth.sensor import CUBIC
+from tactile_depth.luts import luts
+from tactile_depth.parts import Memory, Multiplier, parts
 from tactile_depth.tactile_depth import top_parameters
+
+__all__ = ["CORES", "ECP5", "KINDS", "XCZU7EV", "Cost", "cost"]
 
 KINDS = ("frame stores", "delay lines", "tables", "row buffers")
 CORES = (  # that have multipliers or memories, in the order of the data
@@ -40,46 +25,16 @@ CORES = (  # that have multipliers or memories, in the order of the data
     *("wide_rows", "wide_dst_forward", "wide_elimination", "wide_stack", "wide_substitution", "wide_dst_inverse"),
     *("zero_offset", "zero_capture", "contact_events"),
 )
-LONGEST_SHIFT = 4  # delays up to this are registers, hdl/common/td_delay_line.sv
-LOOP = 4  # clocks of wide_substitution.sv from a word to the product with it and back
-PIXEL_MARKS = 1 + 4  # dark, and the position: they travel with a pixel through td_node_map
-DEPTH_MARKS = 3  # the position: it travels with a depth
 
-# A DSP48E2 multiplies 27 by 18 bits, signed. The low parts of a wider operand are unsigned and hold one bit less.
-PORTS = (27, 18)
-
-
-@dataclass(frozen=True)
-class Multiplier:
-    """A signed product of `a` by `b` bits, in a core of hdl/."""
-
-    a: int
-    b: int
-    core: str = ""
-
-    @property
-    def tiles(self) -> int:
-        """Number of multipliers of 27 x 18 bits, with the operand on the wide port that gives fewer."""
-
-        def parts(width: int, port: int) -> int:
-            return 1 + max(0, -(-(width - port) // (port - 1)))
-
-        wide, narrow = PORTS
-        return min(parts(self.a, wide) * parts(self.b, narrow), parts(self.b, wide) * parts(self.a, narrow))
-
-
-@dataclass(frozen=True)
-class Memory:
-    """A memory of `words` words of `width` bits, in a core of hdl/."""
-
-    kind: str
-    width: int
-    words: int
-    core: str
-
-    @property
-    def bits(self) -> int:
-        return self.width * self.words
+CLOCK_MHZ = 166.0  # of the power
+SMALLEST_MACRO = 1024  # bits; smaller memories are part of the logic
+BIT_PJ = 5.3 / 64
+"""Energy of reading or writing a bit, commands/hardware/memory_model.py."""
+PRODUCT_UW, LUT_UW = 3.86, 3.31
+"""Power of the logic for each bit of a product (bits of one operand times bits of the other) and for each LUT of the
+XCZU7EV. The first is multipliers' part of the power: 674 of 1,050 mW at 0.18 um (docs/hardware.md). Both are then
+scaled to the two figures at 45 nm, 89.5 and 181.5 mW of logic with 128 x 128, tridiagonal and spectral, which they
+meet within 6 %."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +49,8 @@ class Cost:
         Cycles from the first and from the last pixel of a frame to its first depth.
     map_cycles : int
         Cycles from the last pixel of a frame to its last depth.
+    parameters : mapping
+        Numbers of the RTL, as `top_parameters` returns them.
     """
 
     multipliers: list[Multiplier]
@@ -101,11 +58,44 @@ class Cost:
     first_depth_cycles: int
     last_pixel_cycles: int
     map_cycles: int
+    parameters: Mapping[str, int]
 
     @cached_property
     def tiles(self) -> int:
         """Number of multipliers of 27 x 18 bits."""
-        return sum(multiplier.tiles for multiplier in self.multipliers)
+        return self.multipliers_of(XCZU7EV)
+
+    def multipliers_of(self, device: Device) -> int:
+        """Return the number of multipliers of a device."""
+        return sum(device.multipliers(multiplier.a, multiplier.b) for multiplier in self.multipliers)
+
+    def blocks_of(self, device: Device) -> float:
+        """Return the number of block memories of a device, in halves of a BRAM36, beside its UltraRAMs."""
+        return sum(self._memories_of(device, "block"))
+
+    def ultras_of(self, device: Device) -> float:
+        """Return the number of UltraRAMs of a device."""
+        return sum(self._memories_of(device, "ultra"))
+
+    def _memories_of(self, device: Device, kind: str) -> list[float]:
+        return [device.memories(each.words, each.width, each.style, each.rom)[kind] for each in self.memories]
+
+    def luts_of(self, device: Device) -> int:
+        """Return the number of LUTs of a device, within the error that docs/hardware.md states."""
+        return round(sum(luts(self.parameters, device).values()))
+
+    @cached_property
+    def power_mw(self) -> float:
+        """Power at 45 nm and 166 MHz, without wires and clock tree, in mW; see LOGIC_UW."""
+        product_bits = sum(multiplier.a * multiplier.b for multiplier in self.multipliers)
+        logic_uw = PRODUCT_UW * product_bits + LUT_UW * self.luts_of(XCZU7EV)
+        return (logic_uw + BIT_PJ * CLOCK_MHZ * self.accessed_bits) / 1e3
+
+    @cached_property
+    def accessed_bits(self) -> float:
+        """Bits that memories of more than a kilobit read and write per clock; of two banks of a table one is read."""
+        large = [memory for memory in self.memories if memory.bits > SMALLEST_MACRO]
+        return sum(memory.width * (1 if memory.rom else 0.5 if memory.banked else 2) for memory in large)
 
     @cached_property
     def memory_bits(self) -> int:
@@ -118,7 +108,7 @@ class Cost:
         """Return multipliers of 27 x 18 bits and memory bits of each core, in the order of the data."""
         tiles, bits = Counter[str](), Counter[str]()
         for multiplier in self.multipliers:
-            tiles[multiplier.core] += multiplier.tiles
+            tiles[multiplier.core] += XCZU7EV.multipliers(multiplier.a, multiplier.b)
         for memory in self.memories:
             bits[memory.core] += memory.bits
         return {core: (tiles[core], bits[core]) for core in CORES if core in tiles or core in bits}
@@ -126,223 +116,13 @@ class Cost:
 
 def cost(config: Configuration) -> Cost:
     """Count the multipliers and memories in the RTL of a configuration."""
-    parts = _pipeline(top_parameters(config))
+    parameters = top_parameters(config)
+    found = parts(parameters)
     return Cost(
-        [part for part in parts if isinstance(part, Multiplier)],
-        [part for part in parts if isinstance(part, Memory)],
+        [part for part in found if isinstance(part, Multiplier)],
+        [part for part in found if isinstance(part, Memory)],
         first_depth_latency(config),
         last_pixel_to_first_depth(config),
         last_pixel_to_last_depth(config),
+        parameters,
     )
-
-
-Parts = list[Multiplier | Memory]
-
-
-def _pipeline(p: dict[str, int]) -> Parts:
-    """Count the parts of hdl/tactile_depth.sv."""
-    size, slope, data = p["Columns"], p["GradientWidth"], p["DataWidth"]
-    solver = _spectral if not p["Tridiagonal"] else _tridiagonal if p["Lanes"] == 1 else _wide
-    reorder = [Memory("row buffers", width, 2 * size, "row_reorder") for width in (slope + 2, data)]
-    return [
-        *_colours(p),
-        Memory("row buffers", slope, size, "divergence"),  # the row above
-        *(reorder if p["Lanes"] == 1 else []),
-        *solver(p),
-        *_zero(p),
-        *_contact(p),
-    ]
-
-
-def _contact(p: dict[str, int]) -> Parts:
-    """Count the delay of contact_events.sv."""
-    lanes = p["Lanes"]
-    return [Memory("delay lines", lanes * p["DataWidth"] + DEPTH_MARKS, lanes.bit_length() + 5, "contact_events")]
-
-
-def _colours(p: dict[str, int]) -> Parts:
-    """Count the parts from pixels to slopes: flat_field.sv, light_gains.sv, and one of the gradient models."""
-    parts: Parts = []
-    if p["FlatField"]:
-        gain, log2, core = p["GainWidth"], p["BlockLog2"], "flat_field"
-        # The difference of two nodes times its row weight, and a colour times its gain: one bit more than a gain has.
-        parts += [Multiplier(gain + 1, log2 + 2, core), Multiplier(gain + 1, 9, core)] * 3
-        parts += [Memory("tables", gain, (p["Rows"] >> log2) * (p["Columns"] >> log2), core)] * 6
-        parts.append(Memory("delay lines", 3 * 8 + PIXEL_MARKS, td_node_map.latency(1, log2), core))
-    if p["LightGains"]:
-        parts += [Multiplier(RATIO.width + 1, LIGHT_GAIN.width + 1, "light_gains")] * 3
-    if p["Polynomial"]:
-        core, width, words = "polynomial_gradient", POLYNOMIAL.width, math.prod(CUBIC)
-        parts += [Multiplier(DEVIATION.width, COLOUR_COEFFICIENT.width, core)] * 6
-        parts += [Memory("tables", width, words // 6, core)] * 12
-        if p["Corrections"]:
-            parts += [Memory("tables", 2 * CORRECTION_WIDTH, 1 << 3 * p["BitsPerChannel"], "gradient_lookup")] * 2
-        return parts
-    return [*parts, *[Memory("tables", 2 * p["GradientWidth"], 1 << 3 * p["BitsPerChannel"], "gradient_lookup")] * 2]
-
-
-def _zero(p: dict[str, int]) -> Parts:
-    """Count the parts of zero_offset.sv and zero_capture.sv: row weights, two banks of nodes, sums, delayed depths."""
-    if not p["ZeroOffset"]:
-        return []
-    log2, data, lanes = p["BlockLog2"], p["DataWidth"], p["Lanes"]
-    side = td_node_map.side(lanes, log2)  # nodes that are written at once
-    words = (p["Rows"] >> log2) * (p["Columns"] >> log2) // side
-    return [
-        *[Memory("tables", data, words, "zero_offset")] * (2 * side * td_node_map.tables(lanes, log2)),
-        Memory("delay lines", lanes * data + DEPTH_MARKS, td_node_map.latency(lanes, log2), "zero_offset"),
-        Memory("tables", side * (data + 2 * log2 + LARGEST_LOG2), words, "zero_capture"),
-        *[Multiplier(data + 1, log2 + 2, "zero_offset")] * side,
-    ]
-
-
-def _wide(p: dict[str, int]) -> Parts:
-    """Count the parts of wide_solver.sv."""
-    size, rows, data, width, coeff = (
-        p["Columns"],
-        p["Rows"],
-        p["DataWidth"],
-        p["DataWidth"] + GUARD_BITS,
-        p["CoeffWidth"],
-    )
-    down, up, core = p["DownWords"], p["Lanes"], "wide_elimination"
-    clocks, beats = size // down, size // up
-    group = min(down, up // 2)  # words in a memory of wide_stack.sv
-    wait = beats * 2 - LOOP
-    product = Multiplier(width, coeff)
-    return [
-        *[Memory("row buffers", p["GradientWidth"] + 2, 2 * clocks, "wide_rows")] * down,
-        *_wide_fft(p, down, False, "wide_dst_forward"),
-        *[replace(product, core="wide_dst_forward")] * (2 * down),
-        Memory("tables", 3 * coeff * down, clocks, "wide_dst_forward"),
-        *[replace(product, core=core)] * (2 * down),
-        Memory("row buffers", down * (coeff + width), clocks, core),
-        *_table(down * coeff, p["DownTableWords"], p["DownSettledWidth"], clocks, core),
-        Memory("tables", down * (p["LastShiftWidth"] + coeff), clocks, core),
-        *_mean(p, core),
-        *[Memory("row buffers", group * data, beats, "wide_stack")] * (up // group),
-        *[Memory("frame stores", group * data, (rows - 1) * beats, "wide_stack")] * (up // group),
-        *[replace(product, core="wide_substitution")] * up,
-        *([Memory("delay lines", width, wait, "wide_substitution")] * up if wait > LONGEST_SHIFT else []),
-        *_table(up * coeff, p["UpTableWords"], p["UpSettledWidth"], beats, "wide_substitution"),
-        *_wide_inverse(p, "wide_dst_inverse"),
-    ]
-
-
-def _wide_inverse(p: dict[str, int], core: str) -> Parts:
-    """Count the parts of wide_dst_inverse.sv with its pairs of rows and its corner turn."""
-    size, data, width, paths = p["Columns"], p["DataWidth"], p["DataWidth"] + GUARD_BITS, p["Lanes"] // 2
-    beats = size // paths
-    pairs = [Memory("delay lines", width, beats // 2, core)] * (2 * paths) if beats // 2 > LONGEST_SHIFT else []
-    turned = beats // 2 * 2 if paths == 1 else 2 * beats  # words of a memory of the corner turn
-    return [
-        *pairs,
-        *[Memory("row buffers", 2 * width, beats // 2, core)] * (2 * paths),
-        *[Multiplier(width, p["CoeffWidth"], core)] * (4 * paths),
-        Memory("tables", 3 * p["CoeffWidth"] * paths, beats, core),
-        *_wide_fft(p, paths, True, core),
-        Memory("delay lines", 1, wide_inverse_latency(size, 2 * paths) - wide_corner_turn.latency(size, paths), core),
-        *[Memory("row buffers", data, turned, core)] * (4 if paths == 1 else 2 * paths),
-    ]
-
-
-def _wide_fft(p: dict[str, int], paths: int, inverse: bool, core: str) -> Parts:
-    """Count the parts of wide_fft.sv: a line for each path in each commutator, and no product for factors of 1."""
-    if paths == 1:
-        return _fft(p, inverse, core)
-    size, width, coeff = p["Columns"], p["DataWidth"] + GUARD_BITS, p["CoeffWidth"]
-    beats = size // paths
-    delays = [1 << bit for bit in range(beats.bit_length() - 1)]
-    lines = [Memory("delay lines", 2 * width, delay, core) for delay in delays if delay > LONGEST_SHIFT]
-    parts: Parts = [*lines * paths]
-    for stage in stages(size, inverse):
-        if not stage.delay:
-            parts += [Multiplier(width, coeff, core)] * (
-                4 * (paths - constant_paths(size, paths, stage.block, inverse))
-            )
-            parts.append(Memory("tables", 3 * coeff * paths, beats, core))
-    return parts
-
-
-def _spectral(p: dict[str, int]) -> Parts:
-    size, data, width, coefficient = p["Columns"], p["DataWidth"], p["DataWidth"] + GUARD_BITS, p["CoeffWidth"]
-    return [
-        *_forward(p) * 2,
-        *[Memory("frame stores", data, size * size, "transpose")] * 2,
-        Multiplier(width, coefficient, "spectral_divide"),
-        Memory("tables", p["DivideShiftWidth"] + coefficient, size * (size + 1) // 2, "spectral_divide"),
-        *_inverse(p, width),
-        *_inverse(p, data),
-    ]
-
-
-def _tridiagonal(p: dict[str, int]) -> Parts:
-    size, rows, data, width = p["Columns"], p["Rows"], p["DataWidth"], p["DataWidth"] + GUARD_BITS
-    packed, core = p["WordsPerRow"], "forward_elimination"
-    return [
-        *_forward(p),
-        *_thomas(p, core),
-        Memory("tables", p["LastShiftWidth"] + p["CoeffWidth"], size, core),
-        *_mean(p, core),
-        Memory("frame stores", data * packed, rows * -(-size // packed), "frame_stack"),
-        *_thomas(p, "back_substitution"),
-        *_inverse(p, width),
-    ]
-
-
-def _mean(p: dict[str, int], core: str) -> Parts:
-    """Count the multipliers of column_mean.sv, which only Neumann has."""
-    if not p["Neumann"]:
-        return []
-    width, row_number = p["DataWidth"] + GUARD_BITS, (p["Rows"] - 1).bit_length() + 2  # 1 to rows, signed
-    return [Multiplier(width, row_number, core), Multiplier(width, p["CoeffWidth"], core)]
-
-
-def _thomas(p: dict[str, int], core: str) -> Parts:
-    """Count the parts of an elimination or substitution; of the table of the last row only the elimination has one."""
-    width, coefficient = p["DataWidth"] + GUARD_BITS, p["CoeffWidth"]
-    return [
-        Multiplier(width, coefficient, core),
-        Memory("row buffers", width, p["Columns"], core),
-        *_table(coefficient, p["TableWords"], p["SettledWidth"], p["Columns"], core),
-    ]
-
-
-def _table(width: int, words: int, settled_width: int, clocks: int, core: str) -> Parts:
-    """Count the two ROMs of thomas_table.sv without that of the last row."""
-    index = (words - 1).bit_length() + settled_width
-    return [Memory("tables", width, words, core), Memory("tables", index, clocks, core)]
-
-
-def _forward(p: dict[str, int]) -> Parts:
-    """Count the parts of dst_forward.sv, which forms only the real part of the product with the phase."""
-    phase = Multiplier(p["DataWidth"] + GUARD_BITS, p["CoeffWidth"], "dst_forward")
-    return [
-        *_fft(p, False, "dst_forward"),
-        *[phase] * 2,
-        Memory("tables", 3 * p["CoeffWidth"], p["Columns"], "dst_forward"),
-    ]
-
-
-def _inverse(p: dict[str, int], in_width: int) -> Parts:
-    """Count the parts of hdl/poisson/transform/dst_inverse.sv with its mode_pairs."""
-    size, core = p["Columns"], "dst_inverse"
-    return [
-        *[Multiplier(in_width, p["CoeffWidth"], core)] * 4,
-        Memory("delay lines", in_width, size // 2 + 1, core),
-        Memory("row buffers", in_width, size, core),
-        Memory("tables", 3 * p["CoeffWidth"], size, core),
-        *_fft(p, True, core),
-    ]
-
-
-def _fft(p: dict[str, int], inverse: bool, core: str) -> Parts:
-    """Count the parts of hdl/poisson/transform/sdf_fft.sv: complex words in its delays, {-Im, Im, Re} in its tables."""
-    parts: Parts = []
-    for stage in stages(p["Columns"], inverse):
-        if stage.delay > LONGEST_SHIFT:
-            parts.append(Memory("delay lines", 2 * (p["DataWidth"] + GUARD_BITS + 1), stage.delay, core))
-        elif not stage.delay:
-            parts += [Multiplier(p["DataWidth"] + GUARD_BITS, p["CoeffWidth"], core)] * 4
-            parts.append(Memory("tables", 3 * p["CoeffWidth"], stage.block, core))
-    return parts

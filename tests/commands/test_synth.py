@@ -45,7 +45,7 @@ def test_memories_and_cores_are_those_of_the_rtl(tmp_path: Path, lanes: int, sol
 def test_the_front_end_of_a_camera_is_a_row_of_its_own(tmp_path: Path) -> None:
     """One multiplier for each channel's gain; the weights are not worth one. The memory is a line of totals."""
     camera = CameraConfiguration((24, 48), (8, 16), "raw8")
-    core, arrays = synth.camera_unit(TINY, synthetic(TINY.bits_per_channel), camera, tmp_path)
+    core, arrays = synth.camera_unit(TINY, synthetic(TINY.bits_per_channel), camera, XCZU7EV, tmp_path)
     assert (core.name, core.path) == ("camera_unit", "u_camera")
     assert [(memory.path, memory.depth) for memory in arrays] == [
         ("u_camera.u_front_end.u_average.u_block_totals.u_line", 16)
@@ -63,11 +63,10 @@ def test_a_multiplication_of_27_by_18_bits_is_one_dsp_with_its_registers(tmp_pat
         f"hierarchy -top {synth.TOP}",
         "proc",
     ]
-    device, logic = synth.mapped(lines, [], [], tmp_path, "")
-    assert synth.device_counts(device[synth.TOP])["DSP48E2"] == 2
-    assert logic[synth.TOP]["DSP48E1"] == 2
-    counts = synth.logic_counts(logic[synth.TOP], [])
-    assert (counts["LUT"], counts["FF"]) == (0, 0)
+    cells = synth.mapped(XCZU7EV, lines, [], [], tmp_path, "")
+    assert cells["logic"][synth.TOP]["DSP48E1"] == 2
+    counts = synth.counted(XCZU7EV, cells, synth.TOP, [], [])
+    assert (counts["DSP48E2"], counts["LUT"], counts["FF"]) == (2, 0, 0)
 
 
 @pytest.mark.parametrize(
@@ -96,7 +95,7 @@ def test_style_decides_what_a_memory_takes() -> None:
 
 def test_a_cell_that_nobody_counts_is_an_error() -> None:
     with pytest.raises(RuntimeError, match="RAMS64E"):
-        synth.logic_counts(Counter({"LUT2": 1, "RAMS64E": 1}), [])
+        XCZU7EV.counts({"device": Counter(), "logic": Counter({"LUT2": 1, "RAMS64E": 1})}, [])
 
 
 def test_what_does_not_fit_is_named_with_how_much() -> None:
