@@ -47,7 +47,7 @@ override need_icarus := command -v iverilog > /dev/null || { \
 # Targets that run the command of their name; those of WITH_ICARUS need Icarus whatever the variables say.
 override WITH_ICARUS := lint mutate netlists quick regress test upsets
 override COMMANDS := $(WITH_ICARUS) asic baselines calibrate certify coverage extremes formal fpga presses reflex \
-  registers report sign-off sim sweep synth tune wrap
+  registers report sign-off sim sweep synth trade tune wrap
 
 .PHONY: help live-test system-tools setup clean $(COMMANDS)
 override .DEFAULT_GOAL := sim
@@ -81,6 +81,9 @@ lint: $(TOOLS)
 
 # Measure accuracy against latency, multipliers and memory with the models, into a CSV file.
 sweep: $(if $(scheduler),$(TOOLS),$(STAMP))
+
+# Measure the true error on real presses against latency, silicon and power, and draw the front. PRESSES=folder
+trade: $(STAMP)
 
 # Find the cheapest configuration within TOLERANCE (% of the peak, RMS), and prove it in RTL.
 tune: $(STAMP)

@@ -7,6 +7,7 @@ packs registers and adders into multipliers; its DSP gets the 27 x 18 bits of a 
 `make fpga`; a carry cell is two LUTs there, and a memory of 16 x 4 bits is four, as nextpnr counts them.
 """
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -36,6 +37,16 @@ class Target:
     def sources(self) -> list[Path]:
         """Return the sources that replace cores of hdl/."""
         return repository.TECHNOLOGY if self.device == ECP5 else []
+
+    @property
+    def memory_bits(self) -> int:
+        """Bits of all block memories."""
+        ultra = math.prod(self.device.ultra_shape) * self.has["UltraRAM"] if self.device.ultra_shape else 0
+        return math.prod(self.device.block_shapes[0]) * self.has[self.device.block] + ultra
+
+    def share(self, multipliers: float, luts: float, memory_bits: float) -> float:
+        """Return the fractions of multipliers, LUTs and memory bits that a design takes of the device, added up."""
+        return multipliers / self.has[self.device.multiplier] + luts / self.has["LUT"] + memory_bits / self.memory_bits
 
     def counts(self, mapped: Mapping[str, Counter[str]], modules: Sequence[str]) -> dict[str, float]:
         """Return the resources of a module from its cells in each mapping.

@@ -2,19 +2,18 @@
 """`make tune`: the cheapest configuration whose error on frames of the user is within a tolerance.
 
 Two thirds of the frames, drawn by SEED, tune the choice by the bit-accurate model; the others prove it in RTL. Cost is
-the fraction of the multipliers plus the fraction of the memory bits that a configuration takes of the device of the
-published design; of two with the same cost the faster is chosen. The tridiagonal solver gets the fewest
-lanes with which the last depth comes within MAX_MAP_LATENCY_US of the last pixel. Takes the variables of
-docs/commands.md as KEY=VALUE arguments. Exit status: 0 found and proven, 1 not, 2 bad input.
+the fraction of the multipliers plus that of the LUTs plus that of the memory bits that a configuration takes of TARGET;
+of two with the same cost the faster is chosen. The tridiagonal solver gets the fewest lanes with which the last depth
+comes within MAX_MAP_LATENCY_US of the last pixel. TOLERANCE=auto is a tenth of the error of the calibration. Takes the
+variables of docs/commands.md as KEY=VALUE arguments. Exit status: 0 found and proven, 1 not, 2 bad input.
 """
 
 import json
 import math
 import os
 import sys
-from bisect import bisect_left
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,20 +22,25 @@ from tqdm import tqdm
 
 from commands.common import published, repository, run_request, variables
 from commands.common import simulator as simulation
+from commands.hardware.targets import TARGETS
 from commands.run import sim
+from commands.study.tune_search import Limits, Search, Widths
 from tactile_depth import files, reference
 from tactile_depth.accuracy import SMALLEST_PEAK_PX, depth_px, errors
 from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration, most_lanes
-from tactile_depth.cost import Cost, cost
+from tactile_depth.cost import Cost
 from tactile_depth.errors import InputError
 from tactile_depth.frames import Frames, load_frames, on_grid
 from tactile_depth.latency import last_pixel_to_last_depth
+from tactile_depth.scenes import AS_EVER
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import light_of, slope_tables
 
 # In the order of `Limits`.
-OWN = ("TOLERANCE", "MAX_LATENCY_US", "MAX_MAP_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_MEMORY_KBIT")
+NUMBERS = ("TOLERANCE", "MAX_LATENCY_US", "MAX_MAP_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_LUT", "MAX_MEMORY_KBIT")
+OWN = (*NUMBERS, "TARGET")
 LIMITS = (1e-9, 1e9)  # of each
+AUTO, AUTO_SHARE = "auto", 0.1  # TOLERANCE=auto, and its fraction of the calibration's error
 NOT_OF_SIM = ("DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH", "REPEAT", "GAPS", "STALLS", "WAVES", "CONFIG")
 OF_SIM = tuple(name for name in run_request.ACCEPTED if name not in NOT_OF_SIM)
 DEFAULT_OUT = repository.ROOT / "build" / "tune"
@@ -44,10 +48,6 @@ DEFAULT_FRAMES = "bench"
 DEFAULT_TOLERANCE = 0.1  # % of peak
 DEFAULT_WIDTHS = (Configuration().data_width, Configuration().coefficient_width)
 CHOOSE = 0  # number of lanes of a request without LANES
-
-# The XCZU7EV: DSP48E2 slices; block RAMs of 36 Kbit and UltraRAMs of 288 Kbit.
-DEVICE_MULTIPLIERS = 1728
-DEVICE_MEMORY_BITS = 312 * 36 * 1024 + 96 * 288 * 1024
 
 PROOF = 1 / 3  # fraction of the frames
 # Factor between the tolerance and the worst frame for tuning. In 100 tunings on the bench (tolerances of 0.01 to 0.5,
@@ -58,135 +58,15 @@ NOISY_COPIES = 6  # copies of a single frame
 NOISE_LEVELS = 1.0  # standard deviation of their noise, grey levels
 
 
-@dataclass(frozen=True)
-class Limits:
-    """Limits of the user; an infinite value is no limit."""
-
-    tolerance: float
-    latency_us: float  # first pixel to first depth
-    map_latency_us: float  # last pixel to last depth
-    clock_mhz: float
-    multipliers: float
-    memory_kbit: float
-
-    def broken(self, counted: Cost) -> list[str]:
-        """Return the limits that a configuration exceeds, apart from the tolerance."""
-        latency = counted.first_depth_cycles / self.clock_mhz
-        checks = (
-            ("MAX_LATENCY_US", latency, self.latency_us),
-            ("MAX_MAP_LATENCY_US", counted.map_cycles / self.clock_mhz, self.map_latency_us),
-            ("MAX_DSP", counted.tiles, self.multipliers),
-            ("MAX_MEMORY_KBIT", counted.memory_bits / 1000, self.memory_kbit),
+def tolerance_of(calibration: Sensor, model: str) -> float:
+    """Return the tolerance of TOLERANCE=auto, in % of the peak. Raises InputError: the calibration has no error."""
+    error = calibration.height_errors.get(model or calibration.model)
+    if error is None:
+        raise InputError(
+            f"TOLERANCE={AUTO}: the error of {calibration.name} was not measured",
+            remedy="give a number, in % of the peak, or a calibration of `make calibrate`",
         )
-        return [f"{name}={limit:g} (it takes {value:,.5g})" for name, value, limit in checks if value > limit]
-
-
-@dataclass(frozen=True, order=True)
-class Widths:
-    """Point of the search."""
-
-    solver: str
-    data: int
-    coefficient: int
-    lanes: int = 1
-
-    def __str__(self) -> str:
-        lanes = f" LANES={self.lanes}" if self.lanes > 1 else ""
-        return f"SOLVER={self.solver} DATA_WIDTH={self.data} COEFF_WIDTH={self.coefficient}{lanes}"
-
-
-@dataclass
-class Search:
-    """Search of the cheapest point within the tolerance and the limits.
-
-    As a width grows, the error falls (apart from little noise) and the cost grows. So for each data width only the
-    narrowest coefficient that meets the tolerance can be the cheapest. That coefficient does not grow with the data
-    width, and both are found by bisection. Every point that is returned has been measured.
-    """
-
-    build: Callable[[Widths], Configuration | None]  # None: cannot be built
-    measure: Callable[[Configuration], float]  # largest error of the frames for tuning, % of peak
-    limits: Limits
-    target: float  # target of that error
-    lanes: Mapping[str, int] = field(default_factory=dict)  # of a solver, by default one
-    tried: dict[Widths, float] = field(default_factory=dict)
-
-    def point(self, solver: str, data: int, coefficient: int) -> Widths:
-        return Widths(solver, data, coefficient, self.lanes.get(solver, 1))
-
-    def error(self, at: Widths) -> float:
-        if at not in self.tried:
-            config = self.build(at)
-            self.tried[at] = math.inf if config is None else self.measure(config)
-        return self.tried[at]
-
-    def meets(self, at: Widths) -> bool:
-        return self.error(at) <= self.target
-
-    def cost(self, at: Widths) -> Cost | None:
-        config = self.build(at)
-        return None if config is None else cost(config)
-
-    def allowed(self, at: Widths) -> bool:
-        counted = self.cost(at)
-        return counted is not None and not self.limits.broken(counted)
-
-    def rank(self, at: Widths) -> tuple[float, int]:
-        counted = self.cost(at)
-        return (math.inf, 0) if counted is None else (weight(counted), counted.first_depth_cycles)
-
-    def cheapest(self, solvers: list[str]) -> Widths | None:
-        candidates: list[Widths] = []
-        for solver in solvers:
-            widest = self.point(solver, DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1])
-            if not self.meets(widest):
-                continue
-            coefficient = COEFFICIENT_WIDTHS[1]
-            data = _least(*DATA_WIDTHS, lambda d: self.meets(replace(widest, data=d)))  # noqa: B023
-            for width in range(data, DATA_WIDTHS[1] + 1):
-                least = self.point(solver, width, COEFFICIENT_WIDTHS[0])
-                if self.build(least) is not None and (
-                    not self.allowed(least) or (candidates and self.rank(least) >= min(map(self.rank, candidates)))
-                ):
-                    break  # no coefficient meets the target, and wider words do not either
-                row = replace(widest, data=width)
-                coefficient = _least(
-                    COEFFICIENT_WIDTHS[0],
-                    coefficient,
-                    lambda c: self.meets(replace(row, coefficient=c)),  # noqa: B023
-                )
-                point = replace(row, coefficient=coefficient)
-                if self.meets(point) and self.allowed(point):
-                    candidates.append(point)
-        return min(candidates, key=self.rank) if candidates else None
-
-    def nearest(self, solvers: list[str]) -> Widths | None:
-        """Return the point of the smallest error within the limits."""
-        corners = []
-        for solver in solvers:
-            for coefficient in range(COEFFICIENT_WIDTHS[0], COEFFICIENT_WIDTHS[1] + 1):
-                widths = (
-                    self.point(solver, data, coefficient) for data in range(DATA_WIDTHS[1], DATA_WIDTHS[0] - 1, -1)
-                )
-                widest = next(filter(self.allowed, widths), None)
-                corners += [] if widest is None else [widest]
-        outer = [a for a in corners if not any(_wider(b, a) for b in corners)]
-        return min(outer, key=self.error) if outer else None
-
-
-def _wider(a: Widths, b: Widths) -> bool:
-    """Return True if a is at least as wide as b in every word, and wider in one."""
-    return a != b and a.solver == b.solver and a.data >= b.data and a.coefficient >= b.coefficient
-
-
-def _least(low: int, high: int, holds: Callable[[int], bool]) -> int:
-    """Return the least value in low..high from which on a condition holds, by bisection; it must hold at `high`."""
-    return low + bisect_left(range(low, high), True, key=holds)
-
-
-def weight(counted: Cost) -> float:
-    """Return the cost of a configuration: the sum of its fractions of multipliers and memory bits of the device."""
-    return counted.tiles / DEVICE_MULTIPLIERS + counted.memory_bits / DEVICE_MEMORY_BITS
+    return 100 * AUTO_SHARE * error.relative
 
 
 def split(frames: Frames, peaks: np.ndarray, seed: int) -> tuple[Frames, Frames, str]:
@@ -227,8 +107,12 @@ def split(frames: Frames, peaks: np.ndarray, seed: int) -> tuple[Frames, Frames,
 def parse(arguments: list[str]) -> tuple[run_request.Request, Limits, list[str]]:
     """Return the request of make sim, the limits and the solvers to choose from. Raises InputError."""
     values = variables.given(arguments, OWN + OF_SIM)
-    defaults = dict.fromkeys(OWN, math.inf) | {"TOLERANCE": DEFAULT_TOLERANCE, "CLOCK_MHZ": published.CLOCK_MHZ}
-    limits = Limits(*(variables.number(values, name, default, *LIMITS, float) for name, default in defaults.items()))
+    defaults = dict.fromkeys(NUMBERS, math.inf) | {"TOLERANCE": DEFAULT_TOLERANCE, "CLOCK_MHZ": published.CLOCK_MHZ}
+    target = TARGETS[variables.choice(values, "TARGET", tuple(TARGETS))]
+    automatic = values.get("TOLERANCE") == AUTO
+    numbers = {name: value for name, value in values.items() if not (automatic and name == "TOLERANCE")}
+    limits = Limits(*(variables.number(numbers, name, default, *LIMITS, float) for name, default in defaults.items()))
+    limits = replace(limits, target=target, **({"tolerance": math.nan} if automatic else {}))
     request = run_request.of_values(values, OF_SIM, "sensor", DEFAULT_FRAMES)
     solvers = [request.solver] if "SOLVER" in values else list(COLUMNS)
     if "LANES" in values:
@@ -266,11 +150,22 @@ def config_file(request: run_request.Request, at: Widths) -> dict[str, str | int
         **({"N": request.columns} if square else {"ROWS": request.rows, "COLS": request.columns}),
         "DATA_WIDTH": at.data,
         "COEFF_WIDTH": at.coefficient,
+        "GAIN_WIDTH": at.gain,
+        "FRAMES": _absolute(request.frames),
+        "SEED": request.seed,
     }
+    named = {"REFERENCE": request.reference, "ZERO": request.zero}
+    chosen |= {name: _absolute(value) for name, value in named.items() if value}
+    if request.light_gains is not None:
+        chosen["LIGHT_GAINS"] = int(request.light_gains)
+    press = request.press
+    if press.depth_mm is not None:
+        chosen["PRESS"] = press.depth_mm
+    if press != AS_EVER:
+        chosen |= {"AT": ",".join(f"{shift:g}" for shift in press.at_mm), "NOISE": press.noise}
     if request.depth_range_mm is not None:
         chosen["DEPTH_RANGE"] = request.depth_range_mm
-    path = Path(request.calibration)
-    chosen["CALIBRATION"] = str(path.resolve()) if path.is_file() else request.calibration
+    chosen["CALIBRATION"] = _absolute(request.calibration)
     if request.camera_size is not None:
         rows, columns = request.camera_size
         chosen["CAMERA_SIZE"] = f"{columns}x{rows}"
@@ -279,17 +174,25 @@ def config_file(request: run_request.Request, at: Widths) -> dict[str, str | int
     return chosen
 
 
+def _absolute(source: str) -> str:
+    """Return the path of a file or a folder from the root; the name of a scene or of a calibration as it is."""
+    return str(Path(source).resolve()) if Path(source).exists() else source
+
+
 def compared(counted: Cost, base: Cost | None, limits: Limits) -> str:
     """Return the cost of a configuration, and the saving against another."""
 
+    costs, others = _costs(counted, limits), _costs(base, limits) if base else None
+
     def change(quantity: str) -> str:
-        return f" ({100 * (getattr(counted, quantity) / getattr(base, quantity) - 1):+.0f} %)" if base else ""
+        return f" ({100 * (costs[quantity] / others[quantity] - 1):+.0f} %)" if others else ""
 
     return (
-        f"{counted.tiles} multipliers{change('tiles')}, "
-        f"{counted.memory_bits / 1000:,.0f} kbit of memory{change('memory_bits')}, "
-        f"{counted.first_depth_cycles / limits.clock_mhz:,.1f} us to the first depth{change('first_depth_cycles')}, "
-        f"{counted.map_cycles / limits.clock_mhz:,.1f} us from the last pixel to the last depth{change('map_cycles')}"
+        f"{costs['multipliers']} {limits.device.multiplier}{change('multipliers')}, "
+        f"{costs['luts']:,} LUTs{change('luts')}, "
+        f"{costs['memory_bits'] / 1000:,.0f} kbit of memory{change('memory_bits')}, "
+        f"{costs['first_depth_us']:,.1f} us to the first depth{change('first_depth_us')}, "
+        f"{costs['map_us']:,.1f} us from the last pixel to the last depth{change('map_us')}"
     )
 
 
@@ -298,9 +201,12 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
     simulation.check(request.simulator)
     out = request.out or DEFAULT_OUT
     calibration = run_request.load_sensor(request)
+    automatic = math.isnan(limits.tolerance)
+    if automatic:
+        limits = replace(limits, tolerance=tolerance_of(calibration, request.gradient))
 
     def shaped(at: Widths) -> run_request.Request:
-        own = replace(request, data_width=at.data, coefficient_width=at.coefficient)
+        own = replace(request, data_width=at.data, coefficient_width=at.coefficient, gain_width=at.gain)
         return replace(own, solver=at.solver, lanes=at.lanes)
 
     _check_grid(request, solvers)
@@ -329,6 +235,8 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
     tuning, proving, how = split(frames, np.abs(exact).max(axis=(1, 2)), request.seed)
     files.check(out, ("config.json", "report.json"))
     run_request.announce(request, widest)
+    if automatic:
+        print(f"TOLERANCE={AUTO}: {limits.tolerance:.3g} % of peak, a tenth of the error of {calibration.name}")
     print(how)
 
     with tqdm(desc="tuning", unit=" configurations", leave=False, disable=None) as bar:
@@ -393,13 +301,15 @@ def _print_choice(search: Search, best: Widths, default: Widths | None, limits: 
 
 def _costs(counted: Cost, limits: Limits) -> dict[str, Any]:
     return {
-        "multipliers": counted.tiles,
+        "device": limits.device.name,
+        "multipliers": counted.multipliers_of(limits.device),
+        "luts": counted.luts_of(limits.device),
         "memory_bits": counted.memory_bits,
         "first_depth_cycles": counted.first_depth_cycles,
         "first_depth_us": counted.first_depth_cycles / limits.clock_mhz,
         "map_cycles": counted.map_cycles,
         "map_us": counted.map_cycles / limits.clock_mhz,
-        "share_of_device": weight(counted),
+        "share_of_device": limits.weight(counted),
     }
 
 

@@ -20,7 +20,7 @@ from tactile_depth.built_in import synthetic
 from tactile_depth.certificate import deepest
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
-from tactile_depth.cost import cost
+from tactile_depth.cost import ECP5, cost
 from tactile_depth.errors import InputError
 from tactile_depth.scenes import render, scene_pixel_pitch_mm
 from tactile_depth.sensor import Sensor
@@ -116,6 +116,7 @@ MEASURED = (
     "last_pixel_to_first_depth_cycles",
     "last_pixel_to_last_depth_cycles",
     "multipliers",
+    "multipliers_18",
     "memory_bits",
     "frame_store_bits",
     "delay_line_bits",
@@ -194,6 +195,7 @@ def measure(choices: dict[str, Any]) -> dict[str, str]:
         "last_pixel_to_first_depth_cycles": counted.last_pixel_cycles,
         "last_pixel_to_last_depth_cycles": counted.map_cycles,
         "multipliers": counted.tiles,
+        "multipliers_18": counted.multipliers_of(ECP5),
         "memory_bits": counted.memory_bits,
         "frame_store_bits": counted.bits_of("frame stores"),
         "delay_line_bits": counted.bits_of("delay lines"),

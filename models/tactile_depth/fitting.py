@@ -24,7 +24,7 @@ The weights were chosen by leaving out each press in turn. No model knows slopes
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import combinations_with_replacement
 from pathlib import Path
@@ -229,6 +229,23 @@ def fit_presses(
         lighting=lighting(presses.background),
     )
     return Fit(sensor, evaluation, without)
+
+
+def fit_folds(
+    presses: GridPresses, folds: Sequence[Collection[str]], models: Sequence[str] = MODELS, bits: int = DEFAULT_BITS
+) -> list[Sensor]:
+    """Fit a calibration for each fold, the names of some presses, to all presses that are not in it.
+
+    Their errors are not measured.
+    """
+    parts = {view.press.name: _parts(view, presses.grid_pitch_mm, models, bits) for view in presses.views}
+    camera = Camera(*presses.background.shape[:2], presses.pixel_format)
+    fitted = []
+    for fold in folds:
+        others = tuple(view for view in presses.views if view.press.name not in fold)
+        sensor = _fit_models(presses, others, "others", parts)
+        fitted.append(replace(sensor, camera=camera, lighting=lighting(presses.background)))
+    return fitted
 
 
 def errors_by_number(

@@ -93,10 +93,15 @@ REFUSED = {
     "synth GRIDS=64,7": "GRIDS=7: ",
     "synth GRIDS=64;128": "GRIDS=64;128: accepted are whole numbers",
     "synth N=1024 SOLVER=spectral": "1024",
-    "synth TARGET=xc7a35t": "TARGET=xc7a35t is unknown: accepted is xczu7ev",
+    "synth TARGET=xc7a35t": "TARGET=xc7a35t is unknown: accepted are xczu7ev, ecp5",
+    "trade FOLDS=3": "FOLDS=3: unknown variable",
+    "trade PRESSES=nowhere": "nowhere: no presses.csv in it",
+    "trade RTL=many": "RTL=many: accepted is a whole number from 0 to 1,000",
     **{f"tune N=16 SIM=icarus {word}": word.partition("=")[2] for word in UNTUNABLE.split()},
     "tune DATA_WIDTH=20": "DATA_WIDTH=20: unknown variable",
     "tune MAX_DSP=inf": "MAX_DSP=inf: accepted is a number from 1e-09 to 1e+09",
+    "tune TARGET=ulx3s": "TARGET=ulx3s is unknown: accepted are xczu7ev, ecp5",
+    "tune TOLERANCE=auto N=16": "TOLERANCE=auto: the error of synthetic was not measured: give a number",
     "tune TOLERANCE=nan": "TOLERANCE=nan: accepted is a number from 1e-09 to 1e+09",
 }
 

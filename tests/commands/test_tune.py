@@ -58,7 +58,7 @@ def all_points() -> list[Any]:
 def test_the_search_finds_the_cheapest_of_all(
     tolerance: Any, latency: Any, multipliers: Any, memory: Any, bits: int
 ) -> None:
-    limits = Limits(tolerance, latency, NONE, 166, multipliers, memory)
+    limits = Limits(tolerance, latency, NONE, 166, multipliers, NONE, memory)
     search = Search(built, falling(bits), limits, tolerance)
     within = [at for at in all_points() if not limits.broken(cost_of(at))]
     enough = [at for at in within if search.measure(built(at)) <= tolerance]

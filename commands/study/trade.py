@@ -1,0 +1,357 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make trade`: the true error on real presses against latency, silicon and power, for hundreds of configurations.
+
+The presses are those of `make calibrate`. They are split into FOLDS; each is measured by a calibration fitted to the
+others, through the bit-accurate model of a real sensor behind a camera. RTL=10 plays so many configurations, drawn by
+SEED, through the RTL too. An interrupted study continues where it stopped. Exit status: 1 if a code of the RTL differs,
+2 on bad input.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import os
+import random
+import shutil
+import sys
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+import joblib
+import numpy as np
+from PIL import Image
+from tqdm import tqdm
+
+import tactile_depth as td
+from commands.common import run_request, variables
+from commands.common import simulator as simulation
+from commands.common.repository import ROOT
+from commands.common.zero_offset import untouched, zero_of
+from commands.run import sim
+from commands.run.calibrate import data_folder
+from commands.study.presses import Measured, measured
+from commands.study.rows import Row, Table, Wanted
+from commands.study.trade_front import draw, summary, write_beaten
+from tactile_depth import files
+from tactile_depth.accuracy import VERSION
+from tactile_depth.ball_press import BallPress
+from tactile_depth.calibration_file import PIXEL_PITCHES_MM
+from tactile_depth.camera_configuration import CameraChoice
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.configuration import Configuration, most_lanes
+from tactile_depth.contact import threshold_comparator
+from tactile_depth.contact.contact_events import Settings
+from tactile_depth.cores import fastest
+from tactile_depth.cost import ECP5, cost
+from tactile_depth.errors import InputError
+from tactile_depth.fitting import fit_folds
+from tactile_depth.frames import Frames, load_frames, on_grid, read_picture
+from tactile_depth.latency import last_pixel_to_first_depth
+from tactile_depth.poisson.divergence import divergence
+from tactile_depth.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
+from tactile_depth.result import Recorder
+from tactile_depth.sensor import Sensor
+from tactile_depth.tactile_depth import light_of, slope_codes, slope_tables, solve, zeroed
+
+VARIABLES = ("PRESSES", "PITCH", "OUT", "RTL", "SEED", "SIM")
+DEFAULT_OUT = ROOT / "build" / "trade"
+FOLDS = 5
+FORMATS = ("rgb888", "rgb565", "yuyv", "raw8")
+THRESHOLD_MM, AREA_THRESHOLD_MM = 0.1, 0.3  # of the contact, as those of td.Pipeline
+
+GRIDS = ((24, 32), (48, 64), (96, 128), (192, 256))
+SQUARES = (32, 64, 128)  # of the spectral solver, the middle of the picture
+WIDE = (24, 18, 24)  # bits of a stored word, a coefficient, a gain of the flat field
+WORDS = (WIDE, (20, 16, 16), (18, 15, 16), (16, 14, 16), (15, 12, 16), (14, 11, 16), (12, 10, 16))
+MODELS = ("cubic", "quadratic", "lut")
+OPTIONS = ({"BOUNDARY": "dirichlet"}, {"LIGHT_GAINS": "0"})
+
+CONFIGURATION = (
+    *("solver", "boundary", "rows", "columns", "lanes", "data_width", "coefficient_width", "gain_width"),
+    *("gradient", "pixel_format", "light_gains"),
+)
+MEASURED = (
+    *("problem", "presses", "height_um", "sides_height_um", "cap_percent", "untouched_um", "centroid_um"),
+    *("area_percent", "saturations", "first_depth_cycles", "map_cycles", "contact_cycles"),
+    *("multipliers", "multipliers_18", "luts", "memory_bits", "power_mw", "command", "models"),
+)
+TABLE_COLUMNS = (*CONFIGURATION, *MEASURED)
+Choices = dict[str, str]
+
+
+def plan() -> list[Choices]:
+    """Return every configuration, as variables of `make sim`.
+
+    All word lengths at the default grid; every grid, number of depth values per clock and gradient model with WORDS;
+    the same for the spectral solver; every pixel format; and the options that can be left out.
+    """
+    rows = [_choices(GRIDS[2], (d, c, 16)) for d in range(12, 25) for c in range(10, 19)]
+    for grid, words, model in itertools.product(GRIDS, WORDS, MODELS):
+        most = most_lanes(grid[1], zero_offset=True)
+        for lanes in sorted({1, 4, 16, most} & {1 << log2 for log2 in range(most.bit_length())}):
+            rows.append(_choices(grid, words, GRADIENT=model, **({"LANES": str(lanes)} if lanes > 1 else {})))
+    for size, words, model in itertools.product(SQUARES, WORDS, MODELS):
+        rows.append(_choices((size, size), words, GRADIENT=model, SOLVER="spectral"))
+        rows.append(_choices((size, size), words, GRADIENT=model))
+    for grid, words, pixel_format in itertools.product(GRIDS[:3], WORDS, FORMATS[1:]):
+        rows.append(_choices(grid, words, CAMERA=pixel_format))
+    for grid, words, option in itertools.product(GRIDS[1:3], WORDS, OPTIONS):
+        rows.append(_choices(grid, words, **option))
+    return list({tuple(sorted(row.items())): row for row in rows}.values())
+
+
+def _choices(grid: tuple[int, int], words: tuple[int, int, int], **others: str) -> Choices:
+    names = ("ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH")
+    shape = dict(zip(names, map(str, (*grid, *words)), strict=True))
+    return {"PRESET": "sensor", "CAMERA": FORMATS[0], "GRADIENT": MODELS[0], **shape, **others}
+
+
+@dataclass(frozen=True)
+class Study:
+    """A folder with the presses of each fold and their calibrations, which `prepare` writes.
+
+    Attributes
+    ----------
+    folder, source : Path
+        Where they are, and the folder of the presses that they were made from.
+    pitch_mm : float
+        Millimetres per camera pixel.
+    middle, sides : frozenset of str
+        Names of the presses that lie wholly in the picture's middle square, and of the others in the picture.
+    digest : str
+        Digest of the models and of the presses.
+    """
+
+    folder: Path
+    source: Path
+    pitch_mm: float
+    middle: frozenset[str]
+    sides: frozenset[str]
+    digest: str
+
+    def sources(self, fold: int, pixel_format: str) -> Choices:
+        """Return the variables of `make sim` that name frames, reference and calibration of a fold."""
+        parts = {
+            "FRAMES": f"presses-{fold}",
+            "REFERENCE": "background.png",
+            "CALIBRATION": f"{pixel_format}-{fold}.npz",
+        }
+        return {name: str(self.folder / part) for name, part in parts.items()}
+
+    def request(self, choices: Choices, fold: int) -> run_request.Request:
+        """Return the request of `make sim` for a fold. Raises InputError."""
+        return run_request.of_values(choices | self.sources(fold, choices["CAMERA"]), run_request.WITH_CAMERA, "sensor")
+
+    def command(self, choices: Choices) -> str:
+        """Return the command that plays the first fold through the RTL."""
+        sources = {name: os.path.relpath(path, ROOT) for name, path in self.sources(0, choices["CAMERA"]).items()}
+        return " ".join(["make sim", *(f"{name}={value}" for name, value in (choices | sources).items())])
+
+
+def prepare(folder: Path, source: Path, pitch_mm: float | None) -> Study:
+    """Write the pictures of each fold and a calibration for each pixel format, unless they are there already."""
+    pictures = gather(source)
+    pitch = camera_pitch_mm(pictures, pitch_mm)
+    on = to_grid(pictures, pitch)
+    whole = {view.press.name: view.press.is_central(on.grid) for view in on.views if view.is_whole}
+    middle, sides = (frozenset(name for name, central in whole.items() if central == is_in) for is_in in (True, False))
+    study = Study(folder, source, pitch, middle, sides, _digest(pictures, pitch))
+    stamp = folder / "presses.txt"
+    if stamp.exists() and stamp.read_text() == study.digest:
+        return study
+    files.make(folder, [stamp.name])
+    stamp.unlink(missing_ok=True)
+    Image.fromarray(pictures.background).save(folder / "background.png")
+    for fold in range(FOLDS):
+        shutil.rmtree(folder / f"presses-{fold}", ignore_errors=True)
+        (folder / f"presses-{fold}").mkdir()
+    for index, press in enumerate(pictures.presses):
+        Image.fromarray(_pixels(press)).save(folder / f"presses-{index % FOLDS}" / f"{index:03}.png")
+    jobs = [joblib.delayed(_calibrate)(study, pictures, pixel_format) for pixel_format in FORMATS]
+    fitted = joblib.Parallel(n_jobs=-1, return_as="generator_unordered")(jobs)
+    for _ in tqdm(fitted, "calibrations", len(jobs), unit=" pixel formats", leave=False, disable=None):
+        pass
+    stamp.write_text(study.digest)
+    return study
+
+
+def _pixels(press: BallPress) -> np.ndarray:
+    return press.image if isinstance(press.image, np.ndarray) else read_picture(Path(press.image))
+
+
+def _digest(pictures: PressPictures, pitch_mm: float) -> str:
+    digest = hashlib.sha256(f"{VERSION} {FOLDS} {FORMATS} {pitch_mm}".encode() + pictures.background.tobytes())
+    for press in pictures.presses:
+        digest.update(f"{press.name} {press.diameter_mm} {press.circle}".encode() + _pixels(press).tobytes())
+    return digest.hexdigest()[:12]
+
+
+def _calibrate(study: Study, pictures: PressPictures, pixel_format: str) -> None:
+    """Fit and write the calibration of each fold, from pictures as a camera of this format sends them."""
+    presses = to_grid(pictures, study.pitch_mm, choice=CameraChoice(pixel_format))
+    folds = [{press.name for press in pictures.presses[fold::FOLDS]} for fold in range(FOLDS)]
+    for fold, sensor in enumerate(fit_folds(presses, folds)):
+        sensor.save(study.folder / f"{pixel_format}-{fold}.npz")
+
+
+# A row.
+
+
+@dataclass(frozen=True)
+class Fold:
+    """A fold on a grid: pictures, the calibration that was not fitted to them, and the geometry of the presses."""
+
+    frames: Frames
+    sensor: Sensor
+    presses: dict[int, GridPress]  # by the number of the frame
+
+
+@lru_cache(maxsize=2)
+def _folds(study: Study, rows: int, columns: int, pixel_format: str) -> list[Fold]:
+    choice, grid = CameraChoice(pixel_format), (rows, columns)
+    pictures = gather(study.source)
+    on = to_grid(pictures, study.pitch_mm, choice=choice, grid=grid)
+    geometry = {view.press.name: view.press for view in on.views}
+    seen = study.middle | (study.sides if rows != columns else frozenset())
+    folds = []
+    for fold in range(FOLDS):
+        sources = study.sources(fold, pixel_format)
+        frames = load_frames(sources["FRAMES"], grid, sources["REFERENCE"], camera=choice)
+        among = [press.name for press in pictures.presses[fold::FOLDS]]
+        presses = {number: geometry[name] for number, name in enumerate(among) if name in seen}
+        folds.append(Fold(frames, on_grid(td.load(sources["CALIBRATION"]), frames), presses))
+    return folds
+
+
+def measure(study: Study, choices: Choices) -> Row:
+    """Measure a configuration on all folds; return a row of the table."""
+    row = dict.fromkeys(TABLE_COLUMNS, "") | cells(study, choices) | {"command": study.command(choices)}
+    row["models"] = study.digest
+    values: list[tuple[Measured, bool, float]] = []
+    monitor = Monitor()
+    try:
+        for fold, data in enumerate(_folds(study, int(choices["ROWS"]), int(choices["COLS"]), choices["CAMERA"])):
+            request = study.request(choices, fold)
+            config = run_request.configure(request, data.sensor)
+            values += _measured(study, request, config, data, monitor)
+    except InputError as error:
+        return row | {"problem": str(error)}
+    middle = [value for value, is_in_the_middle, _ in values if is_in_the_middle]
+    sides = [value for value, is_in_the_middle, _ in values if not is_in_the_middle]
+    counted = cost(config)
+    caps = np.array([value.cap for value in middle])
+    numbers = {
+        "presses": len(middle),
+        "height_um": 1000 * np.mean([value.height_rms for value in middle]),
+        "sides_height_um": 1000 * np.mean([value.height_rms for value in sides]) if sides else "",
+        "cap_percent": 100 * np.sqrt(((caps - 1) ** 2).mean()),
+        "untouched_um": 1000 * np.mean([value.rest_rms for value in middle]),
+        "centroid_um": 1000 * np.mean([value.centroid for value in middle]),
+        "area_percent": 100 * np.mean([abs(value.area - 1) for value in middle]),
+        "saturations": monitor.saturations.total(),
+        "first_depth_cycles": counted.last_pixel_cycles,
+        "map_cycles": counted.map_cycles,
+        "contact_cycles": np.mean([cycles for _, is_in_the_middle, cycles in values if is_in_the_middle]),
+        "multipliers": counted.tiles,
+        "multipliers_18": counted.multipliers_of(ECP5),
+        "luts": counted.luts_of(ECP5),
+        "memory_bits": counted.memory_bits,
+        "power_mw": counted.power_mw,
+    }
+    return row | {name: f"{value:.6g}" if isinstance(value, float) else str(value) for name, value in numbers.items()}
+
+
+def _measured(
+    study: Study, request: run_request.Request, config: Configuration, data: Fold, monitor: Monitor
+) -> list[tuple[Measured, bool, float]]:
+    """Return what was measured of each press, if it is in the middle, and the cycles from last pixel to contact."""
+    sensor, pixels = data.sensor, data.frames.pixels
+    zero = zero_of(untouched(request, data.frames), sensor, config)
+    tables = slope_tables(sensor, config)
+    light = light_of(pixels, tables, config, cores=fastest())
+    slopes = slope_codes(pixels, sensor, config, monitor, tables=tables, light=light)
+    streamed = zeroed(solve(divergence(slopes, config.neumann), config, monitor, fastest()), config, monitor, zero)
+    bottom_first = config.solver == "tridiagonal"
+    pitch = sensor.pixel_pitch_mm
+    lsb = config.depth_lsb_px * pitch
+    threshold, area = (round(depth / lsb) for depth in (THRESHOLD_MM, AREA_THRESHOLD_MM))
+    recorder = Recorder(
+        Settings(threshold, threshold, area, minimum_area=1, debounce=1), config.data_width, bottom_first
+    )
+    values: list[tuple[Measured, bool, float]] = []
+    for number, press in data.presses.items():
+        codes = streamed[number][::-1] if bottom_first else streamed[number]
+        empty = np.zeros((0, 0, 2))
+        result = td.Result(
+            codes.astype(np.int32), codes * lsb, empty, empty[..., 0] > 0, None, {}, recorder, lsb, pitch, np.inf, None
+        )
+        touching = streamed[number].reshape(-1) > threshold
+        first = int(touching.argmax()) if touching.any() else touching.size
+        cycles = last_pixel_to_first_depth(config) + first // config.lanes + threshold_comparator.LATENCY
+        values.append((measured(result, press), press.name in study.middle, cycles))
+    return values
+
+
+def cells(study: Study, choices: Choices) -> Row:
+    """Return the cells that describe a configuration."""
+    request = study.request(choices, 0)
+    return {
+        "solver": request.solver,
+        "boundary": request.boundary,
+        "rows": str(request.rows),
+        "columns": str(request.columns),
+        "lanes": str(request.lanes),
+        "data_width": str(request.data_width),
+        "coefficient_width": str(request.coefficient_width),
+        "gain_width": str(request.gain_width),
+        "gradient": choices["GRADIENT"],
+        "pixel_format": choices["CAMERA"],
+        "light_gains": str(int(request.light_gains is None and choices["GRADIENT"] != "lut")),
+    }
+
+
+def study_rows(study: Study, rows: Sequence[Choices]) -> list[Row]:
+    """Measure the rows that the table lacks; return all of them in the order of `rows`."""
+
+    def on_all_cores(left: list[Choices]) -> Generator[Row]:
+        parallel = joblib.Parallel(n_jobs=-1, return_as="generator_unordered", batch_size=4)
+        yield from parallel(joblib.delayed(measure)(study, choices) for choices in left)
+
+    table = Table("trade", CONFIGURATION, MEASURED, study.digest)
+    order = sorted(rows, key=lambda row: (-int(row["ROWS"]) * int(row["COLS"]), row["CAMERA"]))
+    wanted = [Wanted(cells(study, row), row, int(row["ROWS"]) * int(row["COLS"])) for row in order]
+    return table.complete(wanted, study.folder, on_all_cores)
+
+
+def in_rtl(study: Study, rows: Sequence[Row], count: int, seed: int, simulator: str) -> int:
+    """Play so many rows, drawn by chance, through the RTL; return how many differ from the model."""
+    drawn = random.Random(seed).sample([row for row in rows if not row["problem"]], count)
+    differing = 0
+    for number, row in enumerate(drawn):
+        print(f"\n{number + 1} of {count}: {row['command']}")
+        words = [word for word in row["command"].split() if "=" in word]
+        request = run_request.parse([*words, f"SIM={simulator}"], run_request.WITH_CAMERA, "sensor")
+        differing += sim.run(replace(request, out=study.folder / "rtl" / str(number))) != variables.EQUAL
+    return differing
+
+
+def main() -> None:
+    with variables.reported("trade", "every row measured is kept, run it again to go on"):
+        values = variables.given(sys.argv[1:], VARIABLES)
+        pitch = variables.number(values, "PITCH", None, *PIXEL_PITCHES_MM, float)
+        count = int(variables.number(values, "RTL", 0, 0, 1000))
+        seed = int(variables.number(values, "SEED", 1, 0, 10**9))
+        simulator = variables.choice(values, "SIM", simulation.SIMULATORS)
+        if count:
+            simulation.check(simulator)
+        source = Path(values["PRESSES"]) if "PRESSES" in values else data_folder()
+        study = prepare(Path(values.get("OUT", DEFAULT_OUT)).resolve(), source.resolve(), pitch)
+        rows = study_rows(study, plan())
+        print(summary(rows))
+        write_beaten(rows, study.folder)
+        draw(rows, study.folder / "trade.png")
+        print(f"results: {os.path.relpath(study.folder)}")
+        sys.exit(variables.MISMATCH if count and in_rtl(study, rows, count, seed, simulator) else variables.EQUAL)

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Search of `make tune`: the cheapest word lengths whose error is within a target, and the limits of the user."""
+
+import math
+from bisect import bisect_left
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+from commands.hardware.targets import TARGETS, Target
+from tactile_depth.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WIDTHS, Configuration
+from tactile_depth.cost import Cost, cost
+from tactile_depth.devices import Device
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of the user; an infinite value is no limit."""
+
+    tolerance: float
+    latency_us: float  # first pixel to first depth
+    map_latency_us: float  # last pixel to last depth
+    clock_mhz: float
+    multipliers: float
+    luts: float
+    memory_kbit: float
+    target: Target = TARGETS["xczu7ev"]
+
+    @property
+    def device(self) -> Device:
+        """Device whose multipliers and LUTs count."""
+        return self.target.device
+
+    def weight(self, counted: Cost) -> float:
+        """Return the cost of a configuration: its shares of multipliers, LUTs and memory bits of the device."""
+        return self.target.share(counted.multipliers_of(self.device), counted.luts_of(self.device), counted.memory_bits)
+
+    def broken(self, counted: Cost) -> list[str]:
+        """Return the limits that a configuration exceeds, apart from the tolerance."""
+        latency = counted.first_depth_cycles / self.clock_mhz
+        checks = (
+            ("MAX_LATENCY_US", latency, self.latency_us),
+            ("MAX_MAP_LATENCY_US", counted.map_cycles / self.clock_mhz, self.map_latency_us),
+            ("MAX_DSP", counted.multipliers_of(self.device), self.multipliers),
+            ("MAX_LUT", counted.luts_of(self.device), self.luts),
+            ("MAX_MEMORY_KBIT", counted.memory_bits / 1000, self.memory_kbit),
+        )
+        return [f"{name}={limit:g} (it takes {value:,.5g})" for name, value, limit in checks if value > limit]
+
+
+@dataclass(frozen=True, order=True)
+class Widths:
+    """Point of the search."""
+
+    solver: str
+    data: int
+    coefficient: int
+    lanes: int = 1
+    gain: int = Configuration.gain_width
+
+    def __str__(self) -> str:
+        lanes = f" LANES={self.lanes}" if self.lanes > 1 else ""
+        gain = f" GAIN_WIDTH={self.gain}" if self.gain != Configuration.gain_width else ""
+        return f"SOLVER={self.solver} DATA_WIDTH={self.data} COEFF_WIDTH={self.coefficient}{gain}{lanes}"
+
+
+@dataclass
+class Search:
+    """Search of the cheapest point within the tolerance and the limits.
+
+    As a width grows, the error falls (apart from little noise) and the cost grows. So for each data width only the
+    narrowest coefficient that meets the tolerance can be the cheapest. That coefficient does not grow with the data
+    width, and both are found by bisection. Every point that is returned has been measured.
+    """
+
+    build: Callable[[Widths], Configuration | None]  # None: cannot be built
+    measure: Callable[[Configuration], float]  # largest error of the frames for tuning, % of peak
+    limits: Limits
+    target: float  # target of that error
+    lanes: Mapping[str, int] = field(default_factory=dict)  # of a solver, by default one
+    tried: dict[Widths, float] = field(default_factory=dict)
+
+    def point(self, solver: str, data: int, coefficient: int) -> Widths:
+        return Widths(solver, data, coefficient, self.lanes.get(solver, 1))
+
+    def error(self, at: Widths) -> float:
+        if at not in self.tried:
+            config = self.build(at)
+            self.tried[at] = math.inf if config is None else self.measure(config)
+        return self.tried[at]
+
+    def meets(self, at: Widths) -> bool:
+        return self.error(at) <= self.target
+
+    def cost(self, at: Widths) -> Cost | None:
+        config = self.build(at)
+        return None if config is None else cost(config)
+
+    def allowed(self, at: Widths) -> bool:
+        counted = self.cost(at)
+        return counted is not None and not self.limits.broken(counted)
+
+    def rank(self, at: Widths) -> tuple[float, int]:
+        counted = self.cost(at)
+        return (math.inf, 0) if counted is None else (self.limits.weight(counted), counted.first_depth_cycles)
+
+    def cheapest(self, solvers: list[str]) -> Widths | None:
+        candidates: list[Widths] = []
+        for solver in solvers:
+            widest = self.point(solver, DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1])
+            if not self.meets(widest):
+                continue
+            coefficient = COEFFICIENT_WIDTHS[1]
+            data = _least(*DATA_WIDTHS, lambda d: self.meets(replace(widest, data=d)))  # noqa: B023
+            for width in range(data, DATA_WIDTHS[1] + 1):
+                least = self.point(solver, width, COEFFICIENT_WIDTHS[0])
+                if self.build(least) is not None and (
+                    not self.allowed(least) or (candidates and self.rank(least) >= min(map(self.rank, candidates)))
+                ):
+                    break  # no coefficient meets the target, and wider words do not either
+                row = replace(widest, data=width)
+                coefficient = _least(
+                    COEFFICIENT_WIDTHS[0],
+                    coefficient,
+                    lambda c: self.meets(replace(row, coefficient=c)),  # noqa: B023
+                )
+                point = replace(row, coefficient=coefficient)
+                if self.meets(point) and self.allowed(point):
+                    candidates.append(point)
+        return self.with_short_gains(min(candidates, key=self.rank)) if candidates else None
+
+    def with_short_gains(self, at: Widths) -> Widths:
+        """Return a point with the shortest gains of the flat field that meet the target."""
+        config = self.build(at)
+        if config is None or not config.flat_field:
+            return at
+
+        def enough(width: int) -> bool:
+            point = replace(at, gain=width)
+            return self.build(point) is not None and self.meets(point)
+
+        return replace(at, gain=_least(GAIN_WIDTHS[0], at.gain, enough))
+
+    def nearest(self, solvers: list[str]) -> Widths | None:
+        """Return the point of the smallest error within the limits."""
+        corners = []
+        for solver in solvers:
+            for coefficient in range(COEFFICIENT_WIDTHS[0], COEFFICIENT_WIDTHS[1] + 1):
+                widths = (
+                    self.point(solver, data, coefficient) for data in range(DATA_WIDTHS[1], DATA_WIDTHS[0] - 1, -1)
+                )
+                widest = next(filter(self.allowed, widths), None)
+                corners += [] if widest is None else [widest]
+        outer = [a for a in corners if not any(_wider(b, a) for b in corners)]
+        return min(outer, key=self.error) if outer else None
+
+
+def _wider(a: Widths, b: Widths) -> bool:
+    """Return True if a is at least as wide as b in every word, and wider in one."""
+    return a != b and a.solver == b.solver and a.data >= b.data and a.coefficient >= b.coefficient
+
+
+def _least(low: int, high: int, holds: Callable[[int], bool]) -> int:
+    """Return the least value in low..high from which on a condition holds, by bisection; it must hold at `high`."""
+    return low + bisect_left(range(low, high), True, key=holds)
