@@ -66,16 +66,23 @@ def errors(depth_px: np.ndarray, reference_px: np.ndarray) -> dict[str, list[flo
 
 
 def depth_px(
-    frames: np.ndarray, config: Configuration, calibration: Sensor, monitor: Monitor | None = None
+    frames: np.ndarray,
+    config: Configuration,
+    calibration: Sensor,
+    monitor: Monitor | None = None,
+    zero: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Return the depth of frames by the bit-accurate model in grid pixels, rows in the order of the input."""
+    """Return the depth of frames by the bit-accurate model in grid pixels, rows in the order of the input.
+
+    `zero` is that of `tactile_depth`.
+    """
     step = max(1, PIXELS_AT_ONCE // (config.rows * config.columns))
     tables = slope_tables(calibration, config)
     parts = []
     for i in range(0, len(frames), step):
         part = frames[i : i + step]
         light = light_of(part, tables, config)
-        parts.append(tactile_depth(part, calibration, config, monitor, tables=tables, light=light))
+        parts.append(tactile_depth(part, calibration, config, monitor, zero=zero, tables=tables, light=light))
     codes = np.concatenate(parts)
     if config.solver == "tridiagonal":  # this solver puts the bottom row out first
         codes = codes[..., ::-1, :]

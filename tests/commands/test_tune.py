@@ -14,7 +14,7 @@ import pytest
 from commands.common import published, run_request
 from commands.run import sim
 from commands.study import tune
-from commands.study.tune import Limits, Search, Widths
+from commands.study.tune_search import WORST_FRAME, Limits, Search, Widths
 from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
 from tactile_depth.cost import cost
 from tactile_depth.frames import load_frames
@@ -118,8 +118,8 @@ def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(
     report = json.loads((out / "report.json").read_text())
     proof = json.loads((out / "proof" / "report.json").read_text())
     assert proof["bit_exact"]
-    assert max(proof["rms_percent_of_peak"]) == report["worst_proven_percent"] <= report["tolerance_percent"]
-    assert report["worst_tuned_percent"] <= report["tolerance_percent"] / tune.MARGIN
+    assert max(proof["rms_percent_of_peak"]) == report["proven_percent"] <= report["tolerance_percent"]
+    assert report["tuned_percent"] <= report["tolerance_percent"] / WORST_FRAME.margin
     assert proof["frames"] == len(report["proven_on"])
     assert report["chosen"]["multipliers"] <= report["default"]["multipliers"]
     assert report["chosen"]["memory_bits"] < report["default"]["memory_bits"]
