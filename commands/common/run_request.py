@@ -38,6 +38,12 @@ ACCEPTED = (
 )
 CAMERA = ("CAMERA", "BAYER", "WINDOW")  # variables of commands that convert pictures to the stream of a camera
 WITH_CAMERA = (*ACCEPTED, *CAMERA)
+WORDS = {  # variables, by arguments of td.Pipeline
+    "data_width": "DATA_WIDTH",
+    "coefficient_width": "COEFF_WIDTH",
+    "gain_width": "GAIN_WIDTH",
+    "depth_range_mm": "DEPTH_RANGE",
+}
 LARGEST_CONFIG = 65_536  # bytes of a configuration file
 
 
@@ -163,6 +169,7 @@ def preset_values(preset: Preset, values: Mapping[str, str]) -> dict[str, str]:
     elif rows != columns and values.get("SOLVER") == SOLVERS[0]:
         rows = columns = values.get("COLS") or values.get("ROWS") or columns
     chosen |= {"ROWS": rows, "COLS": columns}
+    chosen |= {WORDS[name]: f"{value:g}" for name, value in preset.words.items()}
     if preset.zero_offset:
         drawn = values["FRAMES"] in SCENES
         chosen["CALIBRATION"] = BUILT_IN[0] if drawn else preset.calibration

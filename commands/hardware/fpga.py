@@ -113,7 +113,7 @@ def parse(arguments: list[str]) -> Request:
     if clock_mhz not in map(str, CLOCKS_MHZ):
         raise InputError(f"CLOCK_MHZ={clock_mhz}: accepted are {', '.join(map(str, CLOCKS_MHZ))}")
     sensor = _sensor(values)
-    design = run_request.of_values(values, run_request.WITH_CAMERA, "sensor", "")
+    design = run_request.of_values(values, run_request.WITH_CAMERA, "chip", "")
     return Request(target, numbers, minutes, int(clock_mhz), sensor, design)
 
 

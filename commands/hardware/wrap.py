@@ -29,7 +29,7 @@ def main() -> None:
         tables = values.get("TABLES", "./")
         if not tables.endswith("/") or '"' in tables:
             raise InputError(f"TABLES={tables}: accepted is the folder of the table files, with a / at its end")
-        request = run_request.of_values(values, run_request.WITH_CAMERA, "sensor", "")
+        request = run_request.of_values(values, run_request.WITH_CAMERA, "chip", "")
         out = request.out or repository.ROOT / "build" / "wrap" / name
         frames, calibration, config = synthesis.design(request)
         zero = zero_of(untouched(request, frames), calibration, config)

@@ -17,7 +17,7 @@ from commands.study import tune
 from tactile_depth.built_in import load
 from tactile_depth.errors import InputError
 from tactile_depth.pipeline import Pipeline
-from tactile_depth.presets import PRESETS, SENSOR
+from tactile_depth.presets import CHIP, PRESETS, SENSOR
 from tactile_depth.tactile_depth import default_parameters, top_parameters
 from tests.drawn_light import no_contact
 
@@ -107,7 +107,7 @@ def test_an_unknown_preset_is_refused() -> None:
 
 def test_the_preset_of_each_command() -> None:
     assert synth.parse([])[-1].preset == "sensor"
-    assert fpga.parse(["TARGET=ulx3s"]).design.preset == "sensor"
+    assert fpga.parse(["TARGET=ulx3s"]).design.preset == "chip"
     assert tune.parse([])[0].preset == "sensor"
     assert run_request.parse([]).preset == "published"
 
@@ -125,9 +125,9 @@ def test_the_module_of_a_reference_is_that_of_the_python_package(tmp_path: Path)
     command = [sys.executable, "-m", "commands", "wrap", *words]
     result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=True)
     assert result.stdout.startswith(
-        "preset sensor: tridiagonal, neumann, 96 x 128, cubic, flat field, zero offset, light gains\n"
+        "preset chip: tridiagonal, neumann, 96 x 128, cubic, flat field, zero offset, light gains\n"
     )
-    pipeline = Pipeline(load("gelsight-mini"), reference=picture)
+    pipeline = Pipeline(load("gelsight-mini"), reference=picture, **CHIP.words)  # type: ignore[arg-type]
     described = json.loads(pipeline.hardware(tmp_path / "hardware").read_text())
     assert (out / "tactile_depth_finger.sv").read_text() == wrapper.wrapper("finger", described["fields"])
     for name in described["tables"]:
