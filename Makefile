@@ -46,8 +46,8 @@ override need_icarus := command -v iverilog > /dev/null || { \
 
 # Targets that run the command of their name; those of WITH_ICARUS need Icarus whatever the variables say.
 override WITH_ICARUS := lint mutate netlists quick regress test upsets
-override COMMANDS := $(WITH_ICARUS) asic baselines calibrate certify coverage extremes formal fpga presses reflex \
-  registers report sign-off sim sweep synth trade tune wrap
+override COMMANDS := $(WITH_ICARUS) asic baselines calibrate certify coverage extremes figures formal fpga presses \
+  reflex registers report sign-off sim sweep synth trade tune wrap
 
 .PHONY: help live-test system-tools setup clean $(COMMANDS)
 override .DEFAULT_GOAL := sim
@@ -117,6 +117,9 @@ baselines: $(BASELINES)
 
 # Write an HTML page with figures of latency, throughput, error, cost and extremes.
 report: $(STAMP)
+
+# Write the tables of docs/results.md, docs/hardware.md and docs/software.md.
+figures: $(STAMP)
 
 # Fit a calibration file to ball presses of known diameter. PRESSES=folder OUT=mine.npz
 calibrate: $(STAMP)

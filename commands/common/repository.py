@@ -8,7 +8,7 @@ from the tree, and no list is kept by hand.
 import importlib
 import re
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -93,8 +93,11 @@ def tested(names: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(tops.get(name, name) for name in names))
 
 
-def sources(top: str | None = None) -> list[Path]:
-    """Return the files of hdl/ that a core needs, itself among them, packages first; all of them if top is None."""
+def sources(top: str | None = None, without: Iterable[str] = ()) -> list[Path]:
+    """Return the files of hdl/ that a core needs, itself among them, packages first; all of them if top is None.
+
+    The cores `without` are left out, with what only they need.
+    """
     files = {file.stem: file for file in HDL.rglob("*.sv")}
     packages = {name for name in files if name.endswith(PACKAGE)}
     needed = set(files)
@@ -104,7 +107,7 @@ def sources(top: str | None = None) -> list[Path]:
             name = waiting.pop()
             needed.add(name)
             instances = re.findall(r"^ +(\w+) (?:#\(|u_\w+ \()", files[name].read_text(), re.MULTILINE)
-            waiting += [used for used in instances if used in files and used not in needed]
+            waiting += [used for used in instances if used in files and used not in needed | {*without}]
     return [files[name] for name in sorted(needed, key=lambda name: (name not in packages, name))]
 
 
@@ -112,6 +115,11 @@ def stated(core: str, name: str) -> Any:
     """Return what the test of a core states under a name (tb/structures.py), None if it states nothing."""
     file = ROOT / "tests" / cores()[core].block / f"test_{core}.py"
     return getattr(importlib.import_module(module(file)), name, None) if file.is_file() else None
+
+
+def code(text: str) -> str:
+    """Return SystemVerilog without comments, each run of white space as one space."""
+    return " ".join(re.sub(r"//.*|/\*.*?\*/", "", text).split())
 
 
 def structures(core: str) -> list[Structure]:

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import repository, run_request, variables
+from commands.common import recorded, repository, run_request, variables
 from commands.common.markdown import table
 from commands.hardware import estimate, gate_sim, memory_model, synthesis, yosys
 from commands.hardware.gate_power import DATA, NAMES, power_of, typical
@@ -48,6 +48,7 @@ METHOD = (
     f"energy tables of the library. Memories: {memory_model.METHOD}. Left out: wires, clock tree, leakage of memories, "
     "input and output cells, test structures."
 )
+CORES_RECORDED = 4  # the largest
 SDF_ITEM = re.compile(
     r"\(INSTANCE ?(c\d+)?\)|\(IOPATH\s+(?:\(\w+\s+)?(\w+)\)?\s+(\w+)\s+\(([^)]*)\)(?:\s*\(([^)]*)\))?"
 )
@@ -225,6 +226,16 @@ def rows(report: Mapping[str, Any]) -> list[list[str]]:
     ]
 
 
+def recordable(report: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what docs/figures.json keeps of a report."""
+    kept = ("core", "area_um2", "with_delays_mw", "delay_factor")
+    return {
+        "figures": report["figures"][:3],
+        "worst_slack_ns": report["timing"]["worst_slack_ns"],
+        "cores": [{name: row[name] for name in kept} for row in report["cores"][:CORES_RECORDED]],
+    }
+
+
 def text(report: Mapping[str, Any]) -> str:
     """Return the printed report."""
     head = ("core (without cores inside)", "cells", "area, mm2", "delays", "mW")
@@ -297,6 +308,12 @@ def measure(request: run_request.Request, options: Options, work: Path) -> dict[
     }
 
 
+def sources(arguments: list[str]) -> str:
+    """Return the digest of what decides the figures of a run. Raises InputError."""
+    values = variables.given(arguments, (*OWN, *run_request.ACCEPTED))
+    return synthesis.sources(run_request.of_values(values, preset="sensor"))
+
+
 def run(request: run_request.Request, options: Options, command: str) -> int:
     """Run the flow and return the exit status."""
     for tool, package in TOOLS.items():
@@ -314,6 +331,7 @@ def run(request: run_request.Request, options: Options, command: str) -> int:
     print(text(report))
     wrong = report["codes_wrong"] + report["clocks_wrong_with_delays"]
     print(f"gates {'DIFFER from' if wrong else 'equal'} the model: {report['codes']:,} codes")
+    recorded.record("asic", command.split()[2:], recordable(report))
     print(f"results: {os.path.relpath(out)}")
     return variables.MISMATCH if wrong else variables.EQUAL
 

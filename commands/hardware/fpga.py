@@ -27,7 +27,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from commands.common import repository, run_request, variables, wrapper
+from commands.common import recorded, repository, run_request, variables, wrapper
 from commands.common.repository import ROOT
 from commands.common.signals import threads
 from commands.hardware import ecp5, synthesis, yosys
@@ -56,6 +56,7 @@ FIFO_LOG2 = 4  # of the receiver's queue
 POINTER_BITS = 2 * (FIFO_LOG2 + 1)
 MISSES = "misses-its-clock"  # in the file name of such a bitstream
 SENSOR_FORMAT = "raw8"  # that the lists of registers set
+RECORDED = ("clock_mhz", "fmax_mhz", "fmax_mhz_by_seed", "camera_fmax_mhz", "crossing_ns_by_seed", "utilization")
 CHOICES = (*CONFIGURING, "FRAMES", "OUT")
 LARGEST_SEED = 2**31 - 1
 
@@ -402,10 +403,17 @@ def run(request: Request, command: str) -> int:
         earlier = [path.name for path in out.glob("*.bit")]
         files.replace(work, (report["bitstream"], "fpga.json"), out, earlier)
     print(table(report))
+    recorded.record("fpga", command.split()[2:], {name: report[name] for name in RECORDED if name in report})
     print(f"results: {os.path.relpath(out)}")
     for line in (problems := missed(report)):
         print(line)
     return variables.MISMATCH if problems else variables.EQUAL
+
+
+def sources(arguments: list[str]) -> str:
+    """Return the digest of what decides the figures of a run. Raises InputError."""
+    request = parse(arguments)
+    return synthesis.sources(request.design, [*repository.TECHNOLOGY, *repository.BOARDS[request.target]])
 
 
 def table(report: dict[str, Any]) -> str:

@@ -25,7 +25,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from commands.common import published, repository, run_request, variables
+from commands.common import published, recorded, repository, run_request, variables
 from commands.common.markdown import table
 from commands.common.signals import threads
 from commands.hardware import ecp5, synthesis, yosys
@@ -343,6 +343,26 @@ def keep_sources(folder: Path, config: Configuration, out: Path) -> None:
     (out / "parameters.txt").write_text(parameters + "\n")
 
 
+def sources(arguments: list[str]) -> str:
+    """Return the digest of what decides the figures of a run. Raises InputError."""
+    _, _, grids, request = parse(arguments)
+    return recorded.digest([], [synthesis.sources(each) for each, reason in designs(request, grids) if not reason])
+
+
+def recordable(built: Sequence[Design]) -> dict[str, Any]:
+    """Return what docs/figures.json keeps of designs: what `grid_rows` reads."""
+    kept_figures = [
+        {
+            "configuration": {name: each.configuration[name] for name in ("grid", "solver", "lanes")},
+            "totals": {name: round(count, 1) for name, count in each.totals.items()},
+            "details": {name: round(count, 1) for name, count in each.details.items() if name == "memory in UltraRAM"},
+            "misfit": each.misfit,
+        }
+        for each in built
+    ]
+    return {"designs": kept_figures}
+
+
 def run(arguments: list[str]) -> int:
     """Run the flow and return the exit status."""
     target, name, grids, request = parse(arguments)
@@ -378,6 +398,7 @@ def run(arguments: list[str]) -> int:
             document["designs"].append(asdict(built[-1]))
             (work / "resources.json").write_text(json.dumps(document, indent=1) + "\n")
             files.replace(work, ["resources.json"], out)
+    recorded.record("synth", arguments, recordable(built))
     if grids:
         head, *rows = grid_rows(document)
         print("\n".join([table(head, rows), *target.notes]))

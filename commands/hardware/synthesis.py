@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 
-from commands.common import repository, run_request
+from commands.common import recorded, repository, run_request
 from tactile_depth import files
 from tactile_depth.built_in import load
 from tactile_depth.configuration import Configuration
@@ -14,6 +14,7 @@ from tactile_depth.frames import REST_SCENE, Frames, flat_frames, load_frames, o
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import hdl_parameters, write_roms
 
+SOLVERS = {"spectral_solver", "tridiagonal_solver", "wide_solver"}
 # Small ROMs are LUTs. For Yosys "distributed" is a RAM of LUTs, and it has none with a read port alone.
 SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
 
@@ -36,6 +37,23 @@ def design(request: run_request.Request) -> tuple[Frames, Sensor, Configuration]
         frames = load_frames(source, size, request.reference, request.seed, request.press, request.camera)
     calibration = on_grid(calibration, frames)
     return frames, calibration, run_request.configure(request, calibration)
+
+
+def sources(request: run_request.Request, extra: Iterable[Path] | None = None) -> str:
+    """Return a digest of what decides a design's hardware: RTL, parameters and tables. Raises InputError.
+
+    `extra` are sources of a board, which takes all of hdl/ beside them.
+    """
+    frames, calibration, config = design(request)
+    unused = SOLVERS - {"wide_solver" if config.lanes > 1 else f"{config.solver}_solver"}
+    tops = ["tactile_depth", *(["camera_unit"] if frames.camera else [])]
+    needed = (
+        [file for top in tops for file in repository.sources(top, unused)] if extra is None else repository.sources()
+    )
+    with files.temporary() as folder:
+        write_roms(folder, calibration, config)
+        parameters = hdl_parameters(config, calibration.pixel_pitch_mm, frames.camera)
+        return recorded.digest([*needed, *(extra or ()), *folder.glob("*.hex")], parameters)
 
 
 def workspace(out: Path, names: Iterable[str]) -> AbstractContextManager[Path]:

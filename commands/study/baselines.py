@@ -25,10 +25,11 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -37,7 +38,7 @@ import matplotlib
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import markdown, published, repository, variables
+from commands.common import markdown, published, recorded, repository, variables
 from commands.common.machine import machine
 from tactile_depth import files, reference
 from tactile_depth.built_in import synthetic
@@ -51,13 +52,15 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 from matplotlib.lines import Line2D
 
-from commands.study.baseline_methods import METHODS, Solve, missing
+from commands.study import baseline_throughput
+from commands.study.baseline_methods import COMPILER, METHODS, SIMD_SOLVER, missing
+from commands.study.baseline_throughput import FEWEST_RUNS, WARM_UPS, timed
 
 RESULTS = ("baselines.json", "baselines.png")
 DEFAULT_OUT = repository.ROOT / "build" / "baselines"
 GRIDS = (64, 128, 256, 512)
 SCENE = "bench"
-WARM_UPS, RUNS, FEWEST_RUNS = 100, 1000, 10
+RUNS = 1000
 QUIET_LOAD = 0.5  # of other programs, at most, before times are taken
 SECONDS = 480  # for all solves together: if threads or other programs disturb each other, a solve may take 0.1
 # RMS of a result to double precision in % of peak: measured at most 0.00005 (PyTorch's products of matrices at 512).
@@ -115,31 +118,17 @@ def measure(job: Job) -> list[dict[str, Any]]:
         if not error <= TOLERANCE_PERCENT:
             results.append({"error_percent": error, "problem": "wrong result"})
             continue
-        wait = prepared.synchronise or (lambda: None)
+        wait = prepared.synchronise
         gc.disable()
         half = (time.monotonic() + end) / 2
         if prepared.clock:
             times = prepared.clock(inputs, WARM_UPS) and prepared.clock(inputs, job.runs)
         else:
-            times = _timed(prepared.solve, inputs, wait, WARM_UPS, half) and _timed(
-                prepared.solve, inputs, wait, job.runs, end
-            )
+            solve = partial(timed, prepared.solve, inputs, wait=wait)
+            times = solve(WARM_UPS, end=half) and solve(job.runs, end=end)
         gc.enable()
         results.append({"error_percent": error, "times_us": times})
     return results
-
-
-def _timed(solve: Solve, inputs: Sequence[Any], wait: Callable[[], None], runs: int, end: float) -> list[float]:
-    """Return the times in us of `runs` solves, or of those before the end, at least FEWEST_RUNS."""
-    times: list[float] = []
-    while len(times) < runs and (time.monotonic() < end or len(times) < FEWEST_RUNS):
-        one = inputs[len(times) % len(inputs)]
-        wait()
-        begin = time.perf_counter_ns()
-        solve(one)
-        wait()
-        times.append((time.perf_counter_ns() - begin) / 1000)
-    return times
 
 
 def begin_process(threads: int) -> None:
@@ -254,6 +243,7 @@ def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]
             f"{row['method']} at {row['grid']}, {row['threads']} threads, is {row['error_percent']:.2g} % of peak from "
             f"the reference: at most {TOLERANCE_PERCENT:g} is right"
         )
+    software = [summarise(dict(row)) for row in rows]
     packages = sorted({package for method in METHODS for package in method.packages if not missing(method)})
     document = {
         "machine": machine(),
@@ -263,7 +253,8 @@ def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]
         "warm_ups": WARM_UPS,
         "runs": request.runs,
         "tolerance_percent": TOLERANCE_PERCENT,
-        "software": [summarise(dict(row)) for row in rows],
+        "software": software,
+        "throughput": baseline_throughput.measure(fastest(software), scenes),
         "pipeline": pipeline(request.grids, request.clock_mhz),
     }
     return document, rows
@@ -274,8 +265,8 @@ def threads_of(row: dict[str, Any]) -> str:
 
 
 def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
-    """Return title, head and rows of each table: a summary, and one table for each grid."""
-    made = [summary(document)]
+    """Return title, head and rows of each table: a summary, throughput, and one table for each grid."""
+    made = [summary(document), throughput(document)]
     head = ("from the frame's last pixel, us", "threads", "p50", "p99", "maximum", "error, % of peak")
     for size in sorted({row["grid"] for row in document["pipeline"]}):
         rows: list[tuple[str, ...]] = []
@@ -296,12 +287,12 @@ def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tu
     return made
 
 
-def fastest(document: dict[str, Any]) -> list[dict[str, Any]]:
+def fastest(software: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return for each grid the row of the least median of the methods from the divergence, and of those from pixels."""
-    timed = [row for row in document["software"] if "p50_us" in row]
+    with_times = [row for row in software if "p50_us" in row]
     groups = [
-        [row for row in timed if row["grid"] == size and row["from_pixels"] == from_pixels]
-        for size in sorted({row["grid"] for row in document["pipeline"]})
+        [row for row in with_times if row["grid"] == size and row["from_pixels"] == from_pixels]
+        for size in sorted({row["grid"] for row in with_times})
         for from_pixels in (False, True)
     ]
     return [min(group, key=lambda row: row["p50_us"]) for group in groups if group]
@@ -310,7 +301,7 @@ def fastest(document: dict[str, Any]) -> list[dict[str, Any]]:
 def summary(document: dict[str, Any]) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
     """Return title, head and rows of a table with a line per grid and place where software begins."""
     rows = []
-    for best in fastest(document):
+    for best in fastest(document["software"]):
         ours = [
             f"{row['first_depth_us']:,.1f} / {row['last_depth_us']:,.1f}"
             + (f" ({row['lanes']} lanes)" if row["lanes"] > 1 else "")
@@ -324,6 +315,28 @@ def summary(document: dict[str, Any]) -> tuple[str, tuple[str, ...], list[tuple[
     pipelines = (f"{column}: first depth / whole map" for column in columns)
     head = ("us after the last pixel", "software from", "fastest, threads", "p50", "p99", "maximum", *pipelines)
     return "In short", head, rows
+
+
+def throughput(document: dict[str, Any]) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
+    """Return title, head and rows of a table of frames per second: software on one core and on all, and the pipeline.
+
+    The pipeline takes one pixel per clock whatever its lanes are. Software that was not measured has "-".
+    """
+    rates = {
+        (row["grid"], row["from_pixels"], row["cores"]): row["frames_per_second"] for row in document["throughput"]
+    }
+    most = max((cores for *_, cores in rates), default=2)
+    rows = []
+    for best in fastest(document["software"]):
+        size, from_pixels = best["grid"], best["from_pixels"]
+        ours = 1e6 * document["clock_mhz"] / size**2
+        measured = [rates.get((size, from_pixels, cores)) for cores in (1, most)]
+        each = [f"{rate:,.0f} ({rate / ours:.1f} times)" if rate else "-" for rate in measured]
+        alone = f"{1e6 / best['p50_us']:,.0f}"
+        rows.append((f"{size} x {size}", begins(best), best["method"], alone, *each, f"{ours:,.0f}"))
+    batches = ("in batches, one thread (of the pipeline's)", f"in batches, {most} threads (of the pipeline's)")
+    head = ("frames per second", "software from", "fastest", "1 / median latency", *batches, "pipeline")
+    return "Throughput", head, rows
 
 
 def begins(row: dict[str, Any]) -> str:
@@ -343,7 +356,7 @@ def sentences(document: dict[str, Any]) -> list[str]:
         return f"before its median, {row['p50_us'] / micros:.1f} times as early"
 
     lines = []
-    for best in fastest(document):
+    for best in fastest(document["software"]):
         size = best["grid"]
         parts = [
             f"the {what} of the {pipeline_name(row)} ({row[key]:,.1f}) comes {place(row[key], best)}"
@@ -421,8 +434,8 @@ def show(document: dict[str, Any]) -> str:
     return "\n\n".join([setting(document), *parts, "\n".join(sentences(document))])
 
 
-def run(request: Request) -> None:
-    """Measure, print, and write baselines.json and baselines.png, both or none of them.
+def run(request: Request) -> dict[str, Any]:
+    """Measure, print, write baselines.json and baselines.png, both or none of them, and return the first.
 
     Raises InputError, Mismatch or RuntimeError; InputError on a busy machine.
     """
@@ -438,8 +451,22 @@ def run(request: Request) -> None:
         plot(work / "baselines.png", document, rows)
         files.replace(work, RESULTS, request.out)
     print(f"results: {os.path.relpath(request.out)}")
+    return document
+
+
+def sources(_: Sequence[str]) -> str:
+    """Return the digest of the code of this repository that is timed."""
+    return recorded.digest([SIMD_SOLVER], COMPILER)
+
+
+def recordable(document: dict[str, Any]) -> dict[str, Any]:
+    """Return what docs/figures.json keeps: setting, throughput, and the times of methods that ran."""
+    kept = ("grid", "method", "threads", "from_pixels", "error_percent", "p50_us", "p99_us", "max_us")
+    software = [{name: row[name] for name in kept} for row in document["software"] if "p50_us" in row]
+    left_out = ("tolerance_percent", "pipeline")  # the pages have the cycles of the present RTL
+    return {name: value for name, value in document.items() if name not in left_out} | {"software": software}
 
 
 def main() -> None:
     with variables.reported("baselines", "nothing was written"):
-        run(parse(sys.argv[1:]))
+        recorded.record("baselines", sys.argv[1:], recordable(run(parse(sys.argv[1:]))))

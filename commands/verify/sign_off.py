@@ -7,7 +7,6 @@ file without comments, so that the page tells whether its RTL has changed since.
 
 import hashlib
 import json
-import re
 import sys
 from collections.abc import Mapping
 from typing import Any
@@ -37,8 +36,7 @@ HEAD = ("core", "proofs", "commit", "RTL since", "mutants", "score", "commit", "
 
 def fingerprint(text: str) -> str:
     """Return a fingerprint of SystemVerilog that comments and white space do not change."""
-    code = re.sub(r"//.*|/\*.*?\*/", "", text)
-    return hashlib.sha256(" ".join(code.split()).encode()).hexdigest()[:16]
+    return hashlib.sha256(repository.code(text).encode()).hexdigest()[:16]
 
 
 def load() -> dict[str, dict[str, Any]]:

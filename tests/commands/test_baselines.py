@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from commands.common.variables import Mismatch
-from commands.study import baseline_methods, baselines, report
+from commands.study import baseline_methods, baseline_throughput, baselines, report
 from commands.study.baseline_methods import METHODS, Method, Prepared
 from commands.study.baselines import WARM_UPS
 from tactile_depth.configuration import Configuration
@@ -85,11 +85,39 @@ def test_a_small_run(tmp_path: Path, monkeypatch: Any) -> None:
     assert timed["error_percent"] <= baselines.TOLERANCE_PERCENT
     assert missing["problem"] == "no-such-package not installed"
     assert "absent" in baselines.show(document)
+    (batch,) = document["throughput"]
+    assert (batch["cores"], batch["method"]) == (1, METHODS[0].name)
+    assert batch["frames_per_second"] > 0
 
     monkeypatch.setattr(baselines, "DEFAULT_OUT", tmp_path)  # make report takes what is there
     section = report.baselines_figure(report.document_of(baselines, "baselines")).section()
     assert "data:image/png" in section
     assert "no-such-package not installed" in section
+
+
+def row(grid: int, p50_us: float, from_pixels: bool) -> dict[str, Any]:
+    return {"grid": grid, "method": "C", "threads": 1, "from_pixels": from_pixels, "p50_us": p50_us}
+
+
+def test_throughput_is_a_table_of_its_own() -> None:
+    rate = {"grid": 64, "from_pixels": False, "cores": 2, "frames_per_second": 1_000_000.0}
+    software = [row(64, 2.0, False), row(64, 3.0, False), row(64, 4.0, True)]
+    _, head, rows = baselines.throughput({"software": software, "throughput": [rate], "clock_mhz": 4.096})
+    assert head[5].startswith("in batches, 2 threads")
+    assert rows == [
+        ("64 x 64", "divergence", "C", "500,000", "-", "1,000,000 (1000.0 times)", "1,000"),
+        ("64 x 64", "pixels", "C", "250,000", "-", "-", "1,000"),
+    ]
+
+
+def test_batches_run_on_all_cores_at_once() -> None:
+    cores = sorted(baselines.os.sched_getaffinity(0))
+    assert baseline_throughput.frames_per_second(0, baselines.scene(16).divergence, 1e5, cores) > 0
+
+
+def test_a_batch_that_crashes_is_a_failure() -> None:
+    with pytest.raises(RuntimeError, match="ended without a result"):
+        baseline_throughput.frames_per_second(0, np.zeros((1, 0, 0)), 1e6, [0])
 
 
 def test_a_busy_machine_gives_no_times(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make figures`: write the tables of docs/results.md, docs/hardware.md and docs/software.md.
+
+Cycles, multipliers, bits and errors of the arithmetic are computed here, by the models that the RTL is compared with.
+Figures of runs that take minutes come from docs/figures.json, each with its commit, and with "changed" where the RTL,
+parameters and tables of the run, or the code that was timed, are no longer those of that commit.
+"""
+
+import re
+import sys
+import textwrap
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from commands.common import published, recorded, run_request, variables
+from commands.common.markdown import compact
+from commands.common.repository import ROOT
+from commands.hardware import estimate, memory_model, synth
+from commands.run import sim
+from commands.run.sim_table import coefficient_words
+from commands.study import baselines
+from tactile_depth.accuracy import errors
+from tactile_depth.configuration import Configuration, most_lanes
+from tactile_depth.cost import cost
+from tactile_depth.frames import load_frames, on_grid
+from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
+
+PAGES = [ROOT / "docs" / f"{name}.md" for name in ("results", "hardware", "software")]
+TABLE = re.compile(r"(<!-- figures: ([^\n]+) -->\n).*?(\n<!-- end of figures -->)", re.DOTALL)
+GRIDS = (64, 128, 256)
+LANE_GRIDS = (*GRIDS, 512)
+FEWEST_LANES_AGAINST_SOFTWARE = 16
+FRAMES = "FRAMES=contacts"
+SOURCE = ("commit", "sources since")  # heads of the last columns of recorded figures
+
+
+def error_percent(arguments: list[str]) -> tuple[Configuration, str]:
+    """Return the configuration of `make sim` with these variables, and its RMS error in % of peak: mean (worst)."""
+    request = run_request.parse(arguments)
+    calibration, size = run_request.load_sensor(request), (request.rows, request.columns)
+    frames = load_frames(request.frames, size, request.reference, request.seed, request.press, request.camera)
+    calibration = on_grid(calibration, frames)
+    config = run_request.configure(request, calibration)
+    light = sim.light_of_stream(frames.pixels, calibration, config, 1)
+    no_contact = sim.untouched(request, frames)
+    zero = sim.zero_of(no_contact, calibration, config)
+    codes, _ = sim.expected(frames.pixels, calibration, config, 1, zero, light)
+    down = -1 if config.solver == "tridiagonal" else 1
+    exact = sim.exact_depth(frames.pixels, no_contact, calibration, config, None if light is None else light[0])
+    depth_px = codes.reshape(-1, *size)[:, ::down] * config.depth_lsb_px
+    rms = [value for value in errors(depth_px, exact)["rms_percent_of_peak"] if value is not None]
+    return config, f"{np.mean(rms):.4f} ({max(rms):.4f})"
+
+
+def configurations(*arguments: str, neumann: bool = False) -> str:
+    """Return the table of a configuration over GRIDS; with `neumann` the error with that boundary too."""
+    runs = [error_percent([*arguments, FRAMES, f"N={size}"]) for size in GRIDS]
+    configs = [config for config, _ in runs]
+    costs = [cost(config) for config in configs]
+    rows = {
+        "first pixel to first depth, cycles": [f"{first_depth_latency(config):,}" for config in configs],
+        "last pixel to first depth, cycles": [f"{last_pixel_to_first_depth(config):,}" for config in configs],
+        "frame interval, cycles": [f"{config.rows * config.columns:,}" for config in configs],
+        "error, % of peak": [error for _, error in runs],
+    }
+    if neumann:
+        with_slopes = [error_percent([*arguments, "BOUNDARY=neumann", FRAMES, f"N={size}"])[1] for size in GRIDS]
+        rows["error, `BOUNDARY=neumann`"] = with_slopes
+    rows |= {
+        "multipliers 27 x 18": [str(one.tiles) for one in costs],
+        "all memories, bits": [f"{one.memory_bits:,}" for one in costs],
+        "coefficients of the solver, words": [f"{coefficient_words(config):,}" for config in configs],
+    }
+    return compact((f"`make sim {' '.join(arguments)} N=..`", *map(str, GRIDS)), [(n, *r) for n, r in rows.items()])
+
+
+def lane_configurations(fewest: int = 1) -> Iterator[Configuration]:
+    """Yield the tridiagonal solver with each number of lanes that is a power of two, colours as sent."""
+    for size in LANE_GRIDS:
+        lanes = fewest
+        while lanes <= most_lanes(size):
+            yield Configuration(columns=size, solver="tridiagonal", lanes=lanes)
+            lanes *= 2
+
+
+def lanes() -> str:
+    rows = []
+    for config in lane_configurations():
+        last, one = last_pixel_to_last_depth(config), cost(config)
+        cells = (f"{last_pixel_to_first_depth(config):,}", f"{last:,}", f"{last / published.CLOCK_MHZ:,.1f}")
+        grid = f"{config.rows} x {config.columns}"
+        rows.append((grid, config.lanes, *cells, one.tiles, f"{one.memory_bits / 1e6:.2f}"))
+    head = ("grid", "lanes", "first depth", "last depth", "last depth, us", "multipliers", "memory, Mbit")
+    return compact(head, rows)
+
+
+def published_design() -> str:
+    def of_grids(values: dict[int, int]) -> list[str]:
+        return [f"{values[size]:,}" if size in values else "-" for size in GRIDS]
+
+    dsp = {size: known["DSP48E2"] for size, known in published.RESOURCES.items() if "DSP48E2" in known}
+    error = f"{published.RMS_PERCENT} ({published.WORST_RMS_PERCENT})"
+    rows = [
+        ("first pixel to first depth, cycles", *of_grids(published.FIRST_DEPTH_CYCLES)),
+        ("error, % of peak, mean over 15 contacts (worst)", "-", error, "-"),
+        ("DSP48E2", *of_grids(dsp)),
+        ("as an ASIC, 45 nm", "-", f"{published.ASIC_AREA_MM2:.2f} mm2, {published.ASIC_POWER_MW:.0f} mW", "-"),
+    ]
+    for solver in estimate.RECORDED:
+        _, area, power, _ = estimate.at_45_nm(solver)
+        rows.append((f"this design, {solver}: estimate at 45 nm", "-", f"{area:.2f} mm2, {power:.0f} mW", "-"))
+    return compact(("published", *map(str, GRIDS)), rows)
+
+
+def estimated() -> str:
+    rows = []
+    for solver, logic in estimate.RECORDED.items():
+        _, area, power, _ = estimate.at_45_nm(solver)
+        memory = memory_model.area_um2(logic.memory_bits, memory_model.NODE_NM) / 1e6
+        least, greatest = logic.logic_mw
+        middle = sum(logic.logic_mw) / 2
+        sums = (f"{logic.logic_mm2} + {memory:.3f} = {area:.2f}", f"{middle:g} + {power - middle:.1f} = {power:.0f}")
+        rows.append((solver, f"{least:g} to {greatest:g}", f"{logic.memory_bits:,}", *sums))
+    rows.append(("published", "-", "-", f"{published.ASIC_AREA_MM2:.2f}", f"{published.ASIC_POWER_MW:.0f}"))
+    head = ("45 nm, 166 MHz, 128 x 128", "recorded logic, mW", "bits", "logic and memory, mm2", "logic and memory, mW")
+    return compact(head, rows)
+
+
+def runs(command: str) -> Iterator[tuple[str, dict[str, Any], tuple[str, str]]]:
+    """Yield name, figures and source cells of each recorded run of a command."""
+    for line, entry in sorted(recorded.load().items()):
+        if line.split()[1] == command and "figures" in entry:
+            yield entry.get("name", f"`{line}`"), entry["figures"], (entry["commit"], recorded.since(line, entry))
+
+
+def synthesized(over_grids: bool) -> str:
+    head, rows = ["make synth"], []
+    for name, figures, source in runs("synth"):
+        if (len(figures["designs"]) > 1) != over_grids:
+            continue
+        columns, *cells = synth.grid_rows(figures)
+        if over_grids:
+            head = [*columns[:-1], *SOURCE]
+            rows += [[*each[:-1], *(("stated", "-") if each[0] == "published" else source)] for each in cells]
+        else:
+            head = ["design", *columns[1:-1], *SOURCE]
+            rows += [[name, *each[1:-1], *source] for each in cells if each[0] != "published"]
+    return compact(head, rows)
+
+
+def routed() -> str:
+    rows = []
+    for name, figures, source in runs("fpga"):
+        clocks = ", ".join(f"{mhz:.1f}" for mhz in figures["fmax_mhz_by_seed"].values())
+        delays = figures.get("crossing_ns_by_seed", {}).values()
+        crossing = f"{max(delays):.2f} ns" if delays else "-"
+        used = (f"{figures['utilization'][cell]['used']:,}" for cell in ULX3S_CELLS)
+        clock = f"{figures['fmax_mhz']:.1f} ({clocks})"
+        rows.append((name, clock, figures["clock_mhz"], crossing, *used, *source))
+    head = (
+        "build",
+        "routed clock, MHz: median (each seed)",
+        "asked",
+        "bits that cross, at most",
+        *ULX3S_CELLS.values(),
+    )
+    return compact((*head, *SOURCE), rows)
+
+
+ULX3S_CELLS = {"MULT18X18D": "MULT18X18D", "DP16KD": "DP16KD", "TRELLIS_COMB": "LUT", "TRELLIS_FF": "registers"}
+
+
+def in_cells() -> str:
+    rows: list[tuple[object, ...]] = []
+    for name, figures, source in runs("asic"):
+        for index, row in enumerate(figures["figures"]):
+            slack = f"{figures['worst_slack_ns']:.2f}" if index == 0 else ""
+            what = f"{name}: {row['name']}" if index == 0 else row["name"]
+            rows.append((what, f"{row['area_mm2']:.2f}", f"{row['power_mw']:,.0f}", slack, *source))
+    return compact(("make asic", "area, mm2", "power, mW", "worst slack, ns", *SOURCE), rows)
+
+
+def by_core() -> str:
+    rows = [
+        (f"`{row['core']}`", name, f"{row['area_um2'] / 1e6:.2f}", f"{row['with_delays_mw']:.0f}",
+         f"{row['delay_factor']:.2f}", *source)
+        for name, figures, source in runs("asic")
+        for row in figures["cores"]
+    ]  # fmt: skip
+    powers = ("power with delays, mW", "power of toggling, with delays over without")
+    return compact(("core", "design", "area, mm2", *powers, *SOURCE), rows)
+
+
+def against_software() -> str:
+    """Return the table of the whole map against the fastest software, with present cycles at the published clock."""
+    text = ""
+    for name, document, source in runs("baselines"):
+        rows = []
+        best = {(row["grid"], row["from_pixels"]): row for row in baselines.fastest(document["software"])}
+        for config in lane_configurations(FEWEST_LANES_AGAINST_SOFTWARE):
+            solve, pixels = (best[config.columns, from_pixels] for from_pixels in (False, True))
+            cycles = last_pixel_to_last_depth(config)
+            micros = cycles / published.CLOCK_MHZ
+            times = (", ".join(f"{row[key]:,.1f}" for key in ("p50_us", "p99_us", "max_us")) for row in (solve, pixels))
+            earlier = (f"{row['p50_us'] / micros:.1f}" for row in (solve, pixels))
+            grid = f"{config.rows} x {config.columns}"
+            equal = f"{cycles / solve['p50_us']:.0f}"
+            rows.append((grid, config.lanes, f"{cycles:,}", f"{micros:.1f}", *times, *earlier, equal))
+        head = (
+            *("grid", "lanes", "last pixel to last depth, cycles", f"us at {published.CLOCK_MHZ:g} MHz"),
+            *("the solve in software, us: p50, p99, maximum", "from the pixels, us: p50, p99, maximum"),
+            *("the solve / pipeline", "from the pixels / pipeline", "clock at which map and solve are equal, MHz"),
+        )
+        setting = f"{name}: {baselines.setting(document)} (commit {source[0]}, {SOURCE[1]}: {source[1]})."
+        text += f"{textwrap.fill(setting, 120)}\n\n{compact(head, rows)}"
+    return text
+
+
+def software_throughput() -> str:
+    return "".join(compact(*baselines.throughput(document)[1:]) for _, document, _ in runs("baselines"))
+
+
+def software_methods() -> str:
+    head = ("128 x 128", "threads", "p50, us", "p99, us", "maximum, us", "error, % of peak")
+    rows = [
+        (row["method"], row["threads"], *(f"{row[key]:,.1f}" for key in ("p50_us", "p99_us", "max_us")),
+         f"{row['error_percent']:.6f}")
+        for _, document, _ in runs("baselines")
+        for row in document["software"]
+        if row["grid"] == 128
+    ]  # fmt: skip
+    return compact(head, rows)
+
+
+def sensor(solver: str) -> Callable[[], str]:
+    return lambda: configurations("PRESET=sensor", f"SOLVER={solver}")
+
+
+def as_sent(solver: str) -> Callable[[], str]:
+    return lambda: configurations(f"SOLVER={solver}", neumann=True)
+
+
+TABLES: dict[str, Callable[[], str]] = {
+    "real sensor, tridiagonal": sensor("tridiagonal"),
+    "real sensor, spectral": sensor("spectral"),
+    "colours as sent, tridiagonal": as_sent("tridiagonal"),
+    "colours as sent, spectral": as_sent("spectral"),
+    "lanes": lanes,
+    "published design": published_design,
+    "make synth over grids": lambda: synthesized(True),
+    "make synth": lambda: synthesized(False),
+    "make fpga": routed,
+    "make asic": in_cells,
+    "make asic by core": by_core,
+    "estimate at 45 nm": estimated,
+    "whole map against software": against_software,
+    "throughput of software": software_throughput,
+    "methods at 128": software_methods,
+}
+
+
+def document(page: Path) -> str:
+    """Return a page with fresh tables."""
+    return TABLE.sub(lambda found: f"{found[1]}\n{TABLES[found[2]]()}{found[3]}", page.read_text())
+
+
+def main() -> None:
+    with variables.reported("figures"):
+        variables.given(sys.argv[1:], ())
+        for page in PAGES:
+            page.write_text(document(page))

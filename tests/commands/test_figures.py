@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""make figures: pages have the figures of the models and of docs/figures.json, and say which sources have changed."""
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from commands.common import recorded, repository
+from commands.hardware import synth
+from commands.study import figures
+from tactile_depth.errors import InputError
+
+WITHOUT_FIGURES = ("| variable |", "| J1 |")  # heads of tables of settings and of pins
+
+
+@pytest.mark.parametrize("page", figures.PAGES, ids=lambda page: page.stem)
+def test_the_tables_of_a_page_are_current(page: Path) -> None:
+    assert page.read_text() == figures.document(page), "run make figures"
+
+
+@pytest.mark.parametrize("page", figures.PAGES, ids=lambda page: page.stem)
+def test_a_page_has_no_other_tables_of_figures(page: Path) -> None:
+    by_hand = figures.TABLE.sub("", page.read_text())
+    heads = re.findall(r"(?:^|\n\n)(\|.*)", by_hand)
+    assert [head for head in heads if not head.startswith(WITHOUT_FIGURES)] == []
+
+
+def test_a_run_of_other_sources_is_marked(monkeypatch: pytest.MonkeyPatch) -> None:
+    line = "make synth N=16 PRESET=published SOLVER=tridiagonal"
+    entry = {"sources": recorded.sources(line)}
+    assert recorded.since(line, entry) == "same"
+    plain, core = repository.code, "module divergence"
+    monkeypatch.setattr(repository, "code", lambda text: plain(text).replace("module spectral_solver", "module other"))
+    assert recorded.since(line, entry) == "same"  # the other solver does not count
+    monkeypatch.setattr(repository, "code", lambda text: plain(text).replace(core, f"{core}_2"))
+    assert recorded.since(line, entry) == "changed"
+
+
+def test_other_tables_are_other_sources() -> None:
+    assert len({recorded.sources(f"make synth N={size} PRESET=published") for size in (16, 32)}) == 2
+
+
+def test_every_recorded_line_is_one_of_its_command() -> None:
+    lines = recorded.load()
+    with pytest.raises(InputError):
+        recorded.sources("make synth NO_VARIABLE=1")
+    for line in lines:
+        assert recorded.sources(line)
+        assert line == recorded.command_line(line.split()[1], line.split()[2:])
+
+
+@pytest.fixture
+def results(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    file = tmp_path / "figures.json"
+    file.write_text('{"make synth N=16 PRESET=published": {"name": "small"}}')
+    monkeypatch.setattr(recorded, "RESULTS", file)
+    monkeypatch.setattr(recorded, "ROOT", tmp_path)
+    return file
+
+
+def git_where(changed: bool) -> Callable[..., bytes | None]:
+    return lambda *words: None if changed and words[0] == "diff" else b"1234567\n"
+
+
+def test_a_run_is_recorded_with_its_commit(results: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    totals = dict.fromkeys(synth.RESOURCES, 5.0)
+    described = {"grid": [16, 16], "solver": "spectral", "lanes": 1}
+    design = synth.Design(described, totals, {"memory in UltraRAM": 1.0}, [], [], "", 1.0)
+    before = results.read_text()
+    monkeypatch.setattr(recorded, "git", git_where(changed=True))
+    recorded.record("synth", ["PRESET=published", "N=16"], synth.recordable([design]))
+    assert results.read_text() == before
+    monkeypatch.setattr(recorded, "git", git_where(changed=False))
+    recorded.record("synth", ["PRESET=published", "N=32"], synth.recordable([design]))
+    assert json.loads(results.read_text()) == json.loads(before), "a line that is not in the file is not recorded"
+    recorded.record("synth", ["PRESET=published", "N=16"], synth.recordable([design]))
+    assert figures.synthesized(over_grids=False).splitlines()[2] == (
+        "| small | 16 x 16 | 5 | 5 | 5 | 5 | 5 | 1.0 | 1234567 | same |"
+    )
