@@ -46,7 +46,7 @@ override need_icarus := command -v iverilog > /dev/null || { \
 
 # Targets that run the command of their name; those of WITH_ICARUS need Icarus whatever the variables say.
 override WITH_ICARUS := lint mutate netlists quick regress test upsets
-override COMMANDS := $(WITH_ICARUS) asic baselines calibrate certify coverage extremes figures formal fpga presses \
+override COMMANDS := $(WITH_ICARUS) asic baselines budget calibrate certify coverage extremes figures formal fpga presses \
   reflex registers report sign-off sim sweep synth trade tune wrap
 
 .PHONY: help live-test system-tools setup clean $(COMMANDS)
@@ -123,6 +123,9 @@ figures: $(STAMP)
 
 # Fit a calibration file to ball presses of known diameter. PRESSES=folder OUT=mine.npz
 calibrate: $(STAMP)
+
+# Measure the error of depth in mm and its parts, on drawn contacts and on real ball presses. PRESSES=folder
+budget: $(STAMP)
 
 # Measure heights, contacts and untouched gel on real ball presses, and play them through the RTL. PRESSES=folder
 presses: $(STAMP)

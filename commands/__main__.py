@@ -13,7 +13,7 @@ from tactile_depth.errors import InputError
 
 ROOMS = {
     "run": ("calibrate", "reflex", "sim"),
-    "study": ("baselines", "certify", "extremes", "figures", "presses", "report", "sweep", "trade", "tune"),
+    "study": ("baselines", "budget", "certify", "extremes", "figures", "presses", "report", "sweep", "trade", "tune"),
     "verify": ("coverage", "formal", "lint", "mutate", "netlists", "quick", "regress", "sign-off", "test", "upsets"),
     "hardware": ("asic", "fpga", "registers", "synth", "wrap"),
 }

@@ -1,0 +1,357 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make budget`: the error of depth in mm, and what it is made of, on drawn contacts and on real ball presses.
+
+The depth of a picture is computed again and again, from the codes of a real sensor's pipeline to the true height; each
+step switches one cause of error off, or puts the truth in its place. The differences of the steps are maps, and add up
+to the map of the whole error. For the mean square of an area, less its mean (Neumann gives differences of depth alone):
+
+    RMS of a part      root of <e_part, e_part>
+    share of a part    <e_part, e> / <e, e>, e the whole error: shares add up to 1, and can be negative
+
+Intervals are 95 % by bootstrap over the pictures. Drawn contacts: the bench (scenes.py) by the sensor of
+drawn_sensor.py, calibrated with presses drawn by it, in light that drifted. Real presses: each by a calibration from
+all others. Their pictures get drift and noise on top of what they hold, because neither is known: the parts are those
+of what was added, and the rest lies in the calibration. A ball is known in its contact, and gel that nothing touches is
+flat; how far the gel beside a contact is displaced is not known, and a part of its own.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+from scipy.ndimage import distance_transform_edt
+from tqdm import tqdm
+
+import tactile_depth as td
+from commands.common import markdown, repository, variables
+from commands.common.run_request import camera_choice
+from commands.run.calibrate import data_folder
+from commands.study.budget_steps import (
+    BACK,
+    BESIDE,
+    FRONT,
+    MEASURES,
+    Camera,
+    Exact,
+    Seen,
+    height_between,
+    height_of_cap,
+    parts_of,
+    products,
+)
+from commands.study.drawn_sensor import PLACES, DrawnSensor
+from tactile_depth import files
+from tactile_depth.calibration_file import PIXEL_PITCHES_MM
+from tactile_depth.camera_configuration import CameraChoice
+from tactile_depth.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS
+from tactile_depth.errors import InputError
+from tactile_depth.fitting import Fit, fit_presses
+from tactile_depth.frames import read_picture
+from tactile_depth.pipeline import BOUNDARIES
+from tactile_depth.presses import AT_REST, GridPresses, PressPictures, camera_pitch_mm, gather, to_grid
+from tactile_depth.scenes import BENCH
+
+matplotlib.use("Agg")
+from matplotlib import pyplot as plt
+
+RESULTS = ("budget.json", "budget.png")
+DEFAULT_OUT = repository.ROOT / "build" / "budget"
+CAMERA = "raw8"
+PRESSES = 30  # of the drawn calibration
+UNTOUCHED_MM = 2.0  # from displaced gel; of a press `AT_REST`
+CAP_TOP, CAP_EDGE = 0.9, 0.1  # of the peak: the top of a drawn contact, above, and its edge, below
+RESAMPLED, INTERVAL = 2000, (2.5, 97.5)
+
+
+@dataclass(frozen=True)
+class Request:
+    """Values of the variables; `drawn`, `presses` and `bodies` are for tests."""
+
+    folder: Path | None = None
+    pitch_mm: float | None = None
+    choice: CameraChoice = field(default_factory=lambda: CameraChoice(CAMERA))
+    neumann: bool = True
+    data_width: int = 24
+    coefficient_width: int = 18
+    out: Path = DEFAULT_OUT
+    drawn: DrawnSensor = field(default_factory=DrawnSensor)
+    presses: int = PRESSES
+    bodies: int = len(BENCH)
+
+    def pipeline(self, sensor: td.Sensor, background: np.ndarray) -> td.Pipeline:
+        """Return the pipeline of a sensor with a background on the grid."""
+        return td.Pipeline(
+            sensor,
+            background,
+            grid=(len(background), background.shape[1]),
+            boundary="neumann" if self.neumann else "dirichlet",
+            data_width=self.data_width,
+            coefficient_width=self.coefficient_width,
+        )
+
+
+# Sources.
+
+
+def fitted(presses: GridPresses) -> Fit:
+    return fit_presses(presses, ("cubic",), progress=lambda each: tqdm(each, "fits", leave=False, disable=None))
+
+
+def drawn_contacts(request: Request) -> Iterator[tuple[str, dict[str, np.ndarray]]]:
+    """Give place and products of each drawn contact."""
+    drawn, chance = request.drawn, np.random.default_rng(1)
+    pictures = drawn.presses(request.presses, chance)
+    presses = to_grid(pictures, drawn.pitch_mm, choice=request.choice)
+    fit = fitted(presses)
+    camera = Camera.of(presses, request.choice)
+    rest = camera.average(drawn.levels(np.zeros((*drawn.camera, 2))))
+    pipeline = request.pipeline(fit.sensor, presses.background_on_grid)
+    rests = (presses.background_on_grid, camera.rounded(presses.background), rest)
+    exact = [Exact(pipeline, each) for each in rests]
+    scale, pitch = presses.scale, presses.grid_pitch_mm
+    for place, height in drawn.contacts(request.bodies, fit.sensor.fitted_slope["cubic"], chance):
+        slopes = drawn.slopes(height)
+        steady = drawn.levels(slopes)
+        levels = steady * drawn.light(chance)
+        true = drawn.at(height, presses.grid, scale * drawn.pitch_mm, (-0.5, -0.5)) / pitch
+        top, edge = true > CAP_TOP * true.max(), (true > 0) & (true < CAP_EDGE * true.max())
+        seen = Seen(
+            place,
+            drawn.picture(levels, chance),
+            levels,
+            steady,
+            camera.average(slopes),
+            None,
+            true,
+            true > 0,
+            distance_transform_edt(true <= 0) * pitch > UNTOUCHED_MM,
+            height_between(top, edge),
+        )
+        yield place, products(seen, parts_of(seen, camera, exact, follow=False))
+
+
+def real_presses(request: Request, pictures: PressPictures) -> Iterator[tuple[str, dict[str, np.ndarray]]]:
+    """Give place and products of each whole press, by the calibration from all others."""
+    presses = to_grid(pictures, camera_pitch_mm(pictures, request.pitch_mm), choice=request.choice)
+    fit = fitted(presses)
+    camera, chance, grid = Camera.of(presses, request.choice), np.random.default_rng(1), presses.grid
+    rest = presses.background_on_grid, camera.rounded(presses.background), camera.average(presses.background)
+    images = {press.name: press.image for press in pictures.presses}
+    for view in presses.views:
+        press = view.press
+        if press.name not in fit.without:
+            continue
+        image = images[press.name]
+        steady = image if isinstance(image, np.ndarray) else read_picture(Path(image))
+        levels = steady * request.drawn.light(chance)
+        pipeline = request.pipeline(replace(fit.without[press.name], camera=fit.sensor.camera), rest[0])
+        distance, height = press.distance(grid), press.depth(grid)
+        seen = Seen(
+            PLACES[0] if press.is_central(grid) else PLACES[1],
+            request.drawn.picture(levels, chance),
+            levels,
+            steady,
+            press.slopes(grid),
+            ((distance < 1) | (distance > AT_REST))[..., None],
+            np.nan_to_num(height),
+            np.isfinite(height),
+            press.untouched(grid),
+            height_of_cap(press),
+        )
+        exact = [Exact(pipeline, each) for each in rest]
+        yield seen.place, products(seen, parts_of(seen, camera, exact, follow=True))
+
+
+# Statistics.
+
+
+def numbers_of(means: np.ndarray) -> dict[str, np.ndarray]:
+    """Return RMS of parts and whole, and shares, of mean products (..., parts, parts)."""
+    squares, whole = np.diagonal(means, axis1=-2, axis2=-1), means.sum(axis=(-2, -1))
+    apart = squares.sum(axis=-1)
+    return {
+        "rms_um": 1000 * np.sqrt(squares),
+        "share": means.sum(axis=-1) / whole[..., None],
+        "whole_um": 1000 * np.sqrt(whole),
+        "root_of_squares_um": 1000 * np.sqrt(apart),
+        "root_of_squares_over_whole": np.sqrt(apart / whole),
+    }
+
+
+def correlated(means: np.ndarray) -> tuple[int, int, float]:
+    """Return the two parts whose product adds most to the whole, up or down, and their correlation."""
+    pairs = np.triu(means, 1)
+    first, second = np.unravel_index(np.abs(pairs).argmax(), pairs.shape)
+    return int(first), int(second), float(pairs[first, second] / np.sqrt(means[first, first] * means[second, second]))
+
+
+def summary(each: np.ndarray) -> dict[str, Any]:
+    """Return the numbers of products (pictures, parts, parts) and their intervals, as lists [value, low, high]."""
+    count = len(each)
+    weights = np.random.default_rng(1).multinomial(count, np.full(count, 1 / count), RESAMPLED) / count
+    value, resampled = numbers_of(each.mean(axis=0)), numbers_of(np.tensordot(weights, each, 1))
+    intervals = {
+        name: np.stack((value[name], *np.percentile(resampled[name], INTERVAL, axis=0)), axis=-1).tolist()
+        for name in value
+    }
+    return intervals | {"correlated": correlated(each.mean(axis=0))}
+
+
+def source(
+    name: str, parts: Sequence[str], pictures: Iterator[tuple[str, dict[str, np.ndarray]]], count: int
+) -> dict[str, Any]:
+    """Return the numbers of a source by place and measure."""
+    found: dict[str, list[dict[str, np.ndarray]]] = {}
+    for place, each in tqdm(pictures, name, count, leave=False, disable=None):
+        found.setdefault(place, []).append(each)
+    places = {
+        place: {"pictures": len(found[place])}
+        | {measure: summary(np.array([each[measure] for each in found[place]])) for measure in MEASURES}
+        for place in PLACES
+        if place in found
+    }
+    return {"source": name, "parts": list(parts), "places": places}
+
+
+# Results.
+
+
+def read(out: Path = DEFAULT_OUT) -> dict[str, Any]:
+    """Return the document of budget.json; measure it first if there is none."""
+    if not (out / RESULTS[0]).exists():
+        run(Request(out=out))
+    document: dict[str, Any] = json.loads((out / RESULTS[0]).read_text())
+    return document
+
+
+def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
+    """Return title, head and rows of each table: the whole error, then the parts of each source and measure."""
+
+    def interval(three: Sequence[float], form: str = "{:.3g}", factor: float = 1) -> str:
+        value, low, high = (form.format(factor * each) for each in three)
+        return f"{value} ({low} to {high})"
+
+    head = ("error, mm", "pictures", *MEASURES.values())
+    rows = [
+        (
+            f"{each['source']}, {place}",
+            str(found["pictures"]),
+            *(interval(found[measure]["whole_um"], "{:.3f}", 1e-3) for measure in MEASURES),
+        )
+        for each in document["sources"]
+        for place, found in each["places"].items()
+    ]
+    made: list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]] = [("In short", head, rows)]
+    for each in document["sources"]:
+        for measure, title in MEASURES.items():
+            places = [found[measure] for found in each["places"].values()]
+            rows = []
+            for part, name in enumerate(each["parts"]):
+                cells = [(interval(f["rms_um"][part]), interval(f["share"][part], "{:.1f}", 100)) for f in places]
+                rows.append((name, *(cell for pair in cells for cell in pair)))
+            rows.append(("sum: the whole error", *(c for f in places for c in (interval(f["whole_um"]), "100"))))
+            apart = [(f["root_of_squares_um"], f["root_of_squares_over_whole"]) for f in places]
+            rows.append(
+                (
+                    "root of the sum of squares, over the whole",
+                    *(c for um, over in apart for c in (interval(um), interval(over, "{:.2f}"))),
+                )
+            )
+            pairs = [f["correlated"] for f in places]
+            names = [(f"{each['parts'][first]}, {each['parts'][second]}", f"{by:.2f}") for first, second, by in pairs]
+            rows.append(("most correlated parts", *(cell for pair in names for cell in pair)))
+            columns = (c for place in each["places"] for c in (f"{place}, um RMS", "share, %"))
+            made.append((f"{each['source']}, {title}", ("part", *columns), rows))
+    return made
+
+
+def plot(path: Path, document: dict[str, Any]) -> None:
+    """Draw the RMS of each part as bars, by source and measure."""
+    colours = dict(zip(PLACES, ("#08519c", "#e6550d", "#969696"), strict=True))
+    sources, measures = document["sources"], ("contact", "untouched")
+    figure, axes = plt.subplots(
+        len(sources), len(measures), figsize=(11, 0.7 + 3.6 * len(sources)), layout="constrained", squeeze=False
+    )
+    for row, each in zip(axes, sources, strict=True):
+        names = [*each["parts"], "whole error"]
+        for axis, measure in zip(row, measures, strict=True):
+            for number, (place, found) in enumerate(each["places"].items()):
+                rms = np.array([*found[measure]["rms_um"], found[measure]["whole_um"]])
+                at = np.arange(len(names)) + (number - (len(each["places"]) - 1) / 2) * 0.26
+                ends = np.abs(rms[:, 1:] - rms[:, :1]).T
+                style: dict[str, Any] = {"color": colours[place], "label": place, "error_kw": {"lw": 0.8}}
+                bars = axis.barh(at, rms[:, 0], 0.24, xerr=ends, **style)
+                axis.bar_label(bars, [f"{value:.2g}" for value in rms[:, 0]], padding=3, fontsize=7)
+            axis.set(title=f"{each['source']}: {MEASURES[measure]}", yticks=range(len(names)), yticklabels=names)
+            axis.set(xlabel="um RMS", xlim=(0, 1.1 * axis.get_xlim()[1]))
+            axis.invert_yaxis()
+            axis.grid(axis="x", alpha=0.3)
+            axis.set_axisbelow(True)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def parse(arguments: Sequence[str]) -> Request:
+    """Return the Request of KEY=VALUE arguments. Raises InputError."""
+    names = ("PRESSES", "PITCH", "CAMERA", "BAYER", "BOUNDARY", "DATA_WIDTH", "COEFF_WIDTH", "OUT")
+    values = {"CAMERA": CAMERA} | variables.given(arguments, names)
+    choice = camera_choice(values)
+    assert choice is not None
+    return Request(
+        Path(values["PRESSES"]) if "PRESSES" in values else None,
+        variables.number(values, "PITCH", None, *PIXEL_PITCHES_MM, float),
+        choice,
+        variables.choice(values, "BOUNDARY", BOUNDARIES) == "neumann",
+        variables.number(values, "DATA_WIDTH", 24, *DATA_WIDTHS),
+        variables.number(values, "COEFF_WIDTH", 18, *COEFFICIENT_WIDTHS),
+        Path(values.get("OUT", DEFAULT_OUT)),
+    )
+
+
+def run(request: Request) -> None:
+    """Measure, print, and write budget.json and budget.png. Raises InputError."""
+    with files.workspace(request.out, RESULTS) as work:
+        missing, folder = "", request.folder
+        try:
+            folder = folder or data_folder()
+        except InputError as error:
+            missing = str(error)
+        pictures = None if folder is None else gather(folder)
+        drawn = drawn_contacts(request)
+        sources = [source("drawn contacts", (*FRONT, *BACK), drawn, len(PLACES) * request.bodies)]
+        if pictures is not None:
+            real = real_presses(request, pictures)
+            sources.append(source("real presses", (*FRONT, BESIDE, *BACK), real, len(pictures.presses)))
+        setting = {
+            "camera": request.choice.pixel_format,
+            "boundary": BOUNDARIES[not request.neumann],
+            "data_width": request.data_width,
+            "coefficient_width": request.coefficient_width,
+            "drift": request.drawn.drift,
+            "white": request.drawn.white,
+            "noise": request.drawn.noise,
+        }
+        document = {"setting": setting, "without": missing, "sources": sources}
+        for title, head, rows in tables(document):
+            print(f"{title}\n\n{markdown.table(head, rows)}\n")
+        (work / RESULTS[0]).write_text(json.dumps(document, indent=1) + "\n")
+        plot(work / RESULTS[1], document)
+        files.replace(work, RESULTS, request.out)
+    if missing:
+        print(f"no real presses were measured: {missing}")
+    print(f"results: {os.path.relpath(request.out)}")
+
+
+def main() -> None:
+    with variables.reported("budget", "nothing was written"):
+        run(parse(sys.argv[1:]))
