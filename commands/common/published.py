@@ -16,8 +16,6 @@ RESOURCES: dict[int, dict[str, int]] = {
     128: {"UltraRAM": 32},
     256: {"DSP48E2": 108, "LUT": 21_413, "UltraRAM": 64, "BRAM36": 176},
 }
-ULTRARAM_BITS = 288 * 1024
-MEMORY_MBIT = RESOURCES[128]["UltraRAM"] * ULTRARAM_BITS / 1e6  # at 128
 
 # RMS difference from double precision in % of the peak depth, over 15 contacts after a fitted scale and offset.
 RMS_PERCENT, WORST_RMS_PERCENT = 0.17, 0.26

@@ -21,7 +21,7 @@ from commands.common.repository import ROOT
 from commands.hardware import estimate, memory_model, synth
 from commands.run import sim
 from commands.run.sim_table import coefficient_words
-from commands.study import baselines
+from commands.study import baselines, trade_front
 from tactile_depth.accuracy import errors
 from tactile_depth.configuration import Configuration, most_lanes
 from tactile_depth.cost import cost
@@ -219,6 +219,18 @@ def against_software() -> str:
     return text
 
 
+def trade(key: str, head: tuple[str, ...]) -> Callable[[], str]:
+    def text() -> str:
+        made = ""
+        for name, figures, (commit, since) in runs("trade"):
+            front = trade_front.Front(**figures)
+            line = f"{name}, commit {commit}, {SOURCE[1]}: {since}. {front.sentence}."
+            made += f"{textwrap.fill(line, 120)}\n\n{compact(head, figures[key])}"
+        return made
+
+    return text
+
+
 def software_throughput() -> str:
     return "".join(compact(*baselines.throughput(document)[1:]) for _, document, _ in runs("baselines"))
 
@@ -257,6 +269,8 @@ TABLES: dict[str, Callable[[], str]] = {
     "make asic by core": by_core,
     "estimate at 45 nm": estimated,
     "whole map against software": against_software,
+    "trade, marked": trade("marked", trade_front.HEAD),
+    "trade, options": trade("options", trade_front.OPTIONS_HEAD),
     "throughput of software": software_throughput,
     "methods at 128": software_methods,
 }

@@ -2,11 +2,12 @@
 """`make report`: one HTML page, and its figures as PNG: latency, throughput, depth, error, cost, extremes.
 
 Takes OUT=folder. It measures the contacts of the bench through the RTL of both solvers, over a thousand frames without
-a pause, the sweep, which continues where it stopped, and the extremes. It takes the results of `make reflex` and `make
-baselines` from build/, and runs the commands if there are none. It takes existing results of `make synth`, `make fpga`
-and `make asic`. Each figure names the command that makes it again.
+a pause, the sweep, which continues where it stopped, and the extremes. It takes the results of `make budget`, `make
+reflex` and `make baselines` from build/, and runs the commands if there are none. It takes existing results of `make
+trade`, `make synth`, `make fpga` and `make asic`. Each figure names the command that makes it again.
 """
 
+import csv
 import json
 import os
 import sys
@@ -19,11 +20,11 @@ import matplotlib
 import numpy as np
 
 from commands.common import run_request, variables
-from commands.common.published import CLOCK_MHZ, FIRST_DEPTH_CYCLES, MEMORY_MBIT, RMS_PERCENT, WORST_RMS_PERCENT
+from commands.common.published import CLOCK_MHZ, FIRST_DEPTH_CYCLES, RMS_PERCENT, WORST_RMS_PERCENT
 from commands.common.repository import ROOT
 from commands.hardware import asic, synth
 from commands.run import reflex, reflex_tables, sim
-from commands.study import baselines, extremes, sweep, transform_noise
+from commands.study import baselines, budget, extremes, sweep, trade, trade_front, transform_noise
 from commands.study.rows import Row
 from tactile_depth import files, reference
 from tactile_depth.accuracy import WORST
@@ -241,37 +242,30 @@ def word_figure(rows: Sequence[Row], folder: Path) -> Figure:
     return Figure("words", "Word lengths", text, "make sweep", picture(figure, folder, "words"))
 
 
-def front_figure(rows: Sequence[Row], folder: Path) -> Figure:
-    figure, axes = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained", sharey=True)
-    columns = (
-        ("first_depth_cycles", "cycles, first pixel to first depth", 1.0, FIRST_DEPTH_CYCLES[SIZE]),
-        ("multipliers", "multipliers of 27 x 18", 1.0, None),
-        ("memory_bits", "memory, Mbit", 1e-6, MEMORY_MBIT),
-    )
-    for axis, (column, name, scale, published) in zip(axes, columns, strict=True):
-        for solver in COLUMNS:
-            points = sweep.like(rows, {"solver": solver}, "data_width", "coefficient_width")
-            x = [scale * float(row[column]) for row in points]
-            y = [float(row["rms_percent_mean"]) for row in points]
-            look = {"color": LOOKS[solver]["color"], "marker": LOOKS[solver]["marker"]}
-            axis.scatter(x, y, s=9, alpha=0.35, linewidths=0, **look)
-            across, best = np.sort(x), np.minimum.accumulate(np.array(y)[np.lexsort((y, x))])
-            axis.step(across, best, where="post", label=solver, **LOOKS[solver] | {"marker": ""})
-        if published is not None:
-            axis.plot([published], [RMS_PERCENT], **PUBLISHED_LOOK)
-        else:
-            axis.axhline(RMS_PERCENT, color="black", linestyle=":")
-        axis.set(xlabel=name, yscale="log")
-        axis.set_xlim(left=0)
-        axis.grid(alpha=0.3)
-    axes[0].set_ylabel("RMS, % of peak, mean of the contacts")
-    axes[0].legend(fontsize=8)
+def budget_figure() -> Figure:
+    document = budget.read()
     text = (
-        f"Every pair of word lengths at {SIZE}: stored words of 12 to 32 bits, coefficients of 10 to 24. Lines: the "
-        "best that so much latency, so many multipliers or so much memory buy. The published design's multipliers are "
-        "published for 64 (82) and 256 (108) only; its memory is its UltraRAM."
+        "What a user gets, in mm, and what it is made of: one cause after the other is switched off, or replaced by "
+        "the truth. Quantisation is the part of the arithmetic; all others are those of the sensor."
     )
-    return Figure("front", "Accuracy against latency and area", text, "make sweep", picture(figure, folder, "front"))
+    content = shown(budget.DEFAULT_OUT / "budget.png") + titled(budget.tables(document))
+    return Figure("budget", "The error of a real sensor", text, "make budget", content)
+
+
+def trade_figures() -> list[Figure]:
+    """Return the figure of `make trade`, if it was run: it needs real presses."""
+    path = trade.DEFAULT_OUT / "trade.csv"
+    if not path.exists():
+        return []
+    with path.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    front = trade_front.front_of(rows)
+    text = (
+        "Real presses, by calibrations that were not fitted to them. Grey: each configuration; line: the best for its "
+        f"cost. Finer arithmetic than that of the knee buys nothing that can be seen. {front.sentence}."
+    )
+    content = shown(trade.DEFAULT_OUT / "trade.png") + table(trade_front.HEAD, front.marked)
+    return [Figure("trade", "Accuracy against silicon and latency", text, "make trade", content)]
 
 
 def extremes_figures(folder: Path) -> list[Figure]:
@@ -354,13 +348,14 @@ def build(folder: Path) -> Path:
         step(name, document_of, command, name) for command, name in ((reflex, "reflex"), (baselines, "baselines"))
     ]
     figures = [
+        step("error budget", budget_figure),
         headline(runs),
         latency_figure(runs, folder),
         grid_figure(folder),
         *depth_figures(runs, folder),
         error_figure(runs, folder),
         word_figure(rows, folder),
-        front_figure(rows, folder),
+        *trade_figures(),
         lanes_figure(rows, folder),
         *extremes_figures(folder / "extremes"),
         *hardware_figures(),

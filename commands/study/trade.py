@@ -16,7 +16,7 @@ import random
 import shutil
 import sys
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -26,7 +26,7 @@ from PIL import Image
 from tqdm import tqdm
 
 import tactile_depth as td
-from commands.common import run_request, variables
+from commands.common import recorded, run_request, variables
 from commands.common import simulator as simulation
 from commands.common.repository import ROOT
 from commands.common.zero_offset import untouched, zero_of
@@ -34,7 +34,7 @@ from commands.run import sim
 from commands.run.calibrate import data_folder
 from commands.study.presses import Measured, measured
 from commands.study.rows import Row, Table, Wanted
-from commands.study.trade_front import draw, summary, write_beaten
+from commands.study.trade_front import draw, front_of, summary, write_beaten
 from tactile_depth import files
 from tactile_depth.accuracy import VERSION
 from tactile_depth.ball_press import BallPress
@@ -338,6 +338,12 @@ def in_rtl(study: Study, rows: Sequence[Row], count: int, seed: int, simulator: 
     return differing
 
 
+def sources(arguments: Sequence[str]) -> str:
+    """Return the digest of models and command, for docs/figures.json."""
+    variables.given(arguments, VARIABLES)
+    return recorded.digest(sorted(Path(__file__).parent.glob("trade*.py")), VERSION)
+
+
 def main() -> None:
     with variables.reported("trade", "every row measured is kept, run it again to go on"):
         values = variables.given(sys.argv[1:], VARIABLES)
@@ -350,7 +356,9 @@ def main() -> None:
         source = Path(values["PRESSES"]) if "PRESSES" in values else data_folder()
         study = prepare(Path(values.get("OUT", DEFAULT_OUT)).resolve(), source.resolve(), pitch)
         rows = study_rows(study, plan())
-        print(summary(rows))
+        front = front_of(rows)
+        print(summary(front))
+        recorded.record("trade", sys.argv[1:], asdict(front))
         write_beaten(rows, study.folder)
         draw(rows, study.folder / "trade.png")
         print(f"results: {os.path.relpath(study.folder)}")

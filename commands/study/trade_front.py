@@ -8,7 +8,9 @@ sum of the shares of multipliers, LUTs and block memory that it takes of an LFE5
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
@@ -23,7 +25,10 @@ from tactile_depth import files
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 
-ERRORS = {"height_um": 0.1, "sides_height_um": 0.1, "centroid_um": 1.0, "area_percent": 0.1}  # and their resolution
+ERRORS = {  # and their resolution
+    **dict.fromkeys(("height_um", "sides_height_um", "untouched_um"), 0.1),
+    **{"centroid_um": 1.0, "area_percent": 0.1},
+}
 COSTS = (
     *("first_depth_cycles", "map_cycles", "contact_cycles"),
     *("multipliers", "multipliers_18", "luts", "memory_bits", "power_mw"),
@@ -32,7 +37,7 @@ OPTIONS = (
     *("solver", "boundary", "gradient", "light_gains", "pixel_format", "rows", "columns", "lanes"),
     *("data_width", "coefficient_width", "gain_width"),
 )
-NEAR = 1.1  # error of the knee over the smallest: what it adds is a tenth
+NEAR = 1.1  # depth error of the knee over the smallest: what it adds is a tenth
 
 
 def built(rows: Sequence[Row]) -> list[Row]:
@@ -62,16 +67,21 @@ def silicon(row: Row) -> float:
     return 100 * TARGETS["ecp5"].share(*(float(row[name]) for name in ("multipliers_18", "luts", "memory_bits")))
 
 
+def depth_error(row: Row) -> float:
+    """Return the RMS of the depth error in the contact and on untouched gel, of presses in the middle, in um."""
+    return math.hypot(float(row["height_um"]), float(row["untouched_um"])) / math.sqrt(2)
+
+
 def whole_picture(rows: Sequence[Row]) -> list[Row]:
     """Return the rows of grids that cover the picture."""
     return [row for row in rows if row["sides_height_um"]]
 
 
 def knee(rows: Sequence[Row]) -> Row:
-    """Return the configuration with the least silicon whose height error is within NEAR of the smallest."""
+    """Return the configuration with the least silicon whose depth error is within NEAR of the smallest."""
     among = whole_picture(rows)
-    smallest = min(float(row["height_um"]) for row in among)
-    return min((row for row in among if float(row["height_um"]) <= NEAR * smallest), key=silicon)
+    smallest = min(map(depth_error, among))
+    return min((row for row in among if depth_error(row) <= NEAR * smallest), key=silicon)
 
 
 def described(row: Row) -> str:
@@ -88,6 +98,7 @@ def figures(row: Row) -> tuple[str, ...]:
     sides = f" / {float(row['sides_height_um']):.1f}" if row["sides_height_um"] else ""
     return (
         f"{float(row['height_um']):.1f}{sides}",
+        f"{float(row['untouched_um']):.1f}",
         f"{float(row['centroid_um']):.0f}",
         f"{float(row['area_percent']):.1f}",
         *(f"{float(row[name]) / CLOCK_MHZ:.1f}" for name in ("first_depth_cycles", "contact_cycles", "map_cycles")),
@@ -100,7 +111,7 @@ def figures(row: Row) -> tuple[str, ...]:
 
 
 HEAD = (
-    *("configuration", "height error, um, middle / sides", "centroid, um", "area, %"),
+    *("configuration", "height error, um, middle / sides", "untouched gel, um", "centroid, um", "area, %"),
     *("first depth, us", "contact", "map", "18 x 18", "LUT4", "kbit", "mW at 45 nm", "silicon"),
 )
 
@@ -122,31 +133,66 @@ def chosen(rows: Sequence[Row]) -> dict[str, Row]:
     }
 
 
-def summary(rows: Sequence[Row]) -> str:
-    """Return the table of chosen configurations, and what each option is good for."""
+@dataclass(frozen=True)
+class Front:
+    """The front of a study.
+
+    Attributes
+    ----------
+    marked : list of tuple of str
+        Cells of the marked configurations, below HEAD.
+    options : list of tuple of str
+        Cells of each value of each option, below OPTIONS_HEAD.
+    count, unbuilt, on_front : int
+        Configurations: all, those that cannot be built, those that no other one beats.
+    knee : str
+        Command that runs the knee.
+    """
+
+    marked: list[tuple[str, ...]]
+    options: list[tuple[str, ...]]
+    count: int
+    unbuilt: int
+    on_front: int
+    knee: str
+
+    @property
+    def never(self) -> list[str]:
+        """Options that are on the front with no configuration: candidates for removal."""
+        return [name for name, _, on_front, _ in self.options if on_front == "0"]
+
+    @property
+    def sentence(self) -> str:
+        beaten = self.count - self.unbuilt - self.on_front
+        never = ", ".join(self.never) or "no option"
+        return (
+            f"{self.count} configurations, {self.unbuilt} of them cannot be built; {self.on_front} are on the front, "
+            f"{beaten} are beaten by another in every axis; never on the front: {never}"
+        )
+
+
+OPTIONS_HEAD = ("option", "configurations", "on the front", "least depth error, um")
+
+
+def front_of(rows: Sequence[Row]) -> Front:
+    """Return the front of measured rows."""
     among = built(rows)
-    beaten = beaten_by(among)
-    front = [row for row, other in zip(among, beaten, strict=True) if other is None]
-    lines = [table(HEAD, [(f"{name}: {described(row)}", *figures(row)) for name, row in chosen(rows).items()]), ""]
-    counted, never = [], []
+    front = [row for row, other in zip(among, beaten_by(among), strict=True) if other is None]
+    options: list[tuple[str, ...]] = []
     for option in OPTIONS:
         for value in sorted({row[option] for row in among}, key=lambda text: (len(text), text)):
             of = [row for row in among if row[option] == value]
             on = sum(row[option] == value for row in front)
-            least = min(float(row["height_um"]) for row in of)
-            counted.append((f"{option}={value}", str(len(of)), str(on), f"{least:.1f}"))
-            if not on:
-                never.append(f"{option}={value}")
-    lines.append(table(("option", "configurations", "on the front", "least height error, um"), counted))
-    problems = len(rows) - len(among)
-    lines.append(
-        f"\n{len(rows)} configurations, {problems} of them cannot be built; {len(front)} are on the front, "
-        f"{len(among) - len(front)} are beaten (beaten.csv)"
-    )
-    lines.append(f"never on the front: {', '.join(never) if never else 'no option'}")
-    knees = knee(among)
-    lines.append(f"the knee: {knees['command']}")
-    return "\n".join(lines)
+            least = min(map(depth_error, of))
+            options.append((f"{option}={value}", str(len(of)), str(on), f"{least:.1f}"))
+    marked = [(f"{name}: {described(row)}", *figures(row)) for name, row in chosen(rows).items()]
+    return Front(marked, options, len(rows), len(rows) - len(among), len(front), knee(among)["command"])
+
+
+def summary(front: Front) -> str:
+    """Return the tables of a front, its counts, and the command of its knee."""
+    tables = table(HEAD, front.marked), table(OPTIONS_HEAD, front.options)
+    return "\n\n".join([*tables, f"{front.sentence} (beaten.csv)", f"the knee: {front.knee}"])
 
 
 def write_beaten(rows: Sequence[Row], folder: Path) -> None:
@@ -163,30 +209,33 @@ def write_beaten(rows: Sequence[Row], folder: Path) -> None:
 
 
 def draw(rows: Sequence[Row], path: Path) -> None:
-    """Draw the height error against silicon and against the latency of the whole map."""
+    """Draw the depth error against silicon and against the latency of the whole map."""
     among = whole_picture(built(rows))
     marked = chosen(rows)
     figure, both = plt.subplots(1, 2, figsize=(11, 4.4), layout="constrained", sharey=True)
-    measures = (
+    measures: tuple[tuple[str, Callable[[Row], float]], ...] = (
         ("silicon, % of an LFE5U-85F: multipliers + LUTs + memory", silicon),
         (f"last pixel to whole map, us at {CLOCK_MHZ:g} MHz", lambda row: float(row["map_cycles"]) / CLOCK_MHZ),
     )
     for axis, (label, measure) in zip(both, measures, strict=True):
-        x, y = (np.array([take(row) for row in among]) for take in (measure, lambda row: float(row["height_um"])))
+        x, y = (np.array([take(row) for row in among]) for take in (measure, depth_error))
         axis.scatter(x, y, s=9, color="#9ab", alpha=0.5, linewidths=0)
         order = np.lexsort((y, x))
         axis.step(x[order], np.minimum.accumulate(y[order]), where="post", color="#08306b")
         axis.axhline(y.min(), color="black", linestyle=":", linewidth=1)
         looks = (("*", 200, "#e6550d"), ("o", 60, "#08306b"), ("D", 45, "black"))
         for (name, row), (marker, size, colour) in zip(marked.items(), looks, strict=True):
-            at = measure(row), float(row["height_um"])
+            at = measure(row), depth_error(row)
             axis.scatter(*at, marker=marker, s=size, color=colour, zorder=3)
-            axis.annotate(name, at, (6, 8), textcoords="offset points", fontsize=9, color=colour, weight="bold")
-        axis.set(xscale="log", yscale="log", xlabel=label, ylim=(0.9 * y.min(), 3 * y.min()))
-        axis.set_yticks(ticks := [20, 25, 30, 40, 50], [str(tick) for tick in ticks])
+            side = "right" if measure(row) > np.sqrt(x.min() * x.max()) else "left"
+            offset = (-6, 8) if side == "right" else (6, 8)
+            style = {"fontsize": 9, "color": colour, "weight": "bold", "ha": side}
+            axis.annotate(name, at, offset, textcoords="offset points", **style)
+        axis.set(xscale="log", yscale="log", xlabel=label, ylim=(0.9 * y.min(), 3.5 * y.min()))
+        axis.set_yticks(ticks := [20, 25, 30, 40, 50, 60, 70], [str(tick) for tick in ticks])
         axis.minorticks_off()
         axis.grid(alpha=0.3)
-    both[0].set_ylabel("height error in the contact, um")
+    both[0].set_ylabel("depth error on real presses, um RMS")
     across = both[1].get_yaxis_transform()
     both[1].text(0.98, 0.985 * y.min(), "error of the calibration", fontsize=9, va="top", ha="right", transform=across)
     figure.savefig(path, dpi=110)

@@ -3,6 +3,7 @@
 
 import json
 import math
+import shutil
 from functools import cache
 from itertools import product
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import tactile_depth as td
 from commands.common import published, run_request
 from commands.run import sim
 from commands.study import tune
@@ -19,6 +21,9 @@ from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS
 from tactile_depth.cost import cost
 from tactile_depth.frames import load_frames
 from tactile_depth.latency import last_pixel_to_last_depth
+from tactile_depth.presets import CHIP
+from tactile_depth.presses import gather
+from tests import ball_presses
 
 NONE = math.inf
 
@@ -179,3 +184,33 @@ def test_no_configuration_meets_it(
     assert run(tmp_path, *words) == 1
     assert expected in capsys.readouterr().out.splitlines()[-1]
     assert [*tmp_path.rglob("*.json")] == []
+
+
+def test_auto_keeps_caps_and_centroids_of_presses_it_was_not_tuned_on(tmp_path: Path) -> None:
+    """`PRESET=chip` is the choice on the real presses; caps are within 1 %, centroids within 0.02 mm of 24 bits."""
+    source = ball_presses.real_folder()
+    pictures, grid = gather(source), ball_presses.read(source)
+    presses = {view.press.name: view for view in grid.views if view.is_whole}
+    names = {f"{index:03}.png": press.name for index, press in enumerate(pictures.presses)}
+    (tmp_path / "frames").mkdir()
+    for file, name in names.items():
+        shutil.copy(source / name, tmp_path / "frames" / file)
+    background = source / "background.png"
+    given = ["TOLERANCE=auto", "DEPTH_RANGE=2", "TARGET=ecp5", f"FRAMES={tmp_path / 'frames'}"]
+    given += [f"REFERENCE={background}", "CALIBRATION=gelsight-mini", f"OUT={tmp_path / 'out'}"]
+    assert tune.run(*tune.parse(given)) == 0
+    report = json.loads((tmp_path / "out" / "report.json").read_text())
+    chosen = json.loads((tmp_path / "out" / "config.json").read_text())
+    assert {name: chosen[variable] for name, variable in run_request.WORDS.items()} == CHIP.words
+    assert report["chosen"]["multipliers"] < 0.75 * report["default"]["multipliers"]
+    assert report["chosen"]["memory_bits"] < 0.75 * report["default"]["memory_bits"]
+    sensor = td.load("gelsight-mini")
+    wide, short = (td.Pipeline(sensor, background, **words) for words in ({}, CHIP.words))  # type: ignore[arg-type]
+    proven = [names[label] for label in report["proven_on"] if names[label] in presses]
+    assert len(proven) >= 8
+    for name in proven:
+        at_24, result = (pipeline(source / name) for pipeline in (wide, short))
+        caps = [presses[name].press.recovered(each.depth_mm) for each in (at_24, result)]
+        assert caps[1] == pytest.approx(caps[0], rel=0.01)
+        off = np.subtract(at_24.contact.centroid_px, result.contact.centroid_px) * result.pixel_pitch_mm
+        assert np.hypot(*off) < 0.02
