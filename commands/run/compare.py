@@ -38,8 +38,8 @@ class Difference:
 
 
 def compare(codes: np.ndarray, expected: np.ndarray) -> Difference:
-    """Compare codes (repeats, frames, rows, columns) with those expected of each repeat (frames, rows, columns)."""
-    differing = (codes != expected).reshape(-1, *expected.shape[1:])
+    """Compare codes (repeats, frames, rows, columns) with those expected: of all repeats, or of each alike."""
+    differing = (codes != expected).reshape(-1, *expected.shape[-2:])
     if not differing.any():
         return Difference(differing, 0, 0)
     first = int(differing.argmax())  # of the flat array

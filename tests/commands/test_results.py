@@ -94,9 +94,11 @@ def test_equal_codes_are_counted(tmp_path: Path, run: Any) -> None:
     assert report["warnings"] == []
 
 
-def test_the_first_differing_code_is_the_first_in_depth_npy() -> None:
-    expected = np.arange(24).reshape(2, 3, 4)
-    codes = np.stack([expected, expected])
+@pytest.mark.parametrize("repeats", [1, 2])  # for which codes are expected: with light gains each has its own
+def test_the_first_differing_code_is_the_first_in_depth_npy(repeats: int) -> None:
+    once = np.arange(24).reshape(2, 3, 4)
+    codes = np.stack([once, once])
+    expected = once if repeats == 1 else codes.copy()
     codes[1, 0, 2, 1] = -1
     codes[1, 1, 0, 0] = -2
     assert compare(codes, expected).sentence() == (
