@@ -73,8 +73,8 @@ def depth_error(row: Row) -> float:
 
 
 def whole_picture(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of grids that cover the picture."""
-    return [row for row in rows if row["sides_height_um"]]
+    """Return the rows of grids that cover the picture, with the boundary that a contact may cross."""
+    return [row for row in rows if row["sides_height_um"] and row["boundary"] == "neumann"]
 
 
 def knee(rows: Sequence[Row]) -> Row:
@@ -233,6 +233,7 @@ def draw(rows: Sequence[Row], path: Path) -> None:
             axis.annotate(name, at, offset, textcoords="offset points", **style)
         axis.set(xscale="log", yscale="log", xlabel=label, ylim=(0.9 * y.min(), 3.5 * y.min()))
         axis.set_yticks(ticks := [20, 25, 30, 40, 50, 60, 70], [str(tick) for tick in ticks])
+        axis.xaxis.set_major_formatter("{x:g}")
         axis.minorticks_off()
         axis.grid(alpha=0.3)
     both[0].set_ylabel("depth error on real presses, um RMS")
