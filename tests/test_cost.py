@@ -13,9 +13,13 @@ from commands.hardware import yosys
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
 from tactile_depth.cost import CORES, KINDS, cost
-from tactile_depth.devices import XCZU7EV
+from tactile_depth.devices import ECP5, XCZU7EV, Device
+from tactile_depth.luts import RUNS, logic, memories
 from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
-from tactile_depth.tactile_depth import hdl_parameters, write_roms
+from tactile_depth.tactile_depth import hdl_parameters, top_parameters, write_roms
+
+DEVICES = {device.name: device for device in (XCZU7EV, ECP5)}
+FITTED, CHECKED = 0.03, 0.1  # largest difference of LUTs of logic
 
 CASES = [
     {"columns": 16, "bits_per_channel": 2},
@@ -156,3 +160,41 @@ def test_formulas_of_the_readme(size: int) -> None:
 )
 def test_wide_products_take_several_multipliers(a: Any, b: Any, tiles: Any) -> None:
     assert XCZU7EV.multipliers(a, b) == tiles
+
+
+@pytest.mark.parametrize(("a", "b", "number"), [(18, 18, 1), (19, 18, 2), (25, 9, 2), (36, 18, 2), (27, 24, 4)])
+def test_an_ecp5_splits_operands_of_more_than_18_bits(a: int, b: int, number: int) -> None:
+    assert ECP5.multipliers(a, b) == ECP5.multipliers(b, a) == number
+
+
+@pytest.mark.parametrize(
+    ("words", "width", "rom", "blocks"),
+    [(512, 36, False, 1), (513, 36, False, 2), (4096, 44, False, 11), (4096, 44, True, 10), (16384, 24, False, 24)],
+)
+def test_blocks_of_an_ecp5(words: int, width: int, rom: bool, blocks: int) -> None:
+    """A RAM of more than 2,048 words is sliced by boards/ecp5/td_ram.sv, a ROM is as Yosys shapes it."""
+    assert ECP5.blocks(words, width, rom) == blocks
+
+
+@pytest.mark.parametrize(
+    ("device", "luts"), [(XCZU7EV, 340), (ECP5, 716)], ids=lambda value: getattr(value, "name", "")
+)
+def test_small_memories_are_as_many_luts_as_the_tools_give_them(device: Device, luts: int) -> None:
+    """The figures are "memory" in the report of `make synth PRESET=published N=32 SOLVER=tridiagonal`."""
+    assert memories(top_parameters(Configuration(columns=32, solver="tridiagonal")), device) == luts
+
+
+@pytest.mark.parametrize("run", json.loads(RUNS.read_text()), ids=lambda run: f"{run['device']}-{run['variables']}")
+def test_the_model_is_near_the_recorded_runs(run: dict[str, Any]) -> None:
+    """Bounds: a little above the largest differences in docs/hardware.md, for runs fitted and not fitted."""
+    device, count = DEVICES[run["device"]], cost(Configuration(**run["configuration"]))
+    assert count.blocks_of(device) == run["blocks"]
+    assert count.multipliers_of(device) == pytest.approx(run["multipliers"], rel=0.01)
+    error = sum(logic(count.parameters, device).values()) / sum(run["logic"].values()) - 1
+    assert abs(error) <= (FITTED if run["fitted"] else CHECKED)
+
+
+@pytest.mark.parametrize(("solver", "power_mw"), [("tridiagonal", 108), ("spectral", 210)])
+def test_power_is_near_the_estimates_of_make_asic(solver: str, power_mw: float) -> None:
+    """The figures are those of docs/hardware.md, of an earlier version of the RTL."""
+    assert cost(Configuration(solver=solver)).power_mw == pytest.approx(power_mw, rel=0.07)

@@ -33,6 +33,7 @@ from commands.hardware.gates import Netlist, from_yosys, verilog
 from commands.hardware.liberty import Library, read
 from commands.run import bench
 from tactile_depth import files
+from tactile_depth.cost import MACRO_BITS
 from tactile_depth.errors import InputError
 from tactile_depth.latency import first_depth_latency
 from tactile_depth.tactile_depth import tactile_depth
@@ -97,7 +98,7 @@ def memories(design: Mapping[str, Any]) -> dict[str, Macro]:
         if name.partition("$")[0] in ("td_ram", "td_rom"):
             [array] = [cell["parameters"] for cell in module["cells"].values() if cell["type"] == "$mem_v2"]
             macro = Macro(int(array["WIDTH"], 2), int(array["SIZE"], 2), array["INIT"])
-            if macro.width * macro.depth > memory_model.MACRO_BITS:
+            if macro.width * macro.depth > MACRO_BITS:
                 macros[name] = macro
     return macros
 

@@ -2,14 +2,14 @@
 """Memories of an elaborated design, and the UltraRAMs and block RAMs that they need by the plain rule."""
 
 import json
-import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from tactile_depth.devices import BLOCK, DISTRIBUTED, ULTRA, XCZU7EV
+
 TOP = "tactile_depth"
-ULTRA_SHAPE = (4096, 72)
-BLOCK_SHAPES = ((512, 72), (1024, 36), (2048, 18), (4096, 9), (8192, 4), (16384, 2), (32768, 1))
+STYLES = {"ultra": ULTRA, "block": BLOCK}
 BLOCKS_PER_ULTRA = 8  # 36 Kb and 288 Kb
 
 
@@ -23,25 +23,10 @@ class Memory:
     style: str
     rom: bool
 
-    @property
-    def ultras(self) -> int:
-        """Return the number of UltraRAMs of 4,096 x 72 bits, one word to a row."""
-        depth, width = ULTRA_SHAPE
-        return math.ceil(self.depth / depth) * math.ceil(self.width / width)
-
-    @property
-    def blocks(self) -> float:
-        """Return the number of block RAMs of 36 Kb; half of one where 18 Kb are enough."""
-        if any(self.depth <= depth and self.width <= width / 2 for depth, width in BLOCK_SHAPES if width > 1):
-            return 0.5
-        return min(math.ceil(self.depth / depth) * math.ceil(self.width / width) for depth, width in BLOCK_SHAPES)
-
     def plain(self) -> dict[str, float]:
-        """Return UltraRAMs and block RAMs by its style."""
-        return {
-            "UltraRAM": self.ultras if self.style == "ultra" else 0,
-            "BRAM36": self.blocks if self.style == "block" else 0,
-        }
+        """Return UltraRAMs and block RAMs by its style and the rule of models/tactile_depth/devices.py."""
+        built = XCZU7EV.memories(self.depth, self.width, STYLES.get(self.style, DISTRIBUTED), self.rom)
+        return {"UltraRAM": built["ultra"], "BRAM36": built["block"]}
 
 
 def memories(design: Path) -> list[Memory]:

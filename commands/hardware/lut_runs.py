@@ -1,44 +1,91 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`python -m commands.hardware.lut_runs A/resources.json ..`: write the runs that models/tactile_depth/luts.py fits.
+"""`python -m commands.hardware.lut_runs A/resources.json .. CHECK B/resources.json ..`: record runs of `make synth`.
 
-Takes reports of `make synth` of one configuration each.
+Takes reports, and writes them to models/tactile_depth/luts.json: those before CHECK are
+fitted by models/tactile_depth/luts.py, those behind it are not. Without a report it prints all recorded runs beside the
+model, the table of docs/hardware.md.
 """
 
 import json
+import subprocess
 import sys
 from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from commands.hardware import synth, synthesis
+from commands.common import repository
+from commands.common.markdown import compact
+from commands.hardware import synth, synthesis, targets
+from commands.hardware.targets import MEMORY
 from tactile_depth.configuration import Configuration
-from tactile_depth.luts import RUNS, grouped
+from tactile_depth.cost import cost
+from tactile_depth.luts import RUNS, grouped, logic, memories
 from tactile_depth.tactile_depth import top_parameters
 
 
-def run_of(report: Path) -> dict[str, Any]:
-    """Return device, command, configuration and LUTs by core of a resources.json."""
+def runs_of(report: Path, fitted: bool) -> list[dict[str, Any]]:
+    """Return commands, configurations and counts of a resources.json, with the last commit that changed the RTL."""
     document = json.loads(report.read_text())
-    (design,) = document["designs"]
-    command = [word for word in document["command"].split()[2:] if not word.startswith("OUT=")]
-    config = synthesis.design(synth.parse(command)[-1])[2]
+    words = [word for word in document["command"].split()[2:] if word.partition("=")[0] not in ("OUT", "TARGET")]
+    _, _, grids, request = synth.parse(words)
+    device = targets.TARGETS[document["target"]].device
+    log = ["git", "log", "-1", "--format=%h", "--", "hdl", "boards/ecp5"]
+    commit = subprocess.run(log, cwd=repository.ROOT, capture_output=True, text=True, check=True).stdout.strip()
     default = asdict(Configuration())
-    counts: Counter[str] = Counter()
-    for core in design["cores"]:
-        counts[core["name"]] += int(core["counts"]["LUT"])
-    return {
-        "command": f"make synth {' '.join(command)}",
-        "device": document["device"],
-        "configuration": {name: value for name, value in asdict(config).items() if value != default[name]},
-        "luts": grouped(counts, top_parameters(config)),
-    }
+    runs = []
+    for (each, reason), design in zip(synth.designs(request, grids), document["designs"], strict=False):
+        if reason:
+            continue
+        config = synthesis.design(each)[2]
+        chosen = [word for word in words if not word.startswith("GRIDS=")]
+        chosen += [f"N={each.columns}", f"SOLVER={each.solver}"] if grids else []
+        found: Counter[str] = Counter()
+        for core in design["cores"]:
+            found[core["name"]] += int(core["counts"]["LUT"] - core["counts"][MEMORY])
+        runs.append(
+            {
+                "device": device.name,
+                "fitted": fitted,
+                "variables": " ".join(chosen),
+                "commit": commit,
+                "configuration": {name: value for name, value in asdict(config).items() if value != default[name]},
+                "multipliers": design["totals"][device.multiplier],
+                "blocks": design["totals"][device.block],
+                "memories": int(design["details"][MEMORY]),
+                "logic": grouped(found, top_parameters(config)),
+            }
+        )
+    return runs
+
+
+def table() -> str:
+    """Return all runs beside the model."""
+    devices = {target.device.name: target.device for target in targets.TARGETS.values()}
+    rows = []
+    for run in json.loads(RUNS.read_text()):
+        count, device = cost(Configuration(**run["configuration"])), devices[run["device"]]
+        numbers = {
+            "multipliers": count.multipliers_of(device),
+            "blocks": count.blocks_of(device),
+            "memories": memories(count.parameters, device),
+        }
+        both = [f"{n:,g}" if n == run[name] else f"{n:,g}, tool {run[name]:,g}" for name, n in numbers.items()]
+        tool, model = sum(run["logic"].values()), sum(logic(count.parameters, device).values())
+        difference = f"{100 * (model / tool - 1):+.1f} %"
+        fitted = "yes" if run["fitted"] else "no"
+        rows.append((device.name, f"`{run['variables']}`", *both, f"{model:,.0f}", f"{tool:,.0f}", difference, fitted))
+    heads = ("multipliers", "block memories", "LUT of memories", "of logic: model", "tool", "difference", "fitted")
+    return compact(("device", "`make synth` with", *heads), rows)
 
 
 def main() -> None:
-    runs = [run_of(Path(report)) for report in sys.argv[1:]]
-    lines = sorted(json.dumps(run) for run in runs)
-    RUNS.write_text("[\n" + ",\n".join(lines) + "\n]\n")
+    reports = sys.argv[1:]
+    if reports:
+        behind = reports.index("CHECK") if "CHECK" in reports else len(reports)
+        runs = [run for k, name in enumerate(reports) if k != behind for run in runs_of(Path(name), k < behind)]
+        RUNS.write_text("[\n" + ",\n".join(sorted(json.dumps(run) for run in runs)) + "\n]\n")
+    print(table())
 
 
 if __name__ == "__main__":

@@ -7,10 +7,10 @@ gets its area and energy per bit. With the node, area grows with the square and 
 grows linearly. Leakage is left out. A ROM counts as a RAM, which is too much: one bit of a ROM is a transistor.
 """
 
-MACRO_BITS = 1024  # a larger memory is a macro, a smaller one is flip-flops or gates
+from tactile_depth.cost import ACCESS_PJ, WORD_BITS
+
 NODE_NM, VOLTAGE = 45.0, 1.1
 AREA_UM2_PER_BIT = 0.53  # 17,301 um2 / (512 x 64)
-ACCESS_PJ, WORD_BITS = 5.3, 64
 ACCESS_NS, SETUP_NS = 0.305, 0.050
 METHOD = (
     f"{AREA_UM2_PER_BIT} um2 per bit, {ACCESS_PJ} pJ per access of {WORD_BITS} bits at {NODE_NM:g} nm and {VOLTAGE} V, "

@@ -77,7 +77,6 @@ TARGETS = {
         {
             "device": [f"{XILINX} -family xcup -uram -run begin:map_ffram"],
             "logic": [
-                "setattr -unset ram_style m:*",  # it knows no UltraRAM; those are boxes here
                 f"{XILINX} -family xc7 -run begin:map_dsp",
                 "memory_dff",
                 "alumacc -macc-only",

@@ -27,14 +27,14 @@ CORES = (  # that have multipliers or memories, in the order of the data
 )
 
 CLOCK_MHZ = 166.0  # of the power
-SMALLEST_MACRO = 1024  # bits; smaller memories are part of the logic
-BIT_PJ = 5.3 / 64
-"""Energy of reading or writing a bit, commands/hardware/memory_model.py."""
+MACRO_BITS = 1024  # a larger memory is a macro, a smaller one is flip-flops or gates
+ACCESS_PJ, WORD_BITS = 5.3, 64
+"""Energy of reading or writing a word of a macro at 45 nm and 1.1 V, see commands/hardware/memory_model.py."""
 PRODUCT_UW, LUT_UW = 3.86, 3.31
 """Power of the logic for each bit of a product (bits of one operand times bits of the other) and for each LUT of the
 XCZU7EV. The first is multipliers' part of the power: 674 of 1,050 mW at 0.18 um (docs/hardware.md). Both are then
 scaled to the two figures at 45 nm, 89.5 and 181.5 mW of logic with 128 x 128, tridiagonal and spectral, which they
-meet within 6 %."""
+meet within 7 %."""
 
 
 @dataclass(frozen=True)
@@ -82,19 +82,19 @@ class Cost:
 
     def luts_of(self, device: Device) -> int:
         """Return the number of LUTs of a device, within the error that docs/hardware.md states."""
-        return round(sum(luts(self.parameters, device).values()))
+        return luts(self.parameters, device)
 
     @cached_property
     def power_mw(self) -> float:
         """Power at 45 nm and 166 MHz, without wires and clock tree, in mW; see LOGIC_UW."""
         product_bits = sum(multiplier.a * multiplier.b for multiplier in self.multipliers)
         logic_uw = PRODUCT_UW * product_bits + LUT_UW * self.luts_of(XCZU7EV)
-        return (logic_uw + BIT_PJ * CLOCK_MHZ * self.accessed_bits) / 1e3
+        return (logic_uw + ACCESS_PJ / WORD_BITS * CLOCK_MHZ * self.accessed_bits) / 1e3
 
     @cached_property
     def accessed_bits(self) -> float:
         """Bits that memories of more than a kilobit read and write per clock; of two banks of a table one is read."""
-        large = [memory for memory in self.memories if memory.bits > SMALLEST_MACRO]
+        large = [memory for memory in self.memories if memory.bits > MACRO_BITS]
         return sum(memory.width * (1 if memory.rom else 0.5 if memory.banked else 2) for memory in large)
 
     @cached_property

@@ -83,8 +83,8 @@ def test_a_multiplication_of_27_by_18_bits_is_one_dsp_with_its_registers(tmp_pat
     ],
 )
 def test_the_plain_rule(depth: np.ndarray, width: int, ultras: Any, blocks: Any) -> None:
-    assert memory(depth, width).ultras == ultras
-    assert memory(depth, width).blocks == blocks
+    assert memory(depth, width, "ultra").plain()["UltraRAM"] == ultras
+    assert memory(depth, width).plain()["BRAM36"] == blocks
 
 
 def test_style_decides_what_a_memory_takes() -> None:
