@@ -219,15 +219,11 @@ def against_software() -> str:
     return text
 
 
-def trade(key: str, head: tuple[str, ...]) -> Callable[[], str]:
-    def text() -> str:
-        made = ""
-        for name, figures, (commit, since) in runs("trade"):
-            front = trade_front.Front(**figures)
-            line = f"{name}, commit {commit}, {SOURCE[1]}: {since}. {front.sentence}."
-            made += f"{textwrap.fill(line, 120)}\n\n{compact(head, figures[key])}"
-        return made
-
+def trade() -> str:
+    text = ""
+    for name, figures, (commit, since) in runs("trade"):
+        line = f"{name}, commit {commit}, {SOURCE[1]}: {since}. {trade_front.Front(**figures).sentence}."
+        text += f"{textwrap.fill(line, 120)}\n\n{compact(trade_front.HEAD, figures['changes'])}"
     return text
 
 
@@ -269,8 +265,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "make asic by core": by_core,
     "estimate at 45 nm": estimated,
     "whole map against software": against_software,
-    "trade, marked": trade("marked", trade_front.HEAD),
-    "trade, options": trade("options", trade_front.OPTIONS_HEAD),
+    "trade": trade,
     "throughput of software": software_throughput,
     "methods at 128": software_methods,
 }

@@ -264,7 +264,7 @@ def trade_figures() -> list[Figure]:
         "Real presses, by calibrations that were not fitted to them. Grey: each configuration; line: the best for its "
         f"cost. Finer arithmetic than that of the knee buys nothing that can be seen. {front.sentence}."
     )
-    content = shown(trade.DEFAULT_OUT / "trade.png") + table(trade_front.HEAD, front.marked)
+    content = shown(trade.DEFAULT_OUT / "trade.png") + table(trade_front.HEAD, front.changes)
     return [Figure("trade", "Accuracy against silicon and latency", text, "make trade", content)]
 
 

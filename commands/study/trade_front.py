@@ -116,21 +116,53 @@ HEAD = (
 )
 
 
+DEFAULT = {
+    **{"solver": "tridiagonal", "boundary": "neumann", "rows": "96", "columns": "128", "lanes": "1"},
+    **{"data_width": "24", "coefficient_width": "18", "gain_width": "24"},
+    **{"gradient": "cubic", "pixel_format": "rgb888", "light_gains": "1"},
+}
+"""Configuration of td.Pipeline for a sensor of 4:3."""
+SQUARE = {"rows": "128", "columns": "128"}
+CHANGES: dict[str, Row] = {
+    "24-bit default": {},
+    **{
+        f"{bits}-bit words": {"data_width": str(bits), "coefficient_width": "18", "gain_width": "16"}
+        for bits in (20, 18, 17, 16, 15, 14, 13, 12)
+    },
+    **{
+        f"{bits}-bit coefficients": {"coefficient_width": str(bits), "gain_width": "16", "data_width": "24"}
+        for bits in (14, 10)
+    },
+    "192 x 256": {"rows": "192", "columns": "256"},
+    "48 x 64": {"rows": "48", "columns": "64"},
+    "24 x 32": {"rows": "24", "columns": "32"},
+    "zero depth at the edge": {"boundary": "dirichlet"},
+    "no light gains": {"light_gains": "0"},
+    "`quadratic`": {"gradient": "quadratic"},
+    "`lut`": {"gradient": "lut", "light_gains": "0"},
+    "camera of `raw8`": {"pixel_format": "raw8"},
+    "camera of `yuyv`": {"pixel_format": "yuyv"},
+    "camera of `rgb565`": {"pixel_format": "rgb565"},
+    "4 values per clock": {"lanes": "4"},
+    "16 values per clock": {"lanes": "16"},
+    "middle square, 128 x 128": SQUARE,
+    "the same, spectral": {**SQUARE, "solver": "spectral"},
+    "published choices: the same, `lut`": {**SQUARE, "solver": "spectral", "gradient": "lut", "light_gains": "0"},
+}
+"""Changes of the default, one at a time."""
+
+
+def changed(rows: Sequence[Row]) -> dict[str, Row]:
+    """Return the rows of CHANGES by their names."""
+    by_cells = {tuple(row[name] for name in DEFAULT): row for row in built(rows)}
+    wanted = {name: tuple((DEFAULT | change).values()) for name, change in CHANGES.items()}
+    return {name: by_cells[cells] for name, cells in wanted.items() if cells in by_cells}
+
+
 def chosen(rows: Sequence[Row]) -> dict[str, Row]:
     """Return the configurations that the picture marks, by their names; the last is not of the whole picture."""
-    among = built(rows)
-
-    def one(**wanted: str) -> Row:
-        return next(row for row in among if all(row[name] == value for name, value in wanted.items()))
-
-    wide = {"data_width": "24", "coefficient_width": "18", "gradient": "cubic", "pixel_format": "rgb888"}
-    wide |= {"boundary": "neumann", "gain_width": "24"}
-    plain = {"light_gains": "1", "lanes": "1"}
-    return {
-        "knee": knee(among),
-        "24-bit default": one(rows="96", columns="128", **wide, **plain),
-        "published choices": one(rows="128", columns="128", solver="spectral", **{**wide, "gradient": "lut"}),
-    }
+    *_, published = found = changed(rows)
+    return {"knee": knee(built(rows)), "24-bit default": found["24-bit default"], "published choices": found[published]}
 
 
 @dataclass(frozen=True)
@@ -139,8 +171,8 @@ class Front:
 
     Attributes
     ----------
-    marked : list of tuple of str
-        Cells of the marked configurations, below HEAD.
+    changes : list of tuple of str
+        Cells of the knee and of the default with one thing changed at a time, below HEAD.
     options : list of tuple of str
         Cells of each value of each option, below OPTIONS_HEAD.
     count, unbuilt, on_front : int
@@ -149,7 +181,7 @@ class Front:
         Command that runs the knee.
     """
 
-    marked: list[tuple[str, ...]]
+    changes: list[tuple[str, ...]]
     options: list[tuple[str, ...]]
     count: int
     unbuilt: int
@@ -185,13 +217,15 @@ def front_of(rows: Sequence[Row]) -> Front:
             on = sum(row[option] == value for row in front)
             least = min(map(depth_error, of))
             options.append((f"{option}={value}", str(len(of)), str(on), f"{least:.1f}"))
-    marked = [(f"{name}: {described(row)}", *figures(row)) for name, row in chosen(rows).items()]
-    return Front(marked, options, len(rows), len(rows) - len(among), len(front), knee(among)["command"])
+    best = knee(among)
+    named = {f"knee: {described(best)}": best} | changed(rows)
+    changes = [(name, *figures(row)) for name, row in named.items()]
+    return Front(changes, options, len(rows), len(rows) - len(among), len(front), best["command"])
 
 
 def summary(front: Front) -> str:
     """Return the tables of a front, its counts, and the command of its knee."""
-    tables = table(HEAD, front.marked), table(OPTIONS_HEAD, front.options)
+    tables = table(HEAD, front.changes), table(OPTIONS_HEAD, front.options)
     return "\n\n".join([*tables, f"{front.sentence} (beaten.csv)", f"the knee: {front.knee}"])
 
 
