@@ -30,7 +30,7 @@ from commands.common.markdown import table
 from commands.common.signals import threads
 from commands.hardware import ecp5, synthesis, yosys
 from commands.hardware.fpga_memory import BLOCKS_PER_ULTRA, TOP, Memory, memories, path_of
-from commands.hardware.targets import LOGIC, MEMORY, SHIFT, TARGETS, Target
+from commands.hardware.targets import DEFAULT_TARGET, LOGIC, MEMORY, SHIFT, TARGETS, Target
 from tactile_depth import files
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import COLUMNS, Configuration
@@ -48,7 +48,7 @@ CONFIGURING = (
     *("DEPTH_RANGE", "REFERENCE", "ZERO", "LIGHT_GAINS"),
     *("GRADIENT", "CALIBRATION", "CAMERA_SIZE", "CONFIG"),
 )
-NOTES = TARGETS["xczu7ev"].notes
+NOTES = TARGETS[DEFAULT_TARGET].notes
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ def elaborate(
     config: Configuration,
     calibration: Sensor,
     folder: Path,
-    target: Target = TARGETS["xczu7ev"],
+    target: Target = TARGETS[DEFAULT_TARGET],
     camera: CameraConfiguration | None = None,
 ) -> tuple[list[str], list[str]]:
     """Return the lines of Yosys that read a design, and all its modules, <core>$<path>.
@@ -311,12 +311,13 @@ def text(design: Design, target: Target) -> str:
 
 def grid_rows(document: Mapping[str, Any]) -> list[list[str]]:
     """Return the designs of a resources.json beside the published one: head, then rows."""
-    resources = document["has"]
+    target = document.get("target", DEFAULT_TARGET)
+    resources = TARGETS[target].has
     rows = [["design", "grid", *resources, "memory in UltraRAM", "does not fit"]]
     stated: set[int] = set()
     for design in document["designs"]:
         height, width = design["configuration"]["grid"]
-        if document["target"] == "xczu7ev" and height == width in published.RESOURCES and width not in stated:
+        if target == DEFAULT_TARGET and height == width in published.RESOURCES and width not in stated:
             stated.add(width)
             known = published.RESOURCES[width]
             stores = f"{known.get('UltraRAM', 0) + known.get('BRAM36', 0) / BLOCKS_PER_ULTRA:,.1f}"
@@ -349,8 +350,8 @@ def sources(arguments: list[str]) -> str:
     return recorded.digest([], [synthesis.sources(each) for each, reason in designs(request, grids) if not reason])
 
 
-def recordable(built: Sequence[Design]) -> dict[str, Any]:
-    """Return what docs/figures.json keeps of designs: what `grid_rows` reads."""
+def recordable(built: Sequence[Design], target: str) -> dict[str, Any]:
+    """Return what docs/figures.json keeps of designs for a target: what `grid_rows` reads."""
     kept_figures = [
         {
             "configuration": {name: each.configuration[name] for name in ("grid", "solver", "lanes")},
@@ -360,7 +361,7 @@ def recordable(built: Sequence[Design]) -> dict[str, Any]:
         }
         for each in built
     ]
-    return {"designs": kept_figures}
+    return {"target": target, "designs": kept_figures}
 
 
 def run(arguments: list[str]) -> int:
@@ -398,7 +399,7 @@ def run(arguments: list[str]) -> int:
             document["designs"].append(asdict(built[-1]))
             (work / "resources.json").write_text(json.dumps(document, indent=1) + "\n")
             files.replace(work, ["resources.json"], out)
-    recorded.record("synth", arguments, recordable(built))
+    recorded.record("synth", arguments, recordable(built, name))
     if grids:
         head, *rows = grid_rows(document)
         print("\n".join([table(head, rows), *target.notes]))

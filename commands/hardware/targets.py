@@ -70,8 +70,9 @@ def _each(resource: str, *cells: str, number: float = 1) -> dict[str, tuple[str,
 
 
 XILINX = "synth_xilinx -flatten -noiopad -noclkbuf"
+DEFAULT_TARGET = "xczu7ev"
 TARGETS = {
-    "xczu7ev": Target(
+    DEFAULT_TARGET: Target(
         XCZU7EV,
         {"DSP48E2": 1728, "BRAM36": 312, "UltraRAM": 96, "LUT": 230_400, "FF": 460_800},
         {

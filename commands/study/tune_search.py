@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import fmean
 
-from commands.hardware.targets import TARGETS, Target
+from commands.hardware.targets import DEFAULT_TARGET, TARGETS, Target
 from tactile_depth.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WIDTHS, Configuration
 from tactile_depth.cost import Cost, cost
 from tactile_depth.devices import Device
@@ -45,7 +45,7 @@ class Limits:
     multipliers: float
     luts: float
     memory_kbit: float
-    target: Target = TARGETS["xczu7ev"]
+    target: Target = TARGETS[DEFAULT_TARGET]
     judgement: Judgement = WORST_FRAME
 
     @property

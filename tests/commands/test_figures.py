@@ -10,6 +10,7 @@ import pytest
 
 from commands.common import recorded, repository
 from commands.hardware import synth
+from commands.hardware.targets import DEFAULT_TARGET, TARGETS
 from commands.study import figures
 from tactile_depth.errors import InputError
 
@@ -66,17 +67,17 @@ def git_where(changed: bool) -> Callable[..., bytes | None]:
 
 
 def test_a_run_is_recorded_with_its_commit(results: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    totals = dict.fromkeys(synth.RESOURCES, 5.0)
+    totals = dict.fromkeys(TARGETS[DEFAULT_TARGET].has, 5.0)
     described = {"grid": [16, 16], "solver": "spectral", "lanes": 1}
-    design = synth.Design(described, totals, {"memory in UltraRAM": 1.0}, [], [], "", 1.0)
+    design = synth.Design(described, totals, {}, {"memory in UltraRAM": 1.0}, [], [], "", 1.0)
     before = results.read_text()
     monkeypatch.setattr(recorded, "git", git_where(changed=True))
-    recorded.record("synth", ["PRESET=published", "N=16"], synth.recordable([design]))
+    recorded.record("synth", ["PRESET=published", "N=16"], synth.recordable([design], DEFAULT_TARGET))
     assert results.read_text() == before
     monkeypatch.setattr(recorded, "git", git_where(changed=False))
-    recorded.record("synth", ["PRESET=published", "N=32"], synth.recordable([design]))
+    recorded.record("synth", ["PRESET=published", "N=32"], synth.recordable([design], DEFAULT_TARGET))
     assert json.loads(results.read_text()) == json.loads(before), "a line that is not in the file is not recorded"
-    recorded.record("synth", ["PRESET=published", "N=16"], synth.recordable([design]))
+    recorded.record("synth", ["PRESET=published", "N=16"], synth.recordable([design], DEFAULT_TARGET))
     assert figures.synthesized(over_grids=False).splitlines()[2] == (
         "| small | 16 x 16 | 5 | 5 | 5 | 5 | 5 | 1.0 | 1234567 | same |"
     )

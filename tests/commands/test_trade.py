@@ -82,8 +82,9 @@ def test_a_row_is_what_the_rtl_does(study: trade.Study) -> None:
 
 def row(**changed: Any) -> Row:
     """Return a row with all axes 100 but those given."""
-    names = (*trade_front.ERRORS, *trade_front.COSTS)
-    return {"problem": "", "boundary": "neumann", **dict.fromkeys(names, "100"), **{name: str(value) for name, value in changed.items()}}
+    same = dict.fromkeys((*trade_front.ERRORS, *trade_front.COSTS), "100")
+    other = {name: str(value) for name, value in changed.items()}
+    return {"problem": "", "boundary": "neumann", **same, **other}
 
 
 def test_a_row_is_beaten_by_one_that_is_no_worse_in_anything() -> None:
