@@ -15,7 +15,7 @@
 #include <deque>
 #include <string>
 
-#include "Vdevice.h"
+#include "Vtop.h"
 #include "verilated.h"
 
 namespace {
@@ -65,7 +65,7 @@ class Line {
 
 class Port {  // of the ULX3S
  public:
-  explicit Port(Vdevice& top) : top_(top) { top.ftdi_txd = 1; }
+  explicit Port(Vtop& top) : top_(top) { top.ftdi_txd = 1; }
   void Clock() {
     top_.clk_25mhz = 0;
     top_.eval();
@@ -100,7 +100,7 @@ class Port {  // of the ULX3S
 
  private:
   static constexpr int kBits = 10;
-  Vdevice& top_;
+  Vtop& top_;
   int send_clocks_ = 0, take_clocks_ = 0;
   unsigned send_word_ = 0, take_word_ = 0;
 };
@@ -109,7 +109,7 @@ class Port {  // of the ULX3S
 
 class Port {  // of device_bench
  public:
-  explicit Port(Vdevice& top) : top_(top) {}
+  explicit Port(Vtop& top) : top_(top) {}
   void Clock() {
     top_.clk = 0;
     top_.eval();
@@ -134,7 +134,7 @@ class Port {  // of device_bench
   }
 
  private:
-  Vdevice& top_;
+  Vtop& top_;
 };
 
 #endif
@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
   sigaction(SIGUSR1, &action, nullptr);  // without SA_RESTART: it wakes poll
   const long idle_limit = argc > 1 ? std::atol(argv[1]) : 1L << 20;
 
-  Vdevice top;
+  Vtop top;
   Port port(top);
   Line line;
   const auto reset = [&](bool power_up) {

@@ -17,6 +17,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from unittest import mock
 
+import cocotb_tools.config
 import find_libpython
 from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import Runner, Verilator, get_runner
@@ -53,24 +54,24 @@ VERILATOR_MAKEFLAGS = (
 )
 
 UNKNOWN_PARAMETER = re.compile(r"parameter \S+ not found in \S+")
+PROGRAM = cocotb_tools.config.share_dir / "lib" / "verilator" / "verilator.cpp"  # cocotb's main program
 RUNTIME = "runtime.h"
 RUNTIME_HEADERS = ("verilated.h", "verilated_dpi.h", "verilated_vpi.h")
 
 
-class ClosedVerilator(Verilator):
-    """Verilator without --public-flat-rw, which makes every signal visible to Python and is several times slower.
+class WholeVerilator(Verilator):
+    """Verilator whose main program is a part of the model's one C++ file: compiled alone, it is nearly all headers.
 
-    A .vlt file names the signals that Python needs instead. `program` replaces cocotb's main program.
+    `closed` leaves --public-flat-rw out, which makes every signal visible to Python and is several times slower. A .vlt
+    file names the signals that Python needs instead.
     """
 
-    program: Path | None = None
+    def __init__(self, closed: bool) -> None:
+        super().__init__()
+        self.left_out = [str(PROGRAM), *["--public-flat-rw"] * closed]
 
     def _build_command(self) -> list[list[str]]:
-        def replaced(word: str) -> str:
-            return str(self.program) if self.program and word.endswith("/verilator.cpp") else word
-
-        commands = super()._build_command()
-        return [[replaced(word) for word in command if word != "--public-flat-rw"] for command in commands]
+        return [[word for word in command if word not in self.left_out] for command in super()._build_command()]
 
 
 def check(simulator: str) -> None:
@@ -112,16 +113,17 @@ def build(
     `program` is then a C++ file in place of cocotb's main program.
     """
     check(simulator)
-    runner: Runner = get_runner(simulator)
-    if simulator == "verilator" and fast:
-        runner = ClosedVerilator()
-        runner.program = program
+    runner: Runner = WholeVerilator(closed=fast) if simulator == "verilator" else get_runner(simulator)
     arguments = ["-Wall"]
     if simulator == "verilator":
         files = [HDL / "verilator.vlt", *sorted(files, key=lambda file: file.suffix != ".vlt")]  # waivers first
         # The testbench of a core compiles longer than it runs; -O2 saves only 5 % of a long run.
         level = "-O1" if fast else "-O0"
         os.environ["MAKEFLAGS"] = f"{VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL={level}"
+        os.environ["VM_SUPPORT_FAST"] = "program"  # Verilator's makefile adds to this list of parts of the C++ file
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "program.cpp").unlink(missing_ok=True)
+        (folder / "program.cpp").symlink_to(program or PROGRAM)
         # Registers and memories are random at power-up, by the seed that `run` passes.
         arguments += ["--x-assign", "unique", "--x-initial", "unique", *["-O3"] * fast]
         if COVERAGE:
@@ -196,12 +198,13 @@ def _keep_runtime(folder: Path, runtime: Path) -> None:
     with files.temporary(runtime.parent) as place:
         kept = place / "runtime"
         kept.mkdir()
-        for compiled in folder.glob("verilated*.o"):
-            shutil.copy(compiled, kept)
         (folder / RUNTIME).write_text("".join(f'#include "{name}"\n' for name in RUNTIME_HEADERS))
         precompiled = f"{RUNTIME}.fast.gch"  # a rule of Verilator's makefile, with the flags of the model
-        make = ["make", "-s", "-C", str(folder), "-f", "Vtop.mk", precompiled]
+        # Some models do without DPI.
+        make = ["make", "-s", "-C", str(folder), "-f", "Vtop.mk", precompiled, "verilated_dpi.o"]
         subprocess.run(make, check=True, stdout=subprocess.DEVNULL)
+        for compiled in folder.glob("verilated*.o"):
+            shutil.copy(compiled, kept)
         shutil.copy(folder / RUNTIME, kept)
         (folder / precompiled).rename(kept / f"{RUNTIME}.gch")
         with contextlib.suppress(OSError):  # another build was first

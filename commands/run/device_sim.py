@@ -10,7 +10,6 @@ Each configuration is built once for each state of the sources. `tactile_depth.D
 import hashlib
 import json
 import os
-import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -22,7 +21,6 @@ from tactile_depth.hardware_files import PARAMETERS
 
 BENCH, BOARD = "device_bench", "ulx3s"
 MAIN = repository.ROOT / "tb" / "device_main.cpp"
-EXECUTABLE = "device"
 BIT_CLOCKS = 4  # of the serial line, the least that uart_receive takes
 CLOCK_MHZ = 100
 IDLE_FRAMES, IDLE_CLOCKS = 4, 20_000  # without a byte; then time stands still. An answer takes less
@@ -38,37 +36,34 @@ def build(fields: Mapping[str, int], pins: bool) -> Path:
     bench = repository.BOARDS[BOARD] if pins else [repository.ROOT / "tb" / f"{BENCH}.sv"]
     text = wrapper.wrapper(name, fields)
     key = hashlib.sha256(json.dumps([top, text, simulation.versions()]).encode())
-    for source in (*repository.sources(), *bench, MAIN, Path(__file__)):
+    for source in (*repository.sources(), *bench, MAIN, Path(simulation.__file__), Path(__file__)):
         key.update(source.read_bytes())
 
     def make(folder: Path) -> None:
         _verilate(folder, top, [*bench, wrapper.write(folder, name, fields)], fields, pins)
 
-    return simulation.built_once(key.hexdigest(), "the simulator", make) / EXECUTABLE
+    return simulation.built_once(key.hexdigest(), "the simulator", make) / top
 
 
 def _verilate(folder: Path, top: str, files: list[Path], fields: Mapping[str, int], pins: bool) -> None:
-    """Build the executable in a folder. Raises RuntimeError if Verilator or the compiler fails."""
-    simulation.check("verilator")
+    """Build the executable, of the name of the top, in a folder. Raises RuntimeError or SystemExit if it fails."""
     parameters = wrapper.linked(fields)
-    flags = "-O2"
+    program = MAIN
     if pins:
         parameters |= {"ClockMhz": CLOCK_MHZ, "Baud": CLOCK_MHZ * 10**6 // BIT_CLOCKS}
-        flags += f" -DPINS -DBIT_CLOCKS={BIT_CLOCKS}"
         files = [*files, wrapper.write(folder, BOARD, {**fields, "Camera": 1})]  # named in the other branch
-    waivers = [repository.HDL / "verilator.vlt"]
-    command = [
-        *("verilator", "--cc", "--exe", "--build", "--prefix", "Vdevice", "--top-module", top, "-Wall", "-O3"),
-        *("--Mdir", str(folder), "-o", EXECUTABLE, "-CFLAGS", flags, "--timescale", "1ns/1ps"),
-        *(f"-G{name}={value}" for name, value in parameters.items()),
-        *map(str, [*waivers, *repository.sources(), *files, MAIN]),
-    ]
-    environment = os.environ | {
-        "MAKEFLAGS": f"{simulation.VERILATOR_MAKEFLAGS} OPT_FAST=-O1 OPT_SLOW=-O0 OPT_GLOBAL=-O1"
-    }
-    with (folder / simulation.LOG).open("w") as output:
-        if subprocess.run(command, env=environment, stdout=output, stderr=subprocess.STDOUT, check=False).returncode:
-            raise RuntimeError("Verilator or the compiler failed")
+        program = folder / "pins.cpp"
+        program.write_text(f'#define PINS\n#define BIT_CLOCKS {BIT_CLOCKS}\n#include "{MAIN}"\n')
+    simulation.build(
+        "verilator",
+        top,
+        [*repository.sources(), *files],
+        parameters,
+        folder,
+        fast=True,
+        program=program,
+        log=folder / simulation.LOG,
+    )
 
 
 def main() -> None:
