@@ -288,6 +288,13 @@ def test_rtl_and_model_saturate_where_the_certificate_says(
         assert "row_inverse.output" in document["saturated"]
 
 
+def test_a_real_sensor_is_certified_from_its_slopes_to_its_depth(tmp_path: Path) -> None:
+    words = "PRESET=sensor ROWS=12 COLS=16 DATA_WIDTH=12 COEFF_WIDTH=10 GAIN_WIDTH=16 DEPTH_RANGE=2"
+    document = run(tmp_path, *words.split(), rtl=False)
+    assert document["boundary"] == "neumann"
+    assert min(node["depths_headroom_bits"] or 0 for node in document["nodes"]) >= 0
+
+
 @pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
 def test_the_worst_depth_range_and_its_price(tmp_path: Path, capsys: pytest.CaptureFixture[str], solver: str) -> None:
     run(tmp_path, "N=32", f"SOLVER={solver}", "DEPTH_RANGE=worst", rtl=False)

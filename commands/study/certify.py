@@ -212,7 +212,9 @@ def run(request: run_request.Request, rtl: bool = True) -> int:
     # The certificate holds for all slopes. The colours are those of a table without a reference.
     calibration = dataclasses.replace(calibration, flat_field=None).scaled(camera_scale(calibration, grid))
     pixel_pitch_mm = calibration.pixel_pitch_mm
-    config = run_request.configure(dataclasses.replace(request, gradient=GRADIENT_MODELS[0]), calibration)
+    # It begins at the slopes, and ends at the depth before the zero offset.
+    from_slopes = dataclasses.replace(request, gradient=GRADIENT_MODELS[0], zero=None)
+    config = run_request.configure(from_slopes, calibration)
     shape = f"{config.rows}x{config.columns}" + (f"-{config.lanes}lanes" if config.lanes > 1 else "")
     name = f"{request.solver}-{request.boundary}-{shape}-d{config.data_width}-c{config.coefficient_width}"
     if request.depth_range_mm == math.inf:

@@ -4,6 +4,8 @@
 Each row has the error, saturations by node, the sticky bit of the hardware, and the number of codes that wrapped. Long
 runs measure drift, and the transforms are measured like in IEEE 1180. Variables: N (64), SIM, OUT, SHORT=1 without the
 long runs and the largest grid. Exit status: 0 when every row is as it must be, 1 when not, 2 on bad input.
+PRESET=sensor: the rows of sensor_extremes.py. Variables: N or ROWS and COLS (48 x 64), DATA_WIDTH, COEFF_WIDTH,
+GAIN_WIDTH, DEPTH_RANGE, SIM, OUT, RTL=0 for no simulation.
 """
 
 import json
@@ -20,7 +22,7 @@ from tqdm import tqdm
 from commands.common import markdown, repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.study import certify as certificate
-from commands.study import transform_noise
+from commands.study import sensor_extremes, transform_noise
 from commands.study.transform_noise import BIAS, Compliance, compliance
 from tactile_depth import files, reference
 from tactile_depth.accuracy import errors
@@ -36,6 +38,7 @@ RESULTS = ("extremes.json",)
 CALIBRATION = "synthetic"
 LONG_MODEL, LONG_RTL = 10_000, 2_000  # frames of the runs for drift
 SHORT_MODEL = 96
+SENSOR_ACCEPTED = ("N", "ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH", "DEPTH_RANGE", "SIM", "OUT")
 BATCH = 96  # frames that the model runs at a time
 REST_COLOUR = round(REST)
 
@@ -335,9 +338,21 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
     return 1 if broken else 0
 
 
+def of_sensor(given: Mapping[str, str]) -> int:
+    """Run the rows of a real sensor with these variables and return the exit status."""
+    values = {**({} if "N" in given else sensor_extremes.GRID), **sensor_extremes.CHOSEN, **given}
+    request = run_request.of_values(values, frames="")
+    rtl = bool(variables.number(values, "RTL", 1, 0, 1))
+    if rtl:
+        simulation.check(request.simulator)
+    return sensor_extremes.run(request, request.out or repository.ROOT / "build" / "extremes-sensor", rtl)
+
+
 def main() -> None:
     with variables.reported("extremes"):
-        values = {"N": "64", **variables.given(sys.argv[1:], ("N", "SIM", "SHORT", "OUT"))}
+        if "PRESET=sensor" in sys.argv[1:]:
+            sys.exit(of_sensor(variables.given(sys.argv[1:], ("PRESET", "RTL", *SENSOR_ACCEPTED))))
+        values = {"N": "64", **variables.given(sys.argv[1:], ("PRESET", "N", "SIM", "SHORT", "OUT"))}
         request = run_request.of_values(values)
         out = request.out or repository.ROOT / "build" / "extremes"
         sys.exit(run(request.columns, request.simulator, out, bool(variables.number(values, "SHORT", 0, 0, 1))))

@@ -2,16 +2,20 @@
 """Rows of `make extremes`, short: RTL equals the model, saturations are flagged, no code wraps, errors are small."""
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from commands.study import extremes, transform_noise
+from commands.common import run_request
+from commands.study import extremes, long_state, sensor_extremes, transform_noise
+from commands.study.drawn_light import DrawnLight
 from commands.study.extremes import EXTREMES, drift, faults, largest, measure, model_drift, smallest
 from commands.study.transform_noise import compliance, transforms
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.tactile_depth import slope_tables
 
 SIZE = 16
 SOLVERS = tuple(COLUMNS)
@@ -122,3 +126,123 @@ def test_the_file_it_leaves() -> None:
     for module, rows in ((extremes, document["extremes"]), (transform_noise, document["compliance"])):
         for each in rows:
             assert len(module.cells(each)) == len(module.HEAD)
+
+
+# Rows of a real sensor.
+
+WANTED = sensor_extremes.GRID | sensor_extremes.CHOSEN | {"PRESET": "sensor"}
+
+
+def requested(**variables: str) -> tuple[Any, DrawnLight]:
+    request = run_request.of_values(WANTED | variables, frames="")
+    return request, sensor_extremes.draw(request)
+
+
+def sensor_row(name: str, narrowest: bool = False, rtl: bool = False, **variables: str) -> Any:
+    request, drawn = requested(**variables)
+    case = next(each for each in sensor_extremes.CASES if each.name == name)
+    row = sensor_extremes.measure(case, sensor_extremes.configurations(request, drawn)[narrowest], drawn, rtl)
+    assert sensor_extremes.faults(case, row) == []
+    assert len(sensor_extremes.cells(row)) == len(sensor_extremes.HEAD)
+    return row
+
+
+@pytest.mark.parametrize(("narrowest", "words", "bar_mm"), [(False, "15/18/16", 0.006), (True, "12/10/16", 0.03)])
+def test_a_plain_contact_has_the_height_that_was_drawn(narrowest: bool, words: str, bar_mm: float) -> None:
+    """Compare with bars near what was measured: 0.003 mm, and 0.020 mm with the narrowest words."""
+    row = sensor_row("ball", narrowest)
+    assert row.words == words
+    assert abs(row.worst.height) < bar_mm
+    assert row.alone.untouched < bar_mm
+    assert (row.python, row.status, row.right_after) == ("", (), None)
+
+
+def test_one_frame_without_light_costs_that_frame_alone() -> None:
+    row = sensor_row("light off for one frame")
+    assert row.worst.height < -0.3
+    assert row.right_after == 0
+    assert row.alone is None
+    assert row.python.startswith("refused: pictures: it is black")
+
+
+@pytest.mark.parametrize(("name", "frames"), [("light x 0.8", 2), ("light x 1.25", 8), ("light x 1.5", None)])
+def test_gains_follow_a_step_of_the_light_up_to_a_third_more(name: str, frames: int | None) -> None:
+    row = sensor_row(name)
+    assert row.worst.height > 1
+    assert row.right_after == frames
+    assert abs(row.alone.height) < 0.01  # a picture by itself
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("contact over the whole gel", "its light changes across it"),
+        ("reference taken while touching", "as if something touched it in the reference"),
+        ("overexposed, light x 2 with its reference", "refused: reference"),
+        ("flat plate over the whole gel", ""),
+    ],
+)
+def test_what_the_package_says(name: str, text: str) -> None:
+    row = sensor_row(name)
+    assert row.python.startswith(text) if not text else text in row.python
+    assert bool(row.python) == bool(text)
+
+
+@pytest.mark.parametrize("name", ["light off for one frame", "deeper than DEPTH_RANGE"])
+def test_rtl_of_a_sensor_row(name: str) -> None:
+    row = sensor_row(name, rtl=True, ROWS="12", COLS="16", SIM="icarus")
+    assert row.bit_exact
+    assert row.registers_agree
+    assert row.status == (("saturation",) if row.saturations else ())
+
+
+@pytest.mark.regress
+@pytest.mark.parametrize("narrowest", [False, True])
+@pytest.mark.parametrize("case", sensor_extremes.CASES, ids=lambda case: case.name.replace(" ", "-"))
+def test_every_sensor_row(case: Any, narrowest: bool) -> None:
+    assert sensor_row(case.name, narrowest, rtl=True, SIM="verilator").bit_exact
+
+
+def test_a_sensor_row_that_is_not_as_it_must_be_is_named() -> None:
+    row = sensor_row("ball", ROWS="12", COLS="16")
+    broken = replace(row, bit_exact=False, registers_agree=False, saturations={"flat_field": 1})
+    lines = sensor_extremes.faults(sensor_extremes.CASES[0], broken)
+    assert len(lines) == 3
+    assert all(line.startswith("ball, 15/18/16: ") for line in lines)
+
+
+def test_light_gains_of_ten_million_frames() -> None:
+    """Find them where they were, and within 0.1 % of the light; without LIGHT.rate beyond a third more they go off."""
+    request, drawn = requested()
+    sensor = sensor_extremes.on_grid(drawn, sensor_extremes.untouched_picture(drawn))
+    config = run_request.configure(request, sensor)
+    states = long_state.light_states(drawn, sensor_extremes.ball(drawn), sensor, config)
+    assert {state.light for state in states} == set(long_state.LIGHTS)
+    for state in states:
+        assert state.settled_after >= 0, state
+        if not state.light.endswith("in turn") and not (state.light in ("x 1.5", "x 1.99") and state.rate == 0):
+            assert state.off_percent < 0.15, state
+    assert next(each for each in states if (each.light, each.rate) == ("x 1.5", 0)).off_percent > 5
+
+
+def test_the_gains_that_are_skipped_to_are_those_of_every_frame(monkeypatch: pytest.MonkeyPatch) -> None:
+    request, drawn = requested(ROWS="12", COLS="16")
+    sensor = sensor_extremes.on_grid(drawn, sensor_extremes.untouched_picture(drawn))
+    config = run_request.configure(request, sensor)
+    pictures = drawn.pictures(drawn.untouched, [(1.2,) * 3] * 3, seed=1)
+    gains = slope_tables(sensor, config).gains
+    assert gains is not None
+    relative = long_state.ratios(pictures, gains, config)
+    light = long_state.Light.of(config)
+    for frames in (100, 101, 500):
+        monkeypatch.setattr(long_state, "FRAMES", frames)
+        stream = long_state.LightFilter(light)
+        used = [stream.take(relative[n % 3]) for n in range(frames + 1)]
+        assert long_state.light_state("", relative, np.full(3, 1.2), light, 0).gains == tuple(used[frames].tolist())
+
+
+def test_counters_stay_and_numbers_begin_again() -> None:
+    largest = 2**32 - 1
+    counts = {each.register: each for each in long_state.counts(Configuration(columns=16), 3, 256)}
+    assert {counts.pop(name).after_the_end for name in long_state.COUNTERS} == {largest}
+    assert {name: each.after_the_end for name, each in counts.items()} == {"RECORD_FRAME": 0, "RECORD_TIME": 255}

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of a sensor whose colours follow the polynomials of a calibration exactly, drawn on the grid."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from PIL import Image
+
+from tactile_depth.reference import polynomials_at_pixels
+from tactile_depth.scenes import BENCH, NOISE
+from tactile_depth.sensor import Sensor
+
+LEVEL = 90.0  # mean grey level of the untouched gel
+Height = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""Height in mm at positions x (1, n) and y (m, 1) in mm from the middle of the picture: (m, n)."""
+
+
+def exact(sensor: Sensor) -> Sensor:
+    """Return a sensor without corrections by colour, so that its polynomials hold and a picture has one height."""
+    assert sensor.corrections is not None
+    return replace(sensor, corrections=np.zeros_like(sensor.corrections))
+
+
+@dataclass(frozen=True)
+class DrawnLight:
+    """Light of a sensor on a grid (rows, columns); each pixel is `scale` pixels of the camera wide."""
+
+    sensor: Sensor
+    grid: tuple[int, int]
+    scale: float
+
+    @property
+    def pitch_mm(self) -> float:
+        return self.sensor.pixel_pitch_mm * self.scale
+
+    @cached_property
+    def untouched(self) -> np.ndarray:
+        """Grey levels of the untouched gel, float64 (rows, columns, 3)."""
+        planes = np.moveaxis(np.asarray(self.sensor.lighting, np.float32), -1, 0)
+        size = self.grid[::-1]
+        drawn = [np.asarray(Image.fromarray(plane).resize(size, Image.Resampling.BICUBIC)) for plane in planes]
+        return LEVEL * np.stack(drawn, axis=-1).astype(np.float64)
+
+    @cached_property
+    def _colours_by_slope(self) -> np.ndarray:
+        """Smallest deviations of the colours that give a slope of 1, float64 (rows, columns, 3, 2)."""
+        held = polynomials_at_pixels(*self.grid, self.sensor.polynomials("cubic"), self.pitch_mm)
+        return np.linalg.pinv(np.moveaxis(held, (0, 1), (-2, -1)))
+
+    def heights(self, height: Height) -> np.ndarray:
+        """Return heights in mm of the pixels and of one row and column beyond them, float64 (rows + 1, columns + 1)."""
+        y, x = ((np.arange(length + 1) - (length - 1) / 2) * self.pitch_mm for length in self.grid)
+        return height(x[None, :], y[:, None])
+
+    def levels(self, height: Height) -> np.ndarray:
+        """Return grey levels, float64 (rows, columns, 3); the solve of their slopes is the height."""
+        drawn = self.heights(height)
+        slopes = np.stack((np.diff(drawn, axis=1)[:-1], np.diff(drawn, axis=0)[:, :-1]), axis=-1) / self.pitch_mm
+        return self.untouched * (1 + (self._colours_by_slope @ slopes[..., None])[..., 0])
+
+    def pictures(self, levels: np.ndarray, lights: Sequence[Sequence[float]], seed: int) -> np.ndarray:
+        """Return pictures in lights (n, 3) relative to that of `levels`, with the camera's noise: uint8 (n, ..)."""
+        noise = np.random.default_rng(seed).normal(scale=NOISE / self.scale, size=(len(lights), *levels.shape))
+        return np.rint(levels * np.array(lights)[:, None, None] + noise).clip(0, 255).astype(np.uint8)
+
+    @property
+    def width_mm(self) -> float:
+        """Shorter side of the picture."""
+        return min(self.grid) * self.pitch_mm
+
+    def body(self, name: str, depth_mm: float, x_mm: float = 0.0) -> Height:
+        """Return the height of a body of the bench."""
+        width = self.width_mm
+        return lambda x, y: width * BENCH[name].body((x - x_mm) / width, y / width, depth_mm / width)

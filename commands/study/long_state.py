@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: Apache-2.0
+"""State that outlives a frame, after 10 million frames: light gains, counters, numbers and times.
+
+Pictures that repeat move the light gains by a function of the gains alone; once the gains are
+what they were before, they go round, and where they are after any number of frames is known. Counters and times are set
+to their largest value first.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from commands.study.drawn_light import DrawnLight, Height
+from tactile_depth.configuration import Configuration
+from tactile_depth.contact.contact_events import WORD_BITS, ContactEvents, Settings
+from tactile_depth.gradient.flat_field import ratios
+from tactile_depth.gradient.light_gains import Light, LightFilter
+from tactile_depth.registers.event_registers import COUNTERS, EVENT_COUNTERS, SATURATIONS, EventRegisters
+from tactile_depth.sensor import Sensor
+from tactile_depth.tactile_depth import slope_tables
+
+FRAMES = 10_000_000
+PICTURES = 4  # that repeat, each with its own noise of the camera
+LONGEST = 400  # passes over the pictures until the gains must go round
+LIGHTS = {
+    "light of the reference": (1.0,) * PICTURES,
+    "x 0.51": (0.51,) * PICTURES,
+    "x 1.3": (1.3,) * PICTURES,
+    "x 1.5": (1.5,) * PICTURES,
+    "x 1.99": (1.99,) * PICTURES,
+    "x 0.99 and x 1.01 in turn": (0.99, 1.01) * (PICTURES // 2),
+}
+RATES = (0, 1)
+
+
+@dataclass(frozen=True)
+class LightState:
+    """Gains of a stream of pictures that repeat.
+
+    Attributes
+    ----------
+    settled_after : int
+        Frames after which the gains go round; -1: they did not within the frames that were run.
+    period : int
+        Frames after which they are the same again.
+    off_percent : float
+        Largest distance of gain * light from 1 on the round, in %.
+    gains : (int, int, int)
+        Codes after FRAMES frames, of red, green and blue.
+    """
+
+    light: str
+    rate: int
+    settled_after: int
+    period: int
+    off_percent: float
+    gains: tuple[int, ...]
+
+
+def light_states(drawn: DrawnLight, height: Height, sensor: Sensor, config: Configuration) -> list[LightState]:
+    """Run the light gains of a contact of this height in every light and at every rate."""
+    gains = slope_tables(sensor, config).gains
+    assert gains is not None
+    states = []
+    for name, lights in LIGHTS.items():
+        pictures = drawn.pictures(drawn.levels(height), [(light,) * 3 for light in lights], seed=3)
+        relative = ratios(pictures, gains, config)
+        states += [light_state(name, relative, np.array(lights), Light.of(config), rate) for rate in RATES]
+    return states
+
+
+def light_state(name: str, relative: np.ndarray, lights: np.ndarray, light: Light, rate: int) -> LightState:
+    """Return the gains after FRAMES frames of ratios (pictures, rows, columns, 3) that repeat."""
+    stream = LightFilter(light, rate=rate)
+    passes: dict[bytes, int] = {}
+    used: list[np.ndarray] = []
+    count = len(relative)
+    while stream.gains.tobytes() not in passes and len(passes) < LONGEST:
+        passes[stream.gains.tobytes()] = len(passes)
+        used += list(stream.take_all(relative))
+    first = passes.get(stream.gains.tobytes(), -1)
+    start = max(first, 0) * count
+    period = len(used) - start
+    round_of_gains = np.array(used[start:])
+    product = round_of_gains / light.unity * np.resize(lights, period)[:, None]
+    after = used[start + (FRAMES - start) % period]
+    settled_after = start if first >= 0 else -1
+    return LightState(name, rate, settled_after, period, 100 * float(np.abs(product - 1).max()), tuple(after.tolist()))
+
+
+LIGHT_HEAD = (
+    "light",
+    "LIGHT.rate",
+    "goes round after",
+    "period",
+    "gain x light off 1 by, %",
+    f"gains after {FRAMES:,}",
+)
+
+
+def light_cells(state: LightState) -> tuple[str, ...]:
+    after = "no round found" if state.settled_after < 0 else f"{state.settled_after:,}"
+    off = f"{state.off_percent:.3f}"
+    return state.light, f"{state.rate}", after, f"{state.period:,}", off, ", ".join(map(str, state.gains))
+
+
+@dataclass(frozen=True)
+class LongCount:
+    """A register that counts, after FRAMES frames and at its end.
+
+    Attributes
+    ----------
+    share_percent : float
+        Of its range, that FRAMES frames take; above 100: it came to its end before.
+    after_the_end : int
+        Value one event after its largest one.
+    """
+
+    register: str
+    share_percent: float
+    after_the_end: int
+
+
+def counts(config: Configuration, clipped_per_frame: int, clocks_per_frame: int) -> list[LongCount]:
+    """Return what becomes of every counter, number and time in FRAMES frames that each clip so many values."""
+    largest = (1 << WORD_BITS) - 1
+    model = EventRegisters()
+    model.values.update(dict.fromkeys(COUNTERS, largest))
+    model.clock(tuple(EVENT_COUNTERS), 1, None, 0)
+    each: Mapping[str, int] = {
+        SATURATIONS: clipped_per_frame,
+        "DARK_PIXELS": config.rows * config.columns,
+        "DEPTH_DROPPED": config.rows * config.columns,
+    }
+    rows = [_count(name, each.get(name, 1), model.values[name]) for name in COUNTERS]
+    contact = ContactEvents(config.rows, config.columns, config.data_width, bottom_first=True)
+    contact.frames = largest
+    codes = np.zeros((config.rows, config.columns), np.int64)
+    record = contact.whole_frame(codes, Settings(1, 1, 1, 1, 1), time=largest)
+    after = (largest + clocks_per_frame) % (largest + 1)
+    return [*rows, _count("RECORD_FRAME", 1, record.frame), _count("RECORD_TIME", clocks_per_frame, after)]
+
+
+def _count(name: str, per_frame: int, after: int) -> LongCount:
+    return LongCount(name, 100 * FRAMES * per_frame / 2.0**WORD_BITS, after)
+
+
+COUNT_HEAD = ("register", f"range used after {FRAMES:,} frames, %", "after its largest value")
+
+
+def count_cells(count: LongCount) -> tuple[str, ...]:
+    return count.register, f"{count.share_percent:,.2f}", f"{count.after_the_end:,}"
