@@ -44,9 +44,10 @@ class Target:
         ultra = math.prod(self.device.ultra_shape) * self.has["UltraRAM"] if self.device.ultra_shape else 0
         return math.prod(self.device.block_shapes[0]) * self.has[self.device.block] + ultra
 
-    def share(self, multipliers: float, luts: float, memory_bits: float) -> float:
-        """Return the fractions of multipliers, LUTs and memory bits that a design takes of the device, added up."""
-        return multipliers / self.has[self.device.multiplier] + luts / self.has["LUT"] + memory_bits / self.memory_bits
+    def shares(self, multipliers: float, luts: float, memory_bits: float) -> tuple[float, float, float]:
+        """Return the fractions of multipliers, LUTs and memory bits that a design takes of the device."""
+        have = self.has[self.device.multiplier], self.has["LUT"], self.memory_bits
+        return multipliers / have[0], luts / have[1], memory_bits / have[2]
 
     def counts(self, mapped: Mapping[str, Counter[str]], modules: Sequence[str]) -> dict[str, float]:
         """Return the resources of a module from its cells in each mapping.

@@ -2,7 +2,7 @@
 """The front of `make trade`: which configurations no other one beats, the knee, and the picture.
 
 A configuration is beaten if another one is no worse in every axis, as printed, and better in one. Its silicon is the
-sum of the shares of multipliers, LUTs and block memory that it takes of an LFE5U-85F.
+largest of the shares of multipliers, LUTs and block memory that it takes of an LFE5U-85F: it fits up to 100 %.
 """
 
 from __future__ import annotations
@@ -63,8 +63,8 @@ def beaten_by(rows: Sequence[Row]) -> list[int | None]:
 
 
 def silicon(row: Row) -> float:
-    """Return the shares of an LFE5U-85F that a configuration takes, in %, added up."""
-    return 100 * TARGETS["ecp5"].share(*(float(row[name]) for name in ("multipliers_18", "luts", "memory_bits")))
+    """Return the largest of the shares of an LFE5U-85F that a configuration takes, in %."""
+    return 100 * max(TARGETS["ecp5"].shares(*(float(row[name]) for name in ("multipliers_18", "luts", "memory_bits"))))
 
 
 def depth_error(row: Row) -> float:
@@ -81,7 +81,8 @@ def knee(rows: Sequence[Row]) -> Row:
     """Return the configuration with the least silicon whose depth error is within NEAR of the smallest."""
     among = whole_picture(rows)
     smallest = min(map(depth_error, among))
-    return min((row for row in among if depth_error(row) <= NEAR * smallest), key=silicon)
+    near = [row for row in among if depth_error(row) <= NEAR * smallest]
+    return min(near, key=lambda row: (silicon(row), depth_error(row)))
 
 
 def described(row: Row) -> str:
@@ -157,12 +158,6 @@ def changed(rows: Sequence[Row]) -> dict[str, Row]:
     by_cells = {tuple(row[name] for name in DEFAULT): row for row in built(rows)}
     wanted = {name: tuple((DEFAULT | change).values()) for name, change in CHANGES.items()}
     return {name: by_cells[cells] for name, cells in wanted.items() if cells in by_cells}
-
-
-def chosen(rows: Sequence[Row]) -> dict[str, Row]:
-    """Return the configurations that the picture marks, by their names; the last is not of the whole picture."""
-    *_, published = found = changed(rows)
-    return {"knee": knee(built(rows)), "24-bit default": found["24-bit default"], "published choices": found[published]}
 
 
 @dataclass(frozen=True)
@@ -242,36 +237,54 @@ def write_beaten(rows: Sequence[Row], folder: Path) -> None:
         files.replace(work, ("beaten.csv",), folder)
 
 
+LABELS = {  # of the marked configurations; {} is the depth error
+    "24-bit default": "default: 96 x 128, 24 bits, {:.1f} \u00b5m",
+    "4 values per clock": "4 values\nper clock",
+    "16 values per clock": "16 values\nper clock",
+    "published choices: the same, `lut`": "published choices\nin this pipeline: {:.1f} \u00b5m",
+}
+
+
 def draw(rows: Sequence[Row], path: Path) -> None:
     """Draw the depth error against silicon and against the latency of the whole map."""
-    among = whole_picture(built(rows))
-    marked = chosen(rows)
+    among, found = whole_picture(built(rows)), changed(rows)
+    best = knee(among)
+    smallest = min(map(depth_error, among))
     figure, both = plt.subplots(1, 2, figsize=(11, 4.4), layout="constrained", sharey=True)
-    measures: tuple[tuple[str, Callable[[Row], float]], ...] = (
-        ("silicon, % of an LFE5U-85F: multipliers + LUTs + memory", silicon),
-        (f"last pixel to whole map, us at {CLOCK_MHZ:g} MHz", lambda row: float(row["map_cycles"]) / CLOCK_MHZ),
+    default, *lanes, published = (found[name] for name in LABELS)
+    default_label, *lanes_labels, published_label = LABELS.values()
+    knee_label = f"knee: {best['rows']} x {best['columns']}, {best['data_width']} bits, {{:.1f}} \u00b5m"
+    panels: tuple[tuple[str, Callable[[Row], float], list[tuple[Row, str]]], ...] = (
+        ("fullest resource of an LFE5U-85F, %", silicon, [(best, knee_label)]),
+        (
+            f"delay from the last pixel to the whole map, \u00b5s at {CLOCK_MHZ:g} MHz",
+            lambda row: float(row["map_cycles"]) / CLOCK_MHZ,
+            list(zip(lanes, lanes_labels, strict=True)),
+        ),
     )
-    for axis, (label, measure) in zip(both, measures, strict=True):
+    for axis, (title, measure, own) in zip(both, panels, strict=True):
         x, y = (np.array([take(row) for row in among]) for take in (measure, depth_error))
-        axis.scatter(x, y, s=9, color="#9ab", alpha=0.5, linewidths=0)
+        axis.scatter(x, y, s=9, color="#9ab", alpha=0.5, linewidths=0, label="a configuration")
         order = np.lexsort((y, x))
-        axis.step(x[order], np.minimum.accumulate(y[order]), where="post", color="#08306b")
-        axis.axhline(y.min(), color="black", linestyle=":", linewidth=1)
-        looks = (("*", 200, "#e6550d"), ("o", 60, "#08306b"), ("D", 45, "black"))
-        for (name, row), (marker, size, colour) in zip(marked.items(), looks, strict=True):
+        least = np.minimum.accumulate(y[order])
+        axis.step(x[order], least, where="post", color="#08306b", label="the best found for its cost")
+        axis.axhline(smallest, color="black", linestyle=":", linewidth=1, label="error of the calibration")
+        looks = [*((row, text, "#e6550d", "*", 200) for row, text in own), (default, default_label, "#08306b", "o", 60)]
+        for row, text, colour, marker, size in [*looks, (published, published_label, "black", "D", 45)]:
             at = measure(row), depth_error(row)
             axis.scatter(*at, marker=marker, s=size, color=colour, zorder=3)
-            side = "right" if measure(row) > np.sqrt(x.min() * x.max()) else "left"
-            offset = (-6, 8) if side == "right" else (6, 8)
-            style = {"fontsize": 9, "color": colour, "weight": "bold", "ha": side}
-            axis.annotate(name, at, offset, textcoords="offset points", **style)
-        axis.set(xscale="log", yscale="log", xlabel=label, ylim=(0.9 * y.min(), 3.5 * y.min()))
+            side = "right" if at[0] > np.sqrt(x.min() * x.max()) else "left"
+            offset = (-4 if side == "right" else 4, -16 if row is default else 9)
+            style = {"fontsize": 9, "color": colour, "weight": "bold", "ha": side, "zorder": 4}
+            style["bbox"] = {"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 1}
+            axis.annotate(text.format(at[1]), at, offset, textcoords="offset points", **style)
+        axis.set(xscale="log", yscale="log", xlabel=title, ylim=(0.85 * smallest, 3.5 * smallest))
         axis.set_yticks(ticks := [20, 25, 30, 40, 50, 60, 70], [str(tick) for tick in ticks])
         axis.xaxis.set_major_formatter("{x:g}")
         axis.minorticks_off()
         axis.grid(alpha=0.3)
-    both[0].set_ylabel("depth error on real presses, um RMS")
-    across = both[1].get_yaxis_transform()
-    both[1].text(0.98, 0.985 * y.min(), "error of the calibration", fontsize=9, va="top", ha="right", transform=across)
+    both[0].set_xticks(shares := [20, 30, 50, 100, 200, 500], [str(share) for share in shares])
+    both[0].set_ylabel("depth error on real presses, \u00b5m RMS")
+    both[1].legend(fontsize=8, loc="upper right")
     figure.savefig(path, dpi=110)
     plt.close(figure)

@@ -60,7 +60,8 @@ class Limits:
 
     def weight(self, counted: Cost) -> float:
         """Return the cost of a configuration: its shares of multipliers, LUTs and memory bits of the device."""
-        return self.target.share(counted.multipliers_of(self.device), counted.luts_of(self.device), counted.memory_bits)
+        used = counted.multipliers_of(self.device), counted.luts_of(self.device), counted.memory_bits
+        return sum(self.target.shares(*used))
 
     def broken(self, counted: Cost) -> list[str]:
         """Return the limits that a configuration exceeds, apart from the tolerance."""
