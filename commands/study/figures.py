@@ -19,6 +19,7 @@ from commands.common import published, recorded, run_request, variables
 from commands.common.markdown import compact
 from commands.common.repository import ROOT
 from commands.hardware import estimate, memory_model, synth
+from commands.hardware.targets import DEFAULT_TARGET
 from commands.run import sim
 from commands.run.sim_table import coefficient_words
 from commands.study import baselines, trade_front
@@ -136,18 +137,19 @@ def runs(command: str) -> Iterator[tuple[str, dict[str, Any], tuple[str, str]]]:
             yield entry.get("name", f"`{line}`"), entry["figures"], (entry["commit"], recorded.since(line, entry))
 
 
-def synthesized(over_grids: bool) -> str:
+def synthesized(over_grids: bool, target: str = DEFAULT_TARGET) -> str:
     head, rows = ["make synth"], []
     for name, figures, source in runs("synth"):
-        if (len(figures["designs"]) > 1) != over_grids:
+        if (len(figures["designs"]) > 1) != over_grids or figures.get("target", DEFAULT_TARGET) != target:
             continue
         columns, *cells = synth.grid_rows(figures)
         if over_grids:
             head = [*columns[:-1], *SOURCE]
             rows += [[*each[:-1], *(("stated", "-") if each[0] == "published" else source)] for each in cells]
         else:
-            head = ["design", *columns[1:-1], *SOURCE]
-            rows += [[name, *each[1:-1], *source] for each in cells if each[0] != "published"]
+            last = -1 if target == DEFAULT_TARGET else -2  # without the column of UltraRAM
+            head = ["design", *columns[1:last], *SOURCE]
+            rows += [[name, *each[1:last], *source] for each in cells if each[0] != "published"]
     return compact(head, rows)
 
 
@@ -260,6 +262,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "published design": published_design,
     "make synth over grids": lambda: synthesized(True),
     "make synth": lambda: synthesized(False),
+    "make synth TARGET=ecp5": lambda: synthesized(False, "ecp5"),
     "make fpga": routed,
     "make asic": in_cells,
     "make asic by core": by_core,
