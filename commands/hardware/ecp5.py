@@ -36,7 +36,8 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
 
     Operands move when every bit of both comes from a register without reset and each operand has one enable. A constant
     bit counts as registered, because the other bits are unknown before their first clock too. They stay where one comes
-    from a block memory through logic: a memory takes more than half of a clock, so its register has to be near it. The
+    from a block memory through logic: a memory takes more than half of a clock, so its register has to be near it; and
+    where one comes from logic and has other readers than multipliers, which would be far from the multiplier. The
     product of such a multiplier, moved or not, moves when every bit goes into one register without reset and nowhere
     else, all with one enable.
 
@@ -56,7 +57,7 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
         for bit in bits
     )
     readers.update(bit for port in module["ports"].values() if port["direction"] != "input" for bit in port["bits"])
-    late = _behind_memories(cells)
+    near = _behind_memories(cells) | _read_elsewhere(cells)
     multipliers = [cell for cell in cells.values() if cell["type"] == MULTIPLIER]
     before = len(cells)
     operands = products = 0
@@ -65,7 +66,7 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
         sources, controls = _sources(ports, cells, registers)
         if len(controls) != len(SIDES) or not _compatible(controls):
             continue
-        if any(register["connections"]["DI"][0] in late for register in sources.values()):
+        if any(register["connections"]["DI"][0] in near for register in sources.values()):
             controls = {}
         else:
             operands += 1
@@ -106,6 +107,22 @@ def _behind_memories(cells: Cells) -> set[Bit]:
         cell["connections"]["Z"][0]
         for cell in cells.values()
         if cell["type"] == LOGIC and any(cell["connections"][pin][0] in read for pin in "ABCD")
+    }
+
+
+def _read_elsewhere(cells: Cells) -> set[Bit]:
+    """Return the outputs of logic whose register is read by more than multipliers."""
+    computed, read = set[Bit](), set[Bit]()
+    for cell in cells.values():
+        for port, bits in cell["connections"].items():
+            if cell["port_directions"][port] == "input" and cell["type"] != MULTIPLIER:
+                read.update(bits)
+            elif cell["port_directions"][port] == "output" and cell["type"] not in (REGISTER, MEMORY, MULTIPLIER):
+                computed.update(bits)
+    return {
+        cell["connections"]["DI"][0]
+        for cell in cells.values()
+        if cell["type"] == REGISTER and cell["connections"]["DI"][0] in computed and cell["connections"]["Q"][0] in read
     }
 
 

@@ -29,7 +29,7 @@ module fv_reference_capture #(
   input logic [NodeWidth-1:0] chosen
 );
 
-  localparam int Clocks = Nodes * (5 + 3 * (Width + 3)) + 2;  // from the last pixel to done
+  localparam int Clocks = Nodes * (6 + 3 * (Width + 3)) + 2;  // from the last pixel to done
   localparam int Summed = 6;                                  // to the last sum in its place
 
   logic busy, done, map_write, map_read;
@@ -98,8 +98,8 @@ module fv_reference_capture #(
     if (counts && seen && !(first && state == Armed)) assume (!in_pixel[16]);
   end
 
-  // Clocks of a node so far: five to fetch it, then for each gain one to start the divider, which counts its bits down.
-  localparam int FetchSteps = 5, GainSteps = Width + 3;
+  // Clocks of a node so far: six to fetch it, then for each gain one to start the divider, which counts its bits down.
+  localparam int FetchSteps = 6, GainSteps = Width + 3;
   localparam int Fetching = 3, Divides = 4;  // states of the core
   logic in_step, fetches, starts, divides;
   int steps;
@@ -108,11 +108,11 @@ module fv_reference_capture #(
   assign divides = dut.state == 3'(Divides) && !dut.divide_start && dut.u_divide.dividing && !dut.gains_valid;
   always_comb begin
     steps = (32'(dut.divide_node) + 32'(dut.gains_valid)) * (FetchSteps + 3 * GainSteps);
-    if (fetches) steps = steps + (dut.fetched ? FetchSteps - 1 : 32'(dut.step));
+    if (fetches) steps = steps + 32'(dut.step);
     else steps = steps + FetchSteps + 32'(dut.channel) * GainSteps;
     if (divides) steps = steps + GainSteps - 1 - 32'(dut.u_divide.bits_to_come);
     in_step = 32'(to_done) == Clocks - 1 - steps && (fetches || ((starts || divides) && 32'(dut.channel) < 3))
-        && !(dut.gains_valid && (dut.step != '0 || dut.fetched)) && !(dut.fetched && (dut.step != '0 || !fetches))
+        && !(dut.gains_valid && dut.step != '0) && !(fetches && 32'(dut.step) >= FetchSteps)
         && !(divides && 32'(dut.u_divide.bits_to_come) >= GainSteps - 1);
   end
 

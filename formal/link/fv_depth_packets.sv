@@ -184,6 +184,8 @@ module fv_depth_packets
       if (busy) begin
         same_frame: assert (dut.kept_format == kind && kind != 2'd0 && dut.kept_shift == kept_shift && dut_crc == crc);
         same_part: assert (dut.trailer == trailer && (trailer ? head_phase | tail_phase : !tail_phase));
+        same_end: assert (dut.last_at == (head_phase ? (trailer ? 6'd17 : 6'd8) : tail_phase ? 6'd47
+            : load_phase ? all + 6'd3 : 6'(size) - 6'd1));
         if (trailer) all_sent: assert (index == count && in_packet == '0);
         else same_value: assert (index < count && 8'(dut.place) == index && in_packet == index % 8'(Values));
         same_place: assert ((kind == 2'd3 ? row * 16'(Columns / 2) : row * 16'(Columns)) + column == 16'(index)

@@ -39,7 +39,8 @@ module fv_depth_store #(
   logic signed [DataWidth-1:0] value_data;
   logic [31:0] record_data;
   depth_store #(.Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .Lanes(Lanes)) dut (.*);
-  bind fv_depth_store.dut.u_values ram_check #(.Depth(Depth), .Covered(0)) u_check (.*);
+  bind fv_depth_store.dut.g_bank[0].u_values ram_check #(.Depth(Depth), .Covered(0)) u_check (.*);
+  bind fv_depth_store.dut.g_bank[1].u_values ram_check #(.Depth(Depth), .Covered(0)) u_check (.*);
   bind fv_depth_store.dut.u_records ram_check #(.Depth(Depth), .Covered(0)) u_check (.*);
 
   logic allowed, started, written, begins, ends, awaited, reading;

@@ -119,8 +119,8 @@ module depth_unit
   if (ZeroOffset < 0 || ZeroOffset > 1) begin : g_refused_0
     ZeroOffset_is_0_or_1 u_refused ();
   end
-  if (FrameLatency < 1) begin : g_refused_1
-    FrameLatency_must_be_at_least_1 u_refused ();
+  if (FrameLatency < 2) begin : g_refused_1
+    FrameLatency_must_be_at_least_2 u_refused ();
   end
 
 endmodule

@@ -12,7 +12,7 @@ module frame_tags
   import td_config_pkg::*;
 #(
   parameter int Width   = 34,
-  parameter int Latency = value(DefaultConfig, FrameLatencyField),  // from a frame's last pixel to its first depth
+  parameter int Latency = value(DefaultConfig, FrameLatencyField),  // from a frame's last pixel to its first depth, > 1
   parameter int Pixels  = value(DefaultConfig, RowsField) * value(DefaultConfig, ColumnsField)
 ) (
   input  wire              clk,
@@ -29,17 +29,14 @@ module frame_tags
   localparam int SlotWidth = Slots > 1 ? $clog2(Slots) : 1;
   localparam int ClockWidth = $clog2(Latency + 1);
 
-  logic [ClockWidth-1:0] now, due_clock[Slots];
+  logic [ClockWidth-1:0] now, due_clock[Slots];  // due_clock: the enabled cycle before a tag is due
   logic [Width-1:0] tags[Slots];
   logic [Slots-1:0] full, due_here;
   logic [SlotWidth-1:0] write_slot;
 
   always_comb begin
     due_tag = '0;
-    for (int i = 0; i < Slots; i++) begin
-      due_here[i] = full[i] & (due_clock[i] == now);
-      due_tag = due_tag | (due_here[i] ? tags[i] : '0);
-    end
+    for (int i = 0; i < Slots; i++) due_tag = due_tag | (due_here[i] ? tags[i] : '0);
   end
   assign due = |due_here;
   assign held = |full;
@@ -48,16 +45,17 @@ module frame_tags
     if (en) begin
       now <= now + ClockWidth'(1);
       full <= full & ~due_here;
+      for (int i = 0; i < Slots; i++) due_here[i] <= full[i] & (due_clock[i] == now);
       if (push) begin
         tags[write_slot] <= tag;
-        due_clock[write_slot] <= now + ClockWidth'(Latency);
+        due_clock[write_slot] <= now + ClockWidth'(Latency - 1);
         full[write_slot] <= 1'b1;
         write_slot <= write_slot == SlotWidth'(Slots - 1) ? '0 : write_slot + SlotWidth'(1);
       end
     end
     if (rst) begin
       now <= '0;
-      full <= '0;
+      {full, due_here} <= '0;
       write_slot <= '0;
     end
   end

@@ -5,7 +5,7 @@
 //
 // `request` starts a capture at any time, afresh if it is busy. From the next start of frame on it sums each block and
 // channel over 2^k whole frames, k = log2_frames at that start, at most MaxLog2; in_bad with a frame's last pixel
-// starts it afresh. Then one sequential divider turns each sum into its gain, channel by channel: 5 + 3 (Width + 3)
+// starts it afresh. Then one sequential divider turns each sum into its gain, channel by channel: 6 + 3 (Width + 3)
 // cycles a node. All this in the bank of flat_field that is not in use; `done` is high for one cycle after the last
 // gain is written, and asks for the change-over. While busy nobody else writes that bank, nor asks for a change-over.
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0, the same that flat_field takes; gaps and en low change no gain.
@@ -50,7 +50,7 @@ module reference_capture
   localparam int QuotientWidth = Width + 1;  // one bit to round by
   localparam int Scale = GainFraction + 1 + 2 * BlockLog2 - QuotientWidth;  // the numerator: 2^(Scale + k + its width)
   localparam int CountWidth = MaxLog2 > 0 ? MaxLog2 : 1;
-  localparam int ReadStep = 3;  // of Fetching; the cycles before it let the last word be written
+  localparam int ReadStep = 3, TakeStep = 5;  // of Fetching; the cycles before let the last word be written
 
   typedef enum logic [2:0] {Idle, Armed, Summing, Fetching, Dividing} state_e;
   state_e state;
@@ -78,9 +78,10 @@ module reference_capture
 
   // Gains, node by node: a word of three sums is fetched, each sum in turn gives way to its gain at the other end.
 
-  logic [1:0] step, channel;
+  logic [2:0] step;
+  logic [1:0] channel;
   logic [NodeWidth-1:0] divide_node;
-  logic [3*Width-1:0] word;
+  logic [3*Width-1:0] fetched, word;  // fetched: a register right behind the memory, which is slow
   logic [Width-1:0] scale, gain, unused_remainder;
   logic [QuotientWidth-1:0] quotient;
   logic divide_start, divided, overflow, node_ends;
@@ -94,8 +95,9 @@ module reference_capture
     .done(divided), .quotient, .remainder(unused_remainder), .overflow
   );
 
-  logic fetches, fetched, finished;
-  assign fetches = state == Fetching & step == 2'(ReadStep);
+  logic fetches, takes, finished;
+  assign fetches = state == Fetching & step == 3'(ReadStep);
+  assign takes = state == Fetching & step == 3'(TakeStep);
   assign finished = gains_valid & divide_node == NodeWidth'(Nodes - 1);
   assign map_read = sum_read | fetches;
   assign map_read_node = fetches ? divide_node : sum_read_node;
@@ -104,8 +106,8 @@ module reference_capture
   assign map_write_gains = gains_valid ? word : sums;
 
   always_ff @(posedge clk) begin
-    step <= step + 2'd1;
-    fetched <= fetches;
+    step <= step + 3'd1;
+    fetched <= map_read_gains;
     divide_start <= 1'b0;
     gains_valid <= node_ends;
     done <= finished;
@@ -114,7 +116,7 @@ module reference_capture
       Idle: ;
       Armed: if (starts) state <= Summing;
       Summing: if (ends) state <= in_bad ? Armed : frames_to_come == '0 ? Fetching : Summing;
-      Fetching: if (finished || fetched) state <= finished ? Idle : Dividing;
+      Fetching: if (finished || takes) state <= finished ? Idle : Dividing;
       Dividing: if (node_ends) state <= Fetching;
       default: ;
     endcase
@@ -125,8 +127,8 @@ module reference_capture
     if (ends) frames_to_come <= frames_to_come - CountWidth'(1);
     if (last || node_ends) step <= '0;
     if (last) divide_node <= '0;
-    if (state == Fetching && fetched) begin
-      word <= map_read_gains;
+    if (takes) begin
+      word <= fetched;
       channel <= '0;
       divide_start <= 1'b1;
     end

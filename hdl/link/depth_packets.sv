@@ -61,9 +61,9 @@ module depth_packets
     Value,
     Tail     // the record
   } phase_t;
-  phase_t phase;
+  phase_t phase, phase_next;
   logic trailer;  // all values are sent
-  logic [5:0] at;  // the byte, or the clock in Load
+  logic [5:0] at, last_at;  // the byte, or the clock in Load; the last one of the phase, early because much hangs on it
   logic [1:0] kept_format;
   logic [4:0] kept_shift;
   logic [31:0] number = '0;
@@ -105,24 +105,17 @@ module depth_packets
   assign record_word = at[5:2];
   always_comb begin
     unique case (phase)
-      Head: begin
-        depth_data = 8'((trailer ? trailer_fields : 144'(header)) >> {at, 3'd0});
-        part_ends = at == (trailer ? LastOfTrailer : LastOfHeader);
-      end
-      Value: begin
-        depth_data = 8'(value >> {lane, 3'd0});
-        part_ends = at == (kept_format == Words ? 6'(LastOfWord) : 6'd1);
-      end
-      Tail: begin
-        depth_data = 8'(record_data >> {lane, 3'd0});
-        part_ends = at == LastOfRecord;
-      end
-      Load: begin
-        depth_data = '0;
-        part_ends = at == (means ? 6'd7 : 6'd4);
-      end
+      Head: depth_data = 8'((trailer ? trailer_fields : 144'(header)) >> {at, 3'd0});
+      Value: depth_data = 8'(value >> {lane, 3'd0});
+      Tail: depth_data = 8'(record_data >> {lane, 3'd0});
+      Load: depth_data = '0;
     endcase
+    phase_next = Load;
+    if (phase == Load) phase_next = Value;
+    if (phase == Value && (packet_full || last_value)) phase_next = Head;
+    if (trailer) phase_next = Tail;
   end
+  assign part_ends = at == last_at;
   assign depth_valid = sending & phase != Load & ~stale;
   assign depth_last = part_ends & (phase == Tail | (phase == Value & (packet_full | last_value)));
   assign frame_take = ~sending & ~frame_done & frame_valid & format != 2'd0;
@@ -134,16 +127,18 @@ module depth_packets
     if (leaves || phase == Load) begin
       at <= part_ends ? '0 : at + 6'd1;
       if (part_ends) begin
-        unique case (phase)
-          Head: phase <= trailer ? Tail : Load;
-          Load: phase <= Value;
-          Value: begin
-            phase <= packet_full | last_value ? Head : Load;
-            trailer <= last_value;
-            place <= place + PlaceWidth'(1);
-          end
-          Tail: sending <= 1'b0;
+        phase <= phase_next;
+        unique case (phase_next)
+          Head: last_at <= last_value ? LastOfTrailer : LastOfHeader;
+          Load: last_at <= means ? 6'd7 : 6'd4;
+          Value: last_at <= kept_format == Words ? 6'(LastOfWord) : 6'd1;
+          Tail: last_at <= LastOfRecord;
         endcase
+        if (phase == Value) begin
+          trailer <= last_value;
+          place <= place + PlaceWidth'(1);
+        end
+        if (phase == Tail) sending <= 1'b0;
       end
     end
     counts <= leaves & phase == Value;
@@ -153,6 +148,7 @@ module depth_packets
       sending <= 1'b1;
       phase <= Head;
       at <= '0;
+      last_at <= LastOfHeader;
       trailer <= 1'b0;
       place <= '0;
       crc <= CrcStart;

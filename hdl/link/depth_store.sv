@@ -8,7 +8,7 @@
 // and keep, takes it; from the next clock up to frame_done its values and words can be read: value_data 2 clocks after
 // value_read with value_address, record_data 1 clock after record_word. value_read is low in the clock of frame_done.
 // A frame that comes whole replaces one that waits. `skipped`: a whole frame is lost so. While keep is low, frames are
-// not kept, and none is counted. Memory: two banks of a frame, interleaved. Model of the banks:
+// not kept, and none is counted. Memory: two banks of a frame. Model of the banks:
 // models/tactile_depth/link/bank_choice.py.
 
 `default_nettype none
@@ -90,26 +90,30 @@ module depth_store
     .read_en(reading), .read_address({record_word, read_bank}), .read_data(record_data)
   );
 
-  // Values out: the beat, then the lane.
+  // Values out: a register behind each memory, because block memories are slow; then the bank and the lane.
 
-  logic [BeatWidth-1:0] read_beat;
-  logic [Lanes-1:0][DataWidth-1:0] read_values;
-  logic signed [DataWidth-1:0] read_value;
-  td_ram #(.Width(Lanes * DataWidth), .Depth(2 * Beats)) u_values (
-    .clk, .write_en(s_axis_tvalid & (s_axis_tuser | in_frame)), .write_address({beat, write_bank}),
-    .write_data(values), .read_en(value_read), .read_address({read_beat, read_bank}), .read_data(read_values)
-  );
-  if (Lanes == 1) begin : g_one
-    assign read_beat = value_address;
-    assign read_value = read_values;
-  end else begin : g_many
-    localparam int LaneWidth = $clog2(Lanes);
-    logic [LaneWidth-1:0] lane_q;
-    assign read_beat = value_address[PlaceWidth-1:LaneWidth];
-    assign read_value = read_values[lane_q];
-    always_ff @(posedge clk) if (value_read) lane_q <= value_address[LaneWidth-1:0];
+  localparam int LaneLog2 = $clog2(Lanes);
+  logic [LaneLog2:0] from;  // {bank, lane} of the value
+  logic [1:0][LaneLog2:0] from_q;
+  logic [1:0][Lanes*DataWidth-1:0] bank_q;
+  logic [2*Lanes-1:0][DataWidth-1:0] values_q;
+  assign from = (LaneLog2 + 1)'(value_address & PlaceWidth'($unsigned(Lanes - 1)))
+      | ((LaneLog2 + 1)'(read_bank) << LaneLog2);
+  assign values_q = bank_q;
+  assign value_data = values_q[from_q[1]];
+  always_ff @(posedge clk) begin
+    if (value_read) from_q[0] <= from;
+    from_q[1] <= from_q[0];
   end
-  always_ff @(posedge clk) value_data <= read_value;
+  for (genvar b = 0; b < 2; b++) begin : g_bank
+    logic [Lanes*DataWidth-1:0] read_values;
+    td_ram #(.Width(Lanes * DataWidth), .Depth(Beats)) u_values (
+      .clk, .write_en(s_axis_tvalid & (s_axis_tuser | in_frame) & write_bank == 1'(b)), .write_address(beat),
+      .write_data(values), .read_en(value_read & read_bank == 1'(b)),
+      .read_address(value_address[PlaceWidth-1:LaneLog2]), .read_data(read_values)
+    );
+    always_ff @(posedge clk) bank_q[b] <= read_values;
+  end
 
   if (Columns < 2 || Columns != (1 << $clog2(Columns))) begin : g_refused_0
     Columns_must_be_a_power_of_two_at_least_2 u_refused ();

@@ -124,6 +124,10 @@ def test_only_registers_without_reset_are_packed() -> None:
     }
     assert ecp5.pack(module({"memory": memory, "chosen": chosen})) == left
 
+    reader = {**chosen, "connections": {**chosen["connections"], "A": [100], "Z": [53]}}  # of the same register
+    assert ecp5.pack(module({"chosen": chosen}))["operands"] == 1
+    assert ecp5.pack(module({"chosen": chosen, "reader": reader})) == left
+
 
 @pytest.mark.parametrize(("error", "logs"), [(RuntimeError, 1), (InputError, 0), (KeyboardInterrupt, 0), (None, 0)])
 def test_the_folder_of_a_run_stays_only_after_a_failure(tmp_path: Any, error: Any, logs: Any) -> None:

@@ -13,8 +13,8 @@ from tactile_depth.gradient.flat_field import captured_gains
 
 LARGEST_LOG2 = 8
 """Base-2 logarithm of the most frames in a capture; large blocks reduce it (`largest_log2_frames`)."""
-READ_CLOCKS = 5
-"""Cycles that the divider takes to read a node: write the node before it, wait for the memory, read, take."""
+READ_CLOCKS = 6
+"""Cycles that the divider takes to read a node: write the node before it, wait for the memory, read, register, take."""
 
 
 def largest_log2_frames(config: Configuration) -> int:
