@@ -232,6 +232,18 @@ def read(out: Path = DEFAULT_OUT) -> dict[str, Any]:
     return document
 
 
+def setting(document: dict[str, Any]) -> str:
+    """Return what was measured, in a sentence."""
+    used = document["setting"]
+    return (
+        f"The pipeline of a real sensor, {used['boundary']}, {used['data_width']}-bit words and "
+        f"{used['coefficient_width']}-bit coefficients, behind a camera that sends {used['camera']}, with noise of "
+        f"{used['noise']:g} grey levels; light up to {100 * used['drift']:g} % off, and each colour up to "
+        f"{100 * used['white']:g} % more. RMS errors, less the mean of the area, and "
+        "95 % intervals by bootstrap over the pictures"
+    )
+
+
 def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
     """Return title, head and rows of each table: the whole error, then the parts of each source and measure."""
 
@@ -255,7 +267,7 @@ def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tu
             places = [found[measure] for found in each["places"].values()]
             rows = []
             for part, name in enumerate(each["parts"]):
-                cells = [(interval(f["rms_um"][part]), interval(f["share"][part], "{:.1f}", 100)) for f in places]
+                cells = [(interval(f["rms_um"][part]), interval(f["share"][part], "{:z.1f}", 100)) for f in places]
                 rows.append((name, *(cell for pair in cells for cell in pair)))
             rows.append(("sum: the whole error", *(c for f in places for c in (interval(f["whole_um"]), "100"))))
             apart = [(f["root_of_squares_um"], f["root_of_squares_over_whole"]) for f in places]
@@ -267,7 +279,7 @@ def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tu
             )
             pairs = [f["correlated"] for f in places]
             names = [(f"{each['parts'][first]}, {each['parts'][second]}", f"{by:.2f}") for first, second, by in pairs]
-            rows.append(("most correlated parts", *(cell for pair in names for cell in pair)))
+            rows.append(("largest cross term, its correlation", *(cell for pair in names for cell in pair)))
             columns = (c for place in each["places"] for c in (f"{place}, um RMS", "share, %"))
             made.append((f"{each['source']}, {title}", ("part", *columns), rows))
     return made
@@ -332,7 +344,7 @@ def run(request: Request) -> None:
         if pictures is not None:
             real = real_presses(request, pictures)
             sources.append(source("real presses", (*FRONT, BESIDE, *BACK), real, len(pictures.presses)))
-        setting = {
+        used = {
             "camera": request.choice.pixel_format,
             "boundary": BOUNDARIES[not request.neumann],
             "data_width": request.data_width,
@@ -341,7 +353,8 @@ def run(request: Request) -> None:
             "white": request.drawn.white,
             "noise": request.drawn.noise,
         }
-        document = {"setting": setting, "without": missing, "sources": sources}
+        document = {"setting": used, "without": missing, "sources": sources}
+        print(f"{setting(document)}\n")
         for title, head, rows in tables(document):
             print(f"{title}\n\n{markdown.table(head, rows)}\n")
         (work / RESULTS[0]).write_text(json.dumps(document, indent=1) + "\n")
