@@ -4,16 +4,20 @@
 A word of these streams is a beat: a tuple of the words of all paths of the first field, then of those of the next one.
 """
 
+import math
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
+import cocotb
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.wide_commutator import LEAD
 from tb.lanes import LanePin
 from tb.stream import Bench, StreamDriver, StreamMonitor, at_every_edge, check_bursts, check_words, interrupt
+
+WORDS_TRIED, BURSTS_OF_A_STAGE = 1 << 20, 8  # enough to fill wide_fft's clip count in each of six seeds
 
 
 class LatePin:
@@ -123,6 +127,38 @@ async def check_wide(
         sink=WideMonitor(dut, "out", fields, beats, paths),
         **behaviour,
     )
+
+
+class Clips(Monitor):
+    """Count of the values that clip in each burst, by stage; `width` returns the bits of a node."""
+
+    def __init__(self, width: Callable[[str], int]) -> None:
+        super().__init__()
+        self.width, self.stages = width, dict[str, Any]()
+
+    def rounded(self, node: str, values: np.ndarray) -> None:
+        limit = 1 << (self.width(node) - 1)
+        clips = (values < -limit) | (values >= limit)
+        stage = node.removesuffix(".re").removesuffix(".im")
+        self.stages[stage] = self.stages.get(stage, 0) + clips.sum(axis=tuple(range(1, values.ndim)))
+
+
+def all_stages_clip(
+    shape: tuple[int, ...], width: int, model: Callable[[np.ndarray, Monitor], Any], width_of: Callable[[str], int]
+) -> np.ndarray:
+    """Return bursts (count, ..) of words at their limits, chosen so that all stages of a transform clip in one cycle.
+
+    They are the bursts in which a stage clips most, or a stage and the next one, in a random order: other stages have
+    other bursts at the same time. `width_of` returns the bits of a node of the model.
+    """
+    random_words = np.random.default_rng(cocotb.RANDOM_SEED)
+    low, high = -(1 << (width - 1)), (1 << (width - 1)) - 1
+    tried = random_words.choice([low, high], (WORDS_TRIED // math.prod(shape[1:]), *shape[1:]))
+    clips = Clips(width_of)
+    model(tried, clips)
+    counts = np.array(list(clips.stages.values()))
+    most = [np.argsort(count, kind="stable")[-BURSTS_OF_A_STAGE:] for count in (*counts, *(counts[:-1] + counts[1:]))]
+    return tried[random_words.choice(np.concatenate(most), shape[0])]
 
 
 def alone(bursts: Any) -> Any:

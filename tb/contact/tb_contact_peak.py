@@ -30,6 +30,7 @@ class Bench(DepthBench):
         self.model = ContactPeak(self.rows, self.columns, bool(self.bottom_first))
         self.cycles_to_peak = cycles_to_peak(self.lanes)
         self.thresholds = Thresholds(0, 0)
+        self.each_beat = False  # beats of a frame have their own thresholds
         self.touching = False  # of the frame that enters
         self.received: list[Peak] = []
         self.due: dict[int, Peak] = {}  # by the cycle of the frame's last depth
@@ -41,6 +42,8 @@ class Bench(DepthBench):
         self.drive_depth(valid, depths, position)
         if settings is not None:
             self.thresholds = settings
+        if valid and self.each_beat:
+            self.thresholds = Thresholds(*(self.random.randint(self.low, self.high) for _ in range(2)))
         if valid:
             self.drive(on_threshold=self.thresholds.on, off_threshold=self.thresholds.off)
         self.drive(touching=int(self.changes.pop(self.now, self.driven.get("touching", 0))))
@@ -106,6 +109,17 @@ async def ties_and_edges(bench: Bench) -> None:
     assert len(bench.received) == len(maps) + 1
     first_row = bench.rows - 1 if bench.bottom_first else 0
     assert bench.received[4].position == (first_row, 0), "the peak is not the first of the equal ones"
+
+
+@on_bench(Bench, milliseconds=20)
+async def thresholds_change_inside_a_frame(bench: Bench) -> None:
+    """Compare depths with the threshold of their beat: what is not above may be higher than the peak so far."""
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    bench.each_beat = True
+    for _ in range(FRAMES // 10):
+        await bench.frame(bench.random_map(rng), Thresholds(0, 0))
+    await bench.settle()
+    assert len(bench.received) == FRAMES // 10
 
 
 @on_bench(Bench, milliseconds=10)

@@ -16,7 +16,7 @@ from tests.rtl import test_rtl as test_rtl
 built = of_parameters("Width Rows Columns Lanes BottomFirst")
 STRUCTURES = (
     built(24, 5, 8, 1, 0, on=VERILATOR),
-    built(6, 5, 8, 1, 1, on=ICARUS, mutants=True),
+    built(6, 5, 7, 1, 1, on=ICARUS, mutants=True),
     built(6, 5, 8, 4, 1, on=ICARUS, mutants=True),
     built(6, 5, 8, 1, 0),
     built(32, 5, 16, 1, 1),

@@ -13,7 +13,7 @@ from tactile_depth.poisson.transform.wide_dst_inverse import latency as wide_dst
 from tactile_depth.poisson.transform.wide_dst_inverse import wide_dst_inverse
 from tactile_depth.poisson.transform.wide_row_pairs import rows_of_bursts
 from tb.stream import MANY, extremes, parameters, sample, uniform, with_and_without_en
-from tb.wide import RowPairDriver, WideMonitor, alone, check_row_pairs
+from tb.wide import RowPairDriver, WideMonitor, all_stages_clip, alone, check_row_pairs
 
 TRANSFORM: Any = wide_dst_inverse
 CLOCKS_OF_A_BURST_EDGE = 12  # cycles in which a burst begins to enter, or to leave
@@ -63,6 +63,20 @@ async def many_bursts(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     (width,) = parameters(dut, "InWidth")
     await check(dut, uniform(shape(dut, 4 * MANY), width, amplitude))
+
+
+@cocotb.test(timeout_time=50, timeout_unit="ms")
+async def every_stage_clips_at_once(dut: Any) -> None:
+    formats = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth")
+    in_width, sine = parameters(dut, "InWidth", "Sine")
+
+    def model(beats: Any, monitor: Monitor) -> Any:
+        return TRANSFORM(rows_of_bursts(beats, alone(beats)), *formats, monitor, alternate=bool(sine))
+
+    def width_of(node: str) -> int:
+        return formats[-1] if node.endswith("output") else formats[1]
+
+    await check(dut, all_stages_clip(shape(dut, 20 * MANY), in_width, model, width_of))
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")

@@ -10,17 +10,22 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.wide_fft import latency as wide_fft_latency
 from tactile_depth.poisson.transform.wide_fft import wide_fft
 from tb.stream import MANY, extremes, parameters, uniform
-from tb.wide import check_wide
+from tb.wide import all_stages_clip, check_wide
 
 
-async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
-    width, coeff, inverse, size, paths = parameters(dut, "Width", "CoeffWidth", "Inverse", "Size", "Paths")
+def model_of(dut: Any) -> Any:
+    width, coeff, inverse = parameters(dut, "Width", "CoeffWidth", "Inverse")
 
     def model(x: Any, monitor: Monitor) -> Any:
         return np.stack(wide_fft(x[..., 0], x[..., 1], bool(inverse), width, coeff, monitor), axis=-1)
 
+    return model
+
+
+async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
+    size, paths = parameters(dut, "Size", "Paths")
     return await check_wide(
-        dut, words, model, wide_fft_latency(size, paths), fields=["re", "im"], paths=paths, **behaviour
+        dut, words, model_of(dut), wide_fft_latency(size, paths), fields=["re", "im"], paths=paths, **behaviour
     )
 
 
@@ -58,3 +63,9 @@ async def reset_in_mid_burst(dut: Any, late: bool) -> None:
     size, width, paths = parameters(dut, "Size", "Width", "Paths")
     first = wide_fft_latency(size, paths) - 3 if late else 1
     await check(dut, uniform(shape(dut, 2), width), interrupts=range(first, first + 8))
+
+
+@cocotb.test(timeout_time=50, timeout_unit="ms")
+async def every_stage_clips_at_once(dut: Any) -> None:
+    (width,) = parameters(dut, "Width")
+    await check(dut, all_stages_clip(shape(dut, 20 * MANY), width, model_of(dut), lambda node: width))
