@@ -19,7 +19,7 @@ from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
 from tactile_depth.tactile_depth import hdl_parameters, top_parameters, write_roms
 
 DEVICES = {device.name: device for device in (XCZU7EV, ECP5)}
-FITTED, CHECKED = 0.03, 0.1  # largest difference of LUTs of logic
+FITTED, CHECKED = 0.035, 0.06  # largest difference of LUTs of logic
 
 CASES = [
     {"columns": 16, "bits_per_channel": 2},
@@ -189,7 +189,7 @@ def test_the_model_is_near_the_recorded_runs(run: dict[str, Any]) -> None:
     """Bounds: a little above the largest differences in docs/hardware.md, for runs fitted and not fitted."""
     device, count = DEVICES[run["device"]], cost(Configuration(**run["configuration"]))
     assert count.blocks_of(device) == run["blocks"]
-    assert count.multipliers_of(device) == pytest.approx(run["multipliers"], rel=0.01)
+    assert count.multipliers_of(device) == pytest.approx(run["multipliers"], abs=2)  # products by constants
     error = sum(logic(count.parameters, device).values()) / sum(run["logic"].values()) - 1
     assert abs(error) <= (FITTED if run["fitted"] else CHECKED)
 

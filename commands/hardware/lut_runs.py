@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`python -m commands.hardware.lut_runs A/resources.json .. CHECK B/resources.json ..`: record runs of `make synth`.
 
-Takes reports, and writes them to models/tactile_depth/luts.json: those before CHECK are
-fitted by models/tactile_depth/luts.py, those behind it are not. Without a report it prints all recorded runs beside the
-model, the table of docs/hardware.md.
+Takes reports, and writes them to models/tactile_depth/luts.json. Those before CHECK are fitted by
+models/tactile_depth/luts.py, those behind it are not; of equal runs the first counts. Without a report it prints all
+recorded runs beside the model, the table of docs/hardware.md.
 """
 
 import json
@@ -83,8 +83,11 @@ def main() -> None:
     reports = sys.argv[1:]
     if reports:
         behind = reports.index("CHECK") if "CHECK" in reports else len(reports)
-        runs = [run for k, name in enumerate(reports) if k != behind for run in runs_of(Path(name), k < behind)]
-        RUNS.write_text("[\n" + ",\n".join(sorted(json.dumps(run) for run in runs)) + "\n]\n")
+        runs: dict[tuple[str, str], dict[str, Any]] = {}
+        for k, name in enumerate(reports):
+            for run in runs_of(Path(name), k < behind) if k != behind else []:
+                runs.setdefault((run["device"], run["variables"]), run)
+        RUNS.write_text("[\n" + ",\n".join(sorted(map(json.dumps, runs.values()))) + "\n]\n")
     print(table())
 
 

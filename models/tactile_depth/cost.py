@@ -3,19 +3,23 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
 
 from tactile_depth.configuration import Configuration
 from tactile_depth.devices import ECP5, XCZU7EV, Device
+from tactile_depth.errors import Argument, one_of
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.luts import luts
 from tactile_depth.parts import Memory, Multiplier, parts
 from tactile_depth.tactile_depth import top_parameters
 
-__all__ = ["CORES", "ECP5", "KINDS", "XCZU7EV", "Cost", "cost"]
+__all__ = ["CORES", "ECP5", "KINDS", "XCZU7EV", "CameraCost", "Cost", "camera_cost", "cost"]
 
 KINDS = ("frame stores", "delay lines", "tables", "row buffers")
 CORES = (  # that have multipliers or memories, in the order of the data
@@ -26,15 +30,24 @@ CORES = (  # that have multipliers or memories, in the order of the data
     *("zero_offset", "zero_capture", "contact_events"),
 )
 
+CAMERAS = Path(__file__).with_name("cameras.json")
 CLOCK_MHZ = 166.0  # of the power
 MACRO_BITS = 1024  # a larger memory is a macro, a smaller one is flip-flops or gates
 ACCESS_PJ, WORD_BITS = 5.3, 64
 """Energy of reading or writing a word of a macro at 45 nm and 1.1 V, see commands/hardware/memory_model.py."""
-PRODUCT_UW, LUT_UW = 3.86, 3.31
+PRODUCT_UW, LUT_UW = 3.94, 3.07
 """Power of the logic for each bit of a product (bits of one operand times bits of the other) and for each LUT of the
 XCZU7EV. The first is multipliers' part of the power: 674 of 1,050 mW at 0.18 um (docs/hardware.md). Both are then
 scaled to the two figures at 45 nm, 89.5 and 181.5 mW of logic with 128 x 128, tridiagonal and spectral, which they
 meet within 7 %."""
+
+
+class CameraCost(NamedTuple):
+    """Multipliers, block memories and LUTs of the camera front end."""
+
+    multipliers: float
+    blocks: float
+    luts: float
 
 
 @dataclass(frozen=True)
@@ -126,3 +139,13 @@ def cost(config: Configuration) -> Cost:
         last_pixel_to_last_depth(config),
         parameters,
     )
+
+
+def camera_cost(pixel_format: str, device: Device) -> CameraCost:
+    """Return the cost of the camera front end for pictures of 640 x 480, as `make synth` maps it (cameras.json).
+
+    Raises InputError for a pixel format that is not measured.
+    """
+    measured = json.loads(CAMERAS.read_text())[device.name]
+    one_of(Argument("pixel_format", pixel_format), tuple(measured))
+    return CameraCost(*measured[pixel_format])

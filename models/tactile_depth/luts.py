@@ -27,9 +27,11 @@ from tactile_depth.tactile_depth import top_parameters
 
 RUNS = Path(__file__).with_name("luts.json")
 REST = "small cores"
+RIDGE = 0.1
 SMALLEST = 100  # LUTs: smaller cores have no more weight in the fit
 OPTIONS = ("FlatField", "LightGains", "Polynomial", "ZeroOffset")  # each with registers
-COUNTED = "bits of tables, and of the choice between parts of a memory: one LUT each"
+TABLES = "bits of tables"  # one LUT each, which is not fitted
+PROPORTIONAL = ("flat", "reference", "spectral", "wide", "zero")  # beginnings of names: cores without a constant
 TRANSFORMS = ("dst", "wide_dst")  # with these the names of the transforms begin
 
 Terms = dict[str, dict[str, float]]  # amount by core and term
@@ -76,13 +78,14 @@ def coefficients(device: Device) -> dict[str, float]:
         if run["fitted"] and run["device"] == device.name:
             p = top_parameters(Configuration(**run["configuration"]))
             rows += [(amounts, run["logic"].get(core, 0)) for core, amounts in terms(p, device).items()]
-    number = np.array([luts - amounts.pop(COUNTED, 0) for amounts, luts in rows], float)
+    number = np.array([luts - amounts.pop(TABLES, 0) for amounts, luts in rows], float)
     names = sorted({name for amounts, _ in rows for name, amount in amounts.items() if amount})
     weights = 1 / np.maximum(number, SMALLEST)
     counts = np.array([[amounts.get(name, 0.0) for name in names] for amounts, _ in rows]) * weights[:, None]
     scale = counts.max(0)
-    solution, _ = nnls(counts / scale, number * weights)
-    return {COUNTED: 1.0} | dict(zip(names, (solution / scale).tolist(), strict=True))
+    ridge = np.eye(len(names)) * RIDGE  # shares between terms that no run tells apart
+    solution, _ = nnls(np.vstack([counts / scale, ridge]), np.hstack([number * weights, np.zeros(len(names))]))
+    return {TABLES: 1.0} | dict(zip(names, (solution / scale).tolist(), strict=True))
 
 
 def terms(p: Mapping[str, int], device: Device) -> Terms:
@@ -92,21 +95,23 @@ def terms(p: Mapping[str, int], device: Device) -> Terms:
         core = counted[part.core]
         if isinstance(part, Memory):
             if part.rom and _of_luts(part, device):
-                core[COUNTED] += part.width * math.ceil(part.words / 2**device.lut_inputs)
+                core[TABLES] += part.width * math.ceil(part.words / 2**device.lut_inputs)
             elif _of_luts(part, device):
-                core[COUNTED] += part.width * (_tiles(part, device)[0] - 1)
+                core["choice"] += part.width * (_tiles(part, device)[0] - 1)
         else:
             core["split"] += (device.multipliers(part.a, part.b) - 1) * (part.a + part.b)
             if part.core.startswith(TRANSFORMS):
                 core["product"] += part.a + part.b
     for name, instances, bits in _cores(p):
-        if not name.startswith(("wide", "zero")):
+        if not name.startswith(PROPORTIONAL):
             counted[name][name] += instances
         if not name.endswith("dst_forward"):
             counted[name][f"{name}, bits"] += instances * bits
         if name.startswith(TRANSFORMS):
             butterflies = sum(stage.delay > 0 for stage in stages(p["Columns"], "inverse" in name))
             counted[name][f"{name.rpartition('_')[0]}, butterflies"] += instances * butterflies * bits
+    for name in (REST, "contact_events"):
+        counted[name][f"{name}, positions"] += (p["Rows"] * p["Columns"]).bit_length()
     counted[REST]["options"] += sum(p[option] for option in OPTIONS)
     if p["Neumann"] and p["Tridiagonal"]:
         counted["forward_elimination" if p["Lanes"] == 1 else "wide_elimination"]["column_mean"] += p["DataWidth"]
@@ -132,7 +137,7 @@ def _cores(p: Mapping[str, int]) -> list[tuple[str, int, int]]:
     if p["LightGains"]:
         cores.append(("light_gains", 1, 0))
     if p["Polynomial"]:
-        cores.append(("polynomial_gradient", 1, p["Corrections"]))
+        cores.append(("polynomial_gradient", 1, 0))
     if p["Corrections"] or not p["Polynomial"]:
         cores.append(("gradient_lookup", 1, CORRECTION_WIDTH if p["Corrections"] else slope))
     if p["ZeroOffset"]:

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`python -m commands.hardware.camera_runs raw8 yuyv ..`: measure the camera front end by pixel format, on each device.
+
+Maps camera_unit as `make synth` does, for a picture of 640 x 480 pixels on a grid of 96 x 128, and adds the counts to
+models/tactile_depth/cameras.json, which `tactile_depth.cost.camera_cost` reads.
+"""
+
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+from commands.hardware import synth
+from commands.hardware.targets import TARGETS
+from tactile_depth.built_in import synthetic
+from tactile_depth.camera_configuration import CameraConfiguration
+from tactile_depth.configuration import Configuration
+from tactile_depth.cost import CAMERAS
+
+PICTURE, CONFIG = (480, 640), Configuration(columns=128, rows=96, solver="tridiagonal")
+
+
+def main() -> None:
+    known = json.loads(CAMERAS.read_text()) if CAMERAS.exists() else {}
+    for target in TARGETS.values():
+        device = target.device
+        for pixel_format in sys.argv[1:]:
+            camera = CameraConfiguration(PICTURE, (CONFIG.rows, CONFIG.columns), pixel_format)
+            with tempfile.TemporaryDirectory() as folder:
+                unit, _ = synth.camera_unit(CONFIG, synthetic(CONFIG.bits_per_channel), camera, target, Path(folder))
+            counts = [unit.counts[name] for name in (device.multiplier, device.block, "LUT")]
+            known.setdefault(device.name, {})[pixel_format] = counts
+            CAMERAS.write_text(json.dumps(known, indent=1, sort_keys=True) + "\n")
+
+
+if __name__ == "__main__":
+    main()
