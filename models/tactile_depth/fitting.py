@@ -239,7 +239,8 @@ def fit_folds(
     Their errors are not measured.
     """
     parts = {view.press.name: _parts(view, presses.grid_pitch_mm, models, bits) for view in presses.views}
-    camera = Camera(*presses.background.shape[:2], presses.pixel_format)
+    rows, columns = presses.background.shape[:2]
+    camera = Camera(rows, columns, presses.pixel_format)
     fitted = []
     for fold in folds:
         others = tuple(view for view in presses.views if view.press.name not in fold)
