@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from commands.study.drawn_light import DrawnLight, Height
+from commands.study.drawn_light import DrawnLight
 from tactile_depth.configuration import Configuration
 from tactile_depth.contact.contact_events import WORD_BITS, ContactEvents, Settings
 from tactile_depth.gradient.flat_field import ratios
@@ -27,7 +27,7 @@ LIGHTS = {
     "light of the reference": (1.0,) * PICTURES,
     "x 0.51": (0.51,) * PICTURES,
     "x 1.3": (1.3,) * PICTURES,
-    "x 1.5": (1.5,) * PICTURES,
+    "x 1.6": (1.6,) * PICTURES,
     "x 1.99": (1.99,) * PICTURES,
     "x 0.99 and x 1.01 in turn": (0.99, 1.01) * (PICTURES // 2),
 }
@@ -58,13 +58,16 @@ class LightState:
     gains: tuple[int, ...]
 
 
-def light_states(drawn: DrawnLight, height: Height, sensor: Sensor, config: Configuration) -> list[LightState]:
-    """Run the light gains of a contact of this height in every light and at every rate."""
+def light_states(drawn: DrawnLight, sensor: Sensor, config: Configuration, exposure: float) -> list[LightState]:
+    """Run the light gains of untouched gel in every light and at every rate.
+
+    `exposure` is the light of the sensor's reference, over that of the drawn sensor.
+    """
     gains = slope_tables(sensor, config).gains
     assert gains is not None
     states = []
     for name, lights in LIGHTS.items():
-        pictures = drawn.pictures(drawn.levels(height), [(light,) * 3 for light in lights], seed=3)
+        pictures = drawn.pictures(drawn.untouched, [(exposure * light,) * 3 for light in lights], seed=3)
         relative = ratios(pictures, gains, config)
         states += [light_state(name, relative, np.array(lights), Light.of(config), rate) for rate in RATES]
     return states

@@ -38,7 +38,7 @@ STATUS_BITS = ("saturation", "dark")
 Colours = tuple[float, float, float]
 EVEN: Colours = (1.0, 1.0, 1.0)
 OFF: Colours = (0.0, 0.0, 0.0)
-DIM = 0.55  # exposure that leaves room for twice the light
+DIM = 0.6  # exposure that leaves room for twice the light
 FOLLOWING = 16  # frames after a change of the light
 DRIFT = 1.01  # of the light from frame to frame
 
@@ -161,7 +161,8 @@ CASES = (
     Case("the same white pixel in the reference too", ball, paint=_dead(255, in_reference=True), saturates=None),
     Case("light x 0.8", ball, _step(0.8), saturates=None),
     Case("light x 1.25", ball, _step(1.25), saturates=None),
-    Case("light x 1.5", ball, _step(1.5), exposure=DIM, saturates=None),
+    Case("light x 1.125", ball, _step(1.125), exposure=DIM, saturates=None),
+    Case("no contact, light x 1.6", untouched, _step(1.6), exposure=DIM, saturates=None),
     Case("light x 0.51", ball, _step(0.51), saturates=None),
     Case("light x 1.99", ball, _step(1.99), exposure=DIM, saturates=None),
     Case("light x 0.4", ball, _step(0.4), saturates=None),
@@ -250,9 +251,9 @@ def draw(request: run_request.Request) -> DrawnLight:
     return DrawnLight(sensor, (config.rows, config.columns), camera_scale(sensor, config))
 
 
-def untouched_picture(drawn: DrawnLight) -> np.ndarray:
+def untouched_picture(drawn: DrawnLight, exposure: float = 1.0) -> np.ndarray:
     """Return a picture without contact, uint8 (rows, columns, 3)."""
-    return drawn.pictures(drawn.untouched, [EVEN], seed=1)[0]
+    return drawn.pictures(drawn.untouched, [(exposure,) * 3], seed=1)[0]
 
 
 def on_grid(drawn: DrawnLight, reference: np.ndarray) -> Sensor:
@@ -414,9 +415,9 @@ def run(request: run_request.Request, out: Path, rtl: bool) -> int:
                 rows.append(measure(case, each, drawn, rtl))
                 broken += faults(case, rows[-1])
                 bar.update()
-    sensor = on_grid(drawn, untouched_picture(drawn))
+    sensor = on_grid(drawn, untouched_picture(drawn, DIM))
     config = run_request.configure(request, sensor)
-    lights = long_state.light_states(drawn, ball(drawn), sensor, config)
+    lights = long_state.light_states(drawn, sensor, config, DIM)
     clipped = max(sum(row.saturations.values()) // row.frames for row in rows)
     counts = long_state.counts(config, clipped, config.rows * config.columns)
     for words in dict.fromkeys(row.words for row in rows):

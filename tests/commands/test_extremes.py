@@ -165,12 +165,18 @@ def test_one_frame_without_light_costs_that_frame_alone() -> None:
     assert row.python.startswith("refused: pictures: it is black")
 
 
-@pytest.mark.parametrize(("name", "frames"), [("light x 0.8", 2), ("light x 1.25", 8), ("light x 1.5", None)])
-def test_gains_follow_a_step_of_the_light_up_to_a_third_more(name: str, frames: int | None) -> None:
+@pytest.mark.parametrize(("name", "frames"), [("light x 0.8", 2), ("light x 1.25", 8)])
+def test_gains_follow_a_step_of_the_light(name: str, frames: int) -> None:
     row = sensor_row(name)
     assert row.worst.height > 1
     assert row.right_after == frames
     assert abs(row.alone.height) < 0.01  # a picture by itself
+
+
+def test_gains_swing_in_much_more_light() -> None:
+    row = sensor_row("no contact, light x 1.6")
+    assert row.last.height > 0.1
+    assert row.alone.height < 0.03  # a picture by itself
 
 
 @pytest.mark.parametrize(
@@ -212,17 +218,17 @@ def test_a_sensor_row_that_is_not_as_it_must_be_is_named() -> None:
 
 
 def test_light_gains_of_ten_million_frames() -> None:
-    """Find them where they were, and within 0.1 % of the light; without LIGHT.rate beyond a third more they go off."""
+    """Find them where they were, and within 0.2 % of the light; in much more light only with LIGHT.rate 1."""
     request, drawn = requested()
-    sensor = sensor_extremes.on_grid(drawn, sensor_extremes.untouched_picture(drawn))
+    sensor = sensor_extremes.on_grid(drawn, sensor_extremes.untouched_picture(drawn, sensor_extremes.DIM))
     config = run_request.configure(request, sensor)
-    states = long_state.light_states(drawn, sensor_extremes.ball(drawn), sensor, config)
+    states = long_state.light_states(drawn, sensor, config, sensor_extremes.DIM)
     assert {state.light for state in states} == set(long_state.LIGHTS)
     for state in states:
         assert state.settled_after >= 0, state
-        if not state.light.endswith("in turn") and not (state.light in ("x 1.5", "x 1.99") and state.rate == 0):
-            assert state.off_percent < 0.15, state
-    assert next(each for each in states if (each.light, each.rate) == ("x 1.5", 0)).off_percent > 5
+        if not state.light.endswith("in turn") and not (state.light in ("x 1.6", "x 1.99") and state.rate == 0):
+            assert state.off_percent < 0.2, state
+    assert next(each for each in states if (each.light, each.rate) == ("x 1.6", 0)).off_percent > 5
 
 
 def test_the_gains_that_are_skipped_to_are_those_of_every_frame(monkeypatch: pytest.MonkeyPatch) -> None:
