@@ -4,7 +4,7 @@
 Each row has the error, saturations by node, the sticky bit of the hardware, and the number of codes that wrapped. Long
 runs measure drift, and the transforms are measured like in IEEE 1180. Variables: N (64), SIM, OUT, SHORT=1 without the
 long runs and the largest grid. Exit status: 0 when every row is as it must be, 1 when not, 2 on bad input.
-PRESET=sensor: the rows of sensor_extremes.py. Variables: N or ROWS and COLS (48 x 64), DATA_WIDTH, COEFF_WIDTH,
+PRESET=sensor: the rows of sensor_extremes.py. Variables: ROWS and COLS (48 x 64), DATA_WIDTH, COEFF_WIDTH,
 GAIN_WIDTH, DEPTH_RANGE, SIM, OUT, RTL=0 for no simulation.
 """
 
@@ -38,7 +38,7 @@ RESULTS = ("extremes.json",)
 CALIBRATION = "synthetic"
 LONG_MODEL, LONG_RTL = 10_000, 2_000  # frames of the runs for drift
 SHORT_MODEL = 96
-SENSOR_ACCEPTED = ("N", "ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH", "DEPTH_RANGE", "SIM", "OUT")
+SENSOR_ACCEPTED = ("ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH", "DEPTH_RANGE", "SIM", "OUT")
 BATCH = 96  # frames that the model runs at a time
 REST_COLOUR = round(REST)
 
@@ -340,7 +340,7 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
 
 def of_sensor(given: Mapping[str, str]) -> int:
     """Run the rows of a real sensor with these variables and return the exit status."""
-    values = {**({} if "N" in given else sensor_extremes.GRID), **sensor_extremes.CHOSEN, **given}
+    values = {**sensor_extremes.GRID, **sensor_extremes.CHOSEN, **given}
     request = run_request.of_values(values, frames="")
     rtl = bool(variables.number(values, "RTL", 1, 0, 1))
     if rtl:

@@ -245,8 +245,9 @@ def configurations(request: run_request.Request, sensor: DrawnLight) -> list[run
 
 
 def draw(request: run_request.Request) -> DrawnLight:
-    """Return the drawn sensor of a request."""
+    """Return the drawn sensor of a request. Raises InputError: the grid has not the aspect of the whole picture."""
     sensor = exact(run_request.load_sensor(request))
+    sensor.zoom((request.rows, request.columns), f"ROWS={request.rows} and COLS={request.columns}")
     config = Configuration(rows=request.rows, columns=request.columns, solver=request.solver)
     return DrawnLight(sensor, (config.rows, config.columns), camera_scale(sensor, config))
 

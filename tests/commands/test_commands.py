@@ -57,6 +57,7 @@ REFUSED = {
     "coverage TESTS=2": "TESTS=2: accepted is a whole number from 0 to 1",
     "extremes N=100": "N=100",
     "extremes PRESET=other": "PRESET=other is unknown",
+    "extremes PRESET=sensor ROWS=64": "ROWS=64 and COLS=64: 64 x 64 pixels (columns x rows), but gelsight-mini",
     "extremes PRESET=sensor SHORT=1": "SHORT=1: unknown variable",
     "extremes RTL=0": "RTL=0: unknown variable",
     "extremes SHORT=2": "SHORT=2",
