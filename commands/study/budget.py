@@ -31,7 +31,7 @@ from scipy.ndimage import distance_transform_edt
 from tqdm import tqdm
 
 import tactile_depth as td
-from commands.common import markdown, repository, variables
+from commands.common import markdown, recorded, repository, variables
 from commands.common.run_request import camera_choice
 from commands.run.calibrate import data_folder
 from commands.study.budget_steps import (
@@ -49,6 +49,7 @@ from commands.study.budget_steps import (
 )
 from commands.study.drawn_sensor import PLACES, DrawnSensor
 from tactile_depth import files
+from tactile_depth.accuracy import VERSION
 from tactile_depth.calibration_file import PIXEL_PITCHES_MM
 from tactile_depth.camera_configuration import CameraChoice
 from tactile_depth.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS
@@ -62,6 +63,7 @@ from tactile_depth.scenes import BENCH
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 
+AREAS = {"contact": "contact", "untouched": "untouched gel"}  # of the table of shares, by measure
 RESULTS = ("budget.json", "budget.png")
 DEFAULT_OUT = repository.ROOT / "build" / "budget"
 CAMERA = "raw8"
@@ -285,6 +287,36 @@ def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tu
     return made
 
 
+def shares(each: dict[str, Any]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Return head and rows of a source's table: RMS of each part in um, and its share of the mean square."""
+    places = each["places"].items()
+    columns = [(f"{area}, {place}", found[name]) for name, area in AREAS.items() for place, found in places]
+    rows: list[tuple[str, ...]] = []
+    for number, part in enumerate(each["parts"]):
+        cells = ((found["rms_um"][number][0], found["share"][number][0]) for _, found in columns)
+        rows.append((part, *(f"{um:.2g} ({100 * share:z.0f} %)" for um, share in cells)))
+    rows.append(("whole error", *(f"{found['whole_um'][0]:.1f}" for _, found in columns)))
+    over = ("{:.2f} ({:.2f} to {:.2f})".format(*found["root_of_squares_over_whole"]) for _, found in columns)
+    rows.append(("root of the sum of squares, over the whole", *over))
+    return (each["source"], *(name for name, _ in columns)), rows
+
+
+def sources(arguments: Sequence[str]) -> str:
+    """Return the digest of models and command, for docs/figures.json."""
+    parse(arguments)
+    files_of = [Path(__file__).parent / f"{name}.py" for name in ("budget", "budget_steps", "drawn_sensor")]
+    return recorded.digest(files_of, VERSION)
+
+
+def _rounded(value: Any) -> Any:
+    """Return a document with five digits of each number."""
+    if isinstance(value, dict):
+        return {name: _rounded(each) for name, each in value.items()}
+    if isinstance(value, list):
+        return [_rounded(each) for each in value]
+    return float(f"{value:.5g}") if isinstance(value, float) else value
+
+
 def plot(path: Path, document: dict[str, Any]) -> None:
     """Draw the RMS of each part as bars, by source and measure."""
     colours = dict(zip(PLACES, ("#08519c", "#e6550d", "#969696"), strict=True))
@@ -367,4 +399,8 @@ def run(request: Request) -> None:
 
 def main() -> None:
     with variables.reported("budget", "nothing was written"):
-        run(parse(sys.argv[1:]))
+        request = parse(sys.argv[1:])
+        run(request)
+        document = read(request.out)
+        if not document["without"]:
+            recorded.record("budget", sys.argv[1:], _rounded(document))

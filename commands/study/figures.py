@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make figures`: write the tables of docs/results.md, docs/hardware.md and docs/software.md.
+"""`make figures`: write the tables of docs/results.md, hardware.md, software.md and error-budget.md.
 
 Cycles, multipliers, bits and errors of the arithmetic are computed here, by the models that the RTL is compared with.
 Figures of runs that take minutes come from docs/figures.json, each with its commit, and with "changed" where the RTL,
@@ -22,14 +22,14 @@ from commands.hardware import estimate, memory_model, synth
 from commands.hardware.targets import DEFAULT_TARGET
 from commands.run import sim
 from commands.run.sim_table import coefficient_words
-from commands.study import baselines, trade_front
+from commands.study import baselines, budget, trade_front
 from tactile_depth.accuracy import errors
 from tactile_depth.configuration import Configuration, most_lanes
 from tactile_depth.cost import cost
 from tactile_depth.frames import load_frames, on_grid
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 
-PAGES = [ROOT / "docs" / f"{name}.md" for name in ("results", "hardware", "software")]
+PAGES = [ROOT / "docs" / f"{name}.md" for name in ("results", "hardware", "software", "error-budget")]
 TABLE = re.compile(r"(<!-- figures: ([^\n]+) -->\n).*?(\n<!-- end of figures -->)", re.DOTALL)
 GRIDS = (64, 128, 256)
 LANE_GRIDS = (*GRIDS, 512)
@@ -229,6 +229,20 @@ def trade() -> str:
     return text
 
 
+def depth_error() -> str:
+    text = ""
+    for _, document, (commit, since) in runs("budget"):
+        line = f"{budget.setting(document)}. Commit {commit}, {SOURCE[1]}: {since}."
+        text += f"{textwrap.fill(line, 120)}\n\n{compact(*budget.tables(document)[0][1:])}"
+    return text
+
+
+def error_parts() -> str:
+    return "\n".join(
+        compact(*budget.shares(each)) for _, document, _ in runs("budget") for each in document["sources"][::-1]
+    )
+
+
 def software_throughput() -> str:
     return "".join(compact(*baselines.throughput(document)[1:]) for _, document, _ in runs("baselines"))
 
@@ -269,6 +283,8 @@ TABLES: dict[str, Callable[[], str]] = {
     "estimate at 45 nm": estimated,
     "whole map against software": against_software,
     "trade": trade,
+    "depth error": depth_error,
+    "parts of the depth error": error_parts,
     "throughput of software": software_throughput,
     "methods at 128": software_methods,
 }

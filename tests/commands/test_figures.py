@@ -14,7 +14,7 @@ from commands.hardware.targets import DEFAULT_TARGET, TARGETS
 from commands.study import figures
 from tactile_depth.errors import InputError
 
-WITHOUT_FIGURES = ("| variable |", "| J1 |")  # heads of tables of settings and of pins
+WITHOUT_FIGURES = ("| variable |", "| J1 |", "| part |")  # heads of tables of settings and of pins
 
 
 @pytest.mark.parametrize("page", figures.PAGES, ids=lambda page: page.stem)

@@ -96,5 +96,7 @@ def test_the_knee_has_the_least_silicon_of_those_that_are_near() -> None:
     near = {"untouched_um": 50, "multipliers_18": 80}
     rows = [row(height_um=50, untouched_um=50), row(height_um=56, **near), row(height_um=50, multipliers_18=10)]
     assert trade_front.knee(rows) == rows[1]
-    rows.append(row(height_um=50, untouched_um=50, multipliers_18=1, sides_height_um=""))  # does not show the whole picture
+    rows.append(
+        row(height_um=50, untouched_um=50, multipliers_18=1, sides_height_um="")
+    )  # does not show the whole picture
     assert trade_front.knee(rows) == rows[1]
