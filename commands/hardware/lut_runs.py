@@ -7,14 +7,12 @@ recorded runs beside the model, the table of docs/hardware.md.
 """
 
 import json
-import subprocess
 import sys
 from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from commands.common import repository
 from commands.common.markdown import compact
 from commands.hardware import synth, synthesis, targets
 from commands.hardware.targets import MEMORY
@@ -25,13 +23,11 @@ from tactile_depth.tactile_depth import top_parameters
 
 
 def runs_of(report: Path, fitted: bool) -> list[dict[str, Any]]:
-    """Return commands, configurations and counts of a resources.json, with the last commit that changed the RTL."""
+    """Return commands, configurations and counts of a resources.json."""
     document = json.loads(report.read_text())
     words = [word for word in document["command"].split()[2:] if word.partition("=")[0] not in ("OUT", "TARGET")]
     _, _, grids, request = synth.parse(words)
     device = targets.TARGETS[document["target"]].device
-    log = ["git", "log", "-1", "--format=%h", "--", "hdl", "boards/ecp5"]
-    commit = subprocess.run(log, cwd=repository.ROOT, capture_output=True, text=True, check=True).stdout.strip()
     default = asdict(Configuration())
     runs = []
     for (each, reason), design in zip(synth.designs(request, grids), document["designs"], strict=False):
@@ -48,7 +44,7 @@ def runs_of(report: Path, fitted: bool) -> list[dict[str, Any]]:
                 "device": device.name,
                 "fitted": fitted,
                 "variables": " ".join(chosen),
-                "commit": commit,
+                "rtl": document["rtl"],
                 "configuration": {name: value for name, value in asdict(config).items() if value != default[name]},
                 "multipliers": design["totals"][device.multiplier],
                 "blocks": design["totals"][device.block],

