@@ -12,8 +12,9 @@ from commands.common import repository
 from commands.hardware import yosys
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
-from tactile_depth.cost import CORES, KINDS, cost
+from tactile_depth.cost import CORES, KINDS, camera_cost, cost
 from tactile_depth.devices import ECP5, XCZU7EV, Device
+from tactile_depth.errors import InputError
 from tactile_depth.luts import RUNS, logic, memories
 from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
 from tactile_depth.tactile_depth import hdl_parameters, top_parameters, write_roms
@@ -192,6 +193,12 @@ def test_the_model_is_near_the_recorded_runs(run: dict[str, Any]) -> None:
     assert count.multipliers_of(device) == pytest.approx(run["multipliers"], abs=2)  # products by constants
     error = sum(logic(count.parameters, device).values()) / sum(run["logic"].values()) - 1
     assert abs(error) <= (FITTED if run["fitted"] else CHECKED)
+
+
+def test_a_camera_that_is_not_measured_is_refused() -> None:
+    assert camera_cost("yuyv", ECP5).multipliers > camera_cost("raw8", ECP5).multipliers
+    with pytest.raises(InputError, match="rgb565"):
+        camera_cost("mjpeg", ECP5)
 
 
 @pytest.mark.parametrize(("solver", "power_mw"), [("tridiagonal", 108), ("spectral", 210)])

@@ -28,7 +28,7 @@ def main() -> None:
             camera = CameraConfiguration(PICTURE, (CONFIG.rows, CONFIG.columns), pixel_format)
             with tempfile.TemporaryDirectory() as folder:
                 unit, _ = synth.camera_unit(CONFIG, synthetic(CONFIG.bits_per_channel), camera, target, Path(folder))
-            counts = [unit.counts[name] for name in (device.multiplier, device.block, "LUT")]
+            counts = [int(unit.counts[name]) for name in (device.multiplier, device.block, "LUT")]
             known.setdefault(device.name, {})[pixel_format] = counts
             CAMERAS.write_text(json.dumps(known, indent=1, sort_keys=True) + "\n")
 

@@ -45,9 +45,9 @@ meet within 7 %."""
 class CameraCost(NamedTuple):
     """Multipliers, block memories and LUTs of the camera front end."""
 
-    multipliers: float
-    blocks: float
-    luts: float
+    multipliers: int
+    blocks: int
+    luts: int
 
 
 @dataclass(frozen=True)
