@@ -6,6 +6,7 @@ Figures of runs that take minutes come from docs/figures.json, each with its com
 parameters and tables of the run, or the code that was timed, are no longer those of that commit.
 """
 
+import json
 import re
 import sys
 import textwrap
@@ -18,14 +19,14 @@ import numpy as np
 from commands.common import published, recorded, run_request, variables
 from commands.common.markdown import compact
 from commands.common.repository import ROOT
-from commands.hardware import estimate, memory_model, synth
-from commands.hardware.targets import DEFAULT_TARGET
+from commands.hardware import estimate, lut_runs, memory_model, synth
+from commands.hardware.targets import DEFAULT_TARGET, TARGETS
 from commands.run import sim
 from commands.run.sim_table import coefficient_words
 from commands.study import baselines, budget, trade_front
 from tactile_depth.accuracy import errors
 from tactile_depth.configuration import Configuration, most_lanes
-from tactile_depth.cost import cost
+from tactile_depth.cost import CAMERAS, cost
 from tactile_depth.frames import load_frames, on_grid
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 
@@ -229,6 +230,16 @@ def trade() -> str:
     return text
 
 
+def camera_front_end() -> str:
+    known = json.loads(CAMERAS.read_text())
+    devices = [target.device for target in TARGETS.values()]
+    rows = [
+        (f"`{name}`", *(f"{count:,}" for device in devices for count in known[device.name][name]))
+        for name in known[devices[0].name]
+    ]
+    return compact(("camera front end", *(n for d in devices for n in (d.multiplier, d.block, "LUT"))), rows)
+
+
 def depth_error() -> str:
     text = ""
     for _, document, (commit, since) in runs("budget"):
@@ -282,6 +293,8 @@ TABLES: dict[str, Callable[[], str]] = {
     "make asic by core": by_core,
     "estimate at 45 nm": estimated,
     "whole map against software": against_software,
+    "cost model": lut_runs.table,
+    "camera front end": camera_front_end,
     "trade": trade,
     "depth error": depth_error,
     "parts of the depth error": error_parts,
