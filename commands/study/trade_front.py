@@ -73,8 +73,9 @@ def depth_error(row: Row) -> float:
 
 
 def whole_picture(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of grids that cover the picture, with the boundary that a contact may cross."""
-    return [row for row in rows if row["sides_height_um"] and row["boundary"] == "neumann"]
+    """Return the rows of grids that cover the picture, with the boundary that a contact may cross, of one camera."""
+    same = ("boundary", "pixel_format")
+    return [row for row in rows if row["sides_height_um"] and all(row[name] == DEFAULT[name] for name in same)]
 
 
 def knee(rows: Sequence[Row]) -> Row:

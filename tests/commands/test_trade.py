@@ -84,7 +84,7 @@ def row(**changed: Any) -> Row:
     """Return a row with all axes 100 but those given."""
     same = dict.fromkeys((*trade_front.ERRORS, *trade_front.COSTS), "100")
     other = {name: str(value) for name, value in changed.items()}
-    return {"problem": "", "boundary": "neumann", **same, **other}
+    return {"problem": "", "boundary": "neumann", "pixel_format": "rgb888", **same, **other}
 
 
 def test_a_row_is_beaten_by_one_that_is_no_worse_in_anything() -> None:
