@@ -29,7 +29,8 @@ STRUCTURES = (
     built(16, 8, 27, 0, 27, 18, 3, 24, 1, on=ICARUS),
     built(16, 2, 15, 0, 15, 10, 3, 12, 1, on=ICARUS),
     built(32, 8, 9, 1, 9, 7, 1, 6, 0, on=ICARUS),
-    built(8, 4, 9, -1, 9, 7, 3, 5, 1, on=ICARUS, mutants=True),
+    built(8, 4, 9, -1, 9, 7, 3, 5, 1, on=ICARUS),
+    built(32, 4, 9, -1, 9, 7, 2, 5, 1, mutants=True),  # of fewer points none clips beside a row alone
     built(64, 32, 27, 0, 27, 18, 3, 24, 1),
     built(128, 8, 27, 0, 27, 18, 3, 24, 1),
 )

@@ -14,8 +14,8 @@ built = of_parameters("Columns Width Paths")
 STRUCTURES = (
     built(32, 24, 4, on=VERILATOR),
     built(16, 16, 2, on=ICARUS),
-    built(8, 16, 2, on=ICARUS),
-    built(8, 8, 4, on=ICARUS, mutants=True),
+    built(8, 16, 2, on=ICARUS, mutants=True),
+    built(8, 8, 4, on=ICARUS),
     built(64, 24, 8),
 )
 REFUSED = {
