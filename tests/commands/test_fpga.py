@@ -117,7 +117,7 @@ def test_only_registers_without_reset_are_packed() -> None:
         "port_directions": {"DOB0": "output", "ADB0": "input"},
         "connections": {"DOB0": [50], "ADB0": [51]},
     }
-    chosen = {  # a word of the memory goes through logic to operand A
+    chosen: dict[str, Any] = {  # a word of the memory goes through logic to operand A
         "type": ecp5.LOGIC,
         "port_directions": {**dict.fromkeys("ABCD", "input"), "Z": "output"},
         "connections": {"A": [50], "B": [52], "C": ["0"], "D": ["0"], "Z": [1100]},
