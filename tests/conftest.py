@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fixtures that build and run a testbench on each simulator; SIM=icarus or SIM=verilator selects one, SEED a seed."""
 
+import os
+
+os.environ["OPENBLAS_NUM_THREADS"] = "1"  # here and in each process of a test: workers of pytest fill the cores
+
 import itertools
 import json
-import os
 import re
 import shutil
 import time

@@ -32,7 +32,8 @@ def parameters(core: str, change: str) -> list[str]:
 
 def output_of(tool: str, core: str, change: str) -> str:
     """Return the message with which a tool refuses to elaborate a core, "" if it accepts."""
-    sources, changed = [str(path) for path in repository.sources()], parameters(core, change)
+    known = core if core in repository.cores() else None
+    sources, changed = [str(path) for path in repository.sources(known)], parameters(core, change)
     if tool == "icarus":
         command = ["iverilog", "-g2012", "-t", "null", "-s", core, *(f"-P{core}.{word}" for word in changed)]
     elif tool == "verilator":

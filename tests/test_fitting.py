@@ -63,6 +63,23 @@ def sensor(folder: Path) -> Any:
 
 
 @pytest.fixture(scope="module")
+def fit(presses: Any) -> Any:
+    """Fit of every model to the presses."""
+    return fit_presses(presses)
+
+
+@pytest.fixture(scope="module")
+def quadratic(presses: Any) -> Any:
+    return fit_presses(presses, ("quadratic",))
+
+
+@pytest.fixture(scope="module")
+def found() -> Any:
+    """Sensor fitted to the presses in memory, whose circles `fit` finds."""
+    return td.fit(*in_memory(np.array, False), pitch_mm=PITCH, quiet=True)
+
+
+@pytest.fixture(scope="module")
 def real() -> Any:
     return real_folder()
 
@@ -75,8 +92,8 @@ def real_presses(real: Any) -> Any:
 # The fit of drawn presses, whose slopes are known.
 
 
-def test_the_polynomials_of_the_lights_are_recovered(presses: Any) -> None:
-    coefficients = fit_presses(presses, ("quadratic",)).sensor.polynomials("quadratic")
+def test_the_polynomials_of_the_lights_are_recovered(presses: Any, quadratic: Any) -> None:
+    coefficients = quadratic.sensor.polynomials("quadratic")
     rows, columns = presses.grid
     terms = pixel_terms(rows, columns, presses.grid_pitch_mm)
     by_colour = np.einsum("ant,rct->rcan", coefficients, terms)
@@ -92,9 +109,9 @@ def test_the_polynomials_of_the_lights_are_recovered(presses: Any) -> None:
     [("quadratic", 0.012, 0.03, 0.03), ("cubic", 0.012, 0.03, 0.03), ("lut", 0.03, 0.05, 0.08)],
 )
 def test_presses_left_out_come_out_as_the_balls_are(
-    presses: Any, model: Any, rms_mm: float, bias: Any, spread: float
+    fit: Any, model: Any, rms_mm: float, bias: Any, spread: float
 ) -> None:
-    evaluation = fit_presses(presses).evaluation
+    evaluation = fit.evaluation
     error = evaluation.height_error(model)
     assert error.presses == sum(evaluation.central) >= 4
     assert len(evaluation.presses) > error.presses
@@ -103,21 +120,20 @@ def test_presses_left_out_come_out_as_the_balls_are(
     assert error.spread < spread
 
 
-def test_each_press_is_measured_by_a_fit_to_the_others(presses: Any) -> None:
-    fit = fit_presses(presses, ("quadratic",))
-    evaluation = fit.evaluation
+def test_each_press_is_measured_by_a_fit_to_the_others(presses: Any, quadratic: Any) -> None:
+    evaluation = quadratic.evaluation
     measured = [view for view in presses.views if view.is_whole]
     assert evaluation.presses == tuple(view.press.name for view in measured)
     others = tuple(view for view in presses.views if view is not measured[-1])
     coefficients: Any = fit_presses(replace(presses, views=others), ("quadratic",)).sensor.coefficients
-    alone: Any = fit.without[measured[-1].press.name]
+    alone: Any = quadratic.without[measured[-1].press.name]
     np.testing.assert_allclose(alone.coefficients, coefficients, rtol=1e-9)
     steepest = max(view.press.largest_slope for view in others)
     sensor = td.Sensor("others", None, PITCH, coefficients, steepest, "quadratic")
     assert scores_of(sensor, presses, measured[-1:], "quadratic")[0] == evaluation.scores["quadratic"][-1]
 
 
-def test_balls_that_contradict_each_other_are_said(presses: Any) -> None:
+def test_balls_that_contradict_each_other_are_said(presses: Any, quadratic: Any) -> None:
     """Give one of the balls a diameter that is 8 % too small: its presses read too high."""
     wrong = tuple(
         replace(view, press=replace(view.press, ball_radius=0.92 * view.press.ball_radius))
@@ -126,10 +142,8 @@ def test_balls_that_contradict_each_other_are_said(presses: Any) -> None:
         for view in presses.views
     )
     pattern = r"quadratic, caps by ball: 6 mm (\S+), 8 mm (\S+)(.*)"
-    right, doubtful = (
-        re.search(pattern, fit_presses(replace(presses, views=views), ("quadratic",)).evaluation.summary)
-        for views in (presses.views, wrong)
-    )
+    contradicting = fit_presses(replace(presses, views=wrong), ("quadratic",))
+    right, doubtful = (re.search(pattern, each.evaluation.summary) for each in (quadratic, contradicting))
     assert right is not None
     assert doubtful is not None
     assert not right[3]
@@ -237,11 +251,13 @@ def narrowed(picture: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("circles", [True, False])
-def test_pixels_that_are_not_square_give_the_same_millimetres(sensor: Any, tmp_path: Path, circles: bool) -> None:
+def test_pixels_that_are_not_square_give_the_same_millimetres(
+    sensor: Any, found: Any, tmp_path: Path, circles: bool
+) -> None:
     balls, background = in_memory(narrowed, circles, 0.8)
     wide = td.fit(balls, background, pitch_mm=(PITCH, 1.25 * PITCH), quiet=True)
     assert (wide.pixel_pitch_mm, wide.pixel_aspect) == (PITCH, 1.25)
-    square = td.fit(*in_memory(np.array, circles), pitch_mm=PITCH, quiet=True)
+    square = sensor if circles else found
     for model in MODELS:
         error, other = wide.height_errors[model], square.height_errors[model]
         assert error.mean == pytest.approx(other.mean, abs=0.02)
@@ -282,7 +298,7 @@ def test_grey_pictures_are_refused() -> None:
             td.fit(*in_memory(change, True), pitch_mm=PITCH, quiet=True)
 
 
-def test_markers_on_the_gel_hide_no_circle() -> None:
+def test_markers_on_the_gel_hide_no_circle(found: Any) -> None:
     """Draw dark dots that stay where they are: their light is divided by that of the background."""
     rows, columns = np.indices(CAMERA)
     dots = np.hypot(rows % 24 - 12, columns % 24 - 12) < 4
@@ -291,7 +307,7 @@ def test_markers_on_the_gel_hide_no_circle() -> None:
         return np.where(dots[..., None], 0.3 * picture, picture).astype(np.uint8)
 
     error = td.fit(*in_memory(dotted, False), pitch_mm=PITCH, models="cubic", quiet=True).height_errors["cubic"]
-    without = td.fit(*in_memory(np.array, False), pitch_mm=PITCH, models="cubic", quiet=True).height_errors["cubic"]
+    without = found.height_errors["cubic"]
     assert error.presses == without.presses
     assert error.mean == pytest.approx(without.mean, abs=0.02)
 
@@ -324,9 +340,9 @@ def test_presses_without_depth_are_refused(presses: Any) -> None:
 
 
 def test_an_evaluation_on_the_fitted_presses_is_a_little_better_than_that_of_the_fit(
-    sensor: Any, folder: Path, presses: Any, capsys: pytest.CaptureFixture[str]
+    sensor: Any, folder: Path, fit: Any, quadratic: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    evaluation, fit = td.evaluate(sensor, folder), fit_presses(presses)
+    evaluation = td.evaluate(sensor, folder)
     assert evaluation.presses == fit.evaluation.presses
     for model in MODELS:
         among, alone = (each.values(model, "height_rms_mm").mean() for each in (evaluation, fit.evaluation))
@@ -335,7 +351,7 @@ def test_an_evaluation_on_the_fitted_presses_is_a_little_better_than_that_of_the
     td.fit(folder, models="quadratic")
     view, *summary = capsys.readouterr().out.splitlines()
     assert view.startswith("0.1 mm per pixel: the picture shows 16.0 x 11.2 mm of the gel.")
-    assert summary == fit_presses(presses, ("quadratic",)).evaluation.summary.splitlines()
+    assert summary == quadratic.evaluation.summary.splitlines()
 
 
 def test_presses_that_the_picture_cuts_are_left_out_with_a_note(sensor: Any, folder: Path, presses: Any) -> None:

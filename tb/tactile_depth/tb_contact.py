@@ -8,6 +8,7 @@ import numpy as np
 from cocotb.triggers import ClockCycles
 
 from tb.selection import Level, case, up_to
+from tb.stream import sample
 from tb.tactile_depth.bench import CONTROL, started
 
 
@@ -69,7 +70,7 @@ async def records_at_the_limits(dut: Any) -> None:
     pressed = pipeline.pressed()
     codes = pipeline.depth_of(pressed)
     depths = np.unique(codes)
-    chosen = [int(depth) for depth in depths[:: max(1, len(depths) // 4)]]
+    chosen = sample([int(depth) for depth in depths[:: max(1, len(depths) // 4)]])
     # One threshold always decides at once, against the decision of the other one on the previous frame.
     for name, other, always in (
         ("THRESHOLD", "OFF_THRESHOLD", int(depths[-1])),

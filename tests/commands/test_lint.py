@@ -95,7 +95,7 @@ def reported(tool: str, folder: Path, body: str) -> str:
         return lint.slang(["seeded"], {}, files)
     if tool == "verible":
         return lint.verible(files)
-    return lint.yosys([structure], files, folder / "yosys")
+    return lint.yosys([structure], lambda _: files, folder / "yosys")
 
 
 TOOLS = ("verilator", "icarus", "slang", "verible", "yosys")

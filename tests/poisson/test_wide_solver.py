@@ -13,7 +13,7 @@ from tactile_depth.poisson.wide_solver import wide_solver
 from tactile_depth.rom_files import write_solver
 from tactile_depth.scenes import dome, slopes_of
 from tactile_depth.tactile_depth import config_value, top_parameters
-from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
+from tb.structures import BOTH, ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
 from tests.poisson.test_spectral_solver import PEAKS
 from tests.poisson.test_tridiagonal_solver import divergence_codes, error_percent
 
@@ -32,7 +32,7 @@ def built(choices: Any, **runs: Any) -> Structure:
 
 STRUCTURES = (
     built(CHOICES | {"columns": 32, "rows": 11, "lanes": 8}, on=VERILATOR),
-    built(CHOICES | {"columns": 64, "rows": 8, "lanes": 32}, on=VERILATOR),
+    built(CHOICES | {"columns": 64, "rows": 8, "lanes": 32}, late=BOTH),
     built(CHOICES | {"lanes": 8, "rows": 9, "neumann": True}, on=ICARUS),
     built(CHOICES | {"lanes": 2, "rows": 9}, on=ICARUS, mutants=True),
     built(CHOICES | {"columns": 32, "rows": 9, "lanes": 4, "data_width": 16, "coefficient_width": 10}, mutants=True),
