@@ -115,8 +115,8 @@ def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
     """Build a structure of a core of hdl/, or of a module in `files`, and run its testbench.
 
     The top level has the name of the test's file by default. A file of `files` replaces a core of the same name. In
-    `make regress` the first structure of a core with a reset is also run from many random power-up states, on Verilator,
-    with the shortest of its tests.
+    `make regress` the first structure of a core with a reset is also run from many random power-up states, on
+    Verilator, with the shortest of its tests.
     """
 
     def run(
