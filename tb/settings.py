@@ -46,7 +46,7 @@ class RunSettings:
 
     full: bool = False
     repeats: int = 0
-    power_ups: int = 2
+    power_ups: int = 1
     coverage: bool = False
     cores: tuple[str, ...] = ()
     level: str = ""

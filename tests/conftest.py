@@ -114,9 +114,9 @@ def first_failure(run_folder: Any, failed: Any, count: int, log: Path) -> Any:
 def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
     """Build a structure of a core of hdl/, or of a module in `files`, and run its testbench.
 
-    The top level has the name of the test's file by default. A file of `files` replaces a core of the same name. The
-    first structure of a core with a reset is also run from several random power-up states, on Verilator, with the
-    shortest of its tests.
+    The top level has the name of the test's file by default. A file of `files` replaces a core of the same name. In
+    `make regress` the first structure of a core with a reset is also run from many random power-up states, on
+    Verilator, with the shortest of its tests.
     """
 
     def run(

@@ -194,7 +194,7 @@ def run_tests() -> int:
     for repeats, chosen in ((REPEATS, [tests[TOP]]), (0, cores)):
         command = [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", "--timeout=3600"]
         command += ["-m", "verilator", *chosen]
-        settings = RunSettings(full=True, repeats=repeats, power_ups=1, coverage=True)
+        settings = RunSettings(full=True, repeats=repeats, coverage=True)
         run = subprocess.run(command, cwd=repository.ROOT, env=os.environ | settings.environment, check=False)
         worst = max(worst, run.returncode)
     return worst

@@ -31,11 +31,8 @@ def tests_of(cores: Sequence[str]) -> list[str]:
 
 
 def settings(cores: Sequence[str]) -> dict[str, str]:
-    """Return the settings of a run of some cores, as an environment: lint checks them alone.
-
-    The whole suite runs each core from a second random power-up state too.
-    """
-    return RunSettings(cores=tuple(cores), power_ups=1).environment
+    """Return the settings of a run of some cores, as an environment: lint checks them alone."""
+    return RunSettings(cores=tuple(cores)).environment
 
 
 def all_succeed(processes: Sequence[Sequence[str]], environment: Mapping[str, str]) -> bool:

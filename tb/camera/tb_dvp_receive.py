@@ -140,7 +140,7 @@ async def frames_lost(dut: Any, ratio: str) -> None:
     frame_clocks = (2 + 40 + ROWS * (BYTES + 3)) * pclk // clk
     bench = Bench(dut)
     await bench.start(ratio, itertools.repeat(True))
-    steps = range(0, frame_clocks, 1 if REGRESS else 7)
+    steps = range(0, frame_clocks, 1 if REGRESS else 15)
     for first in steps:
         frames = bench.frames(3)
         before, lost, after = (beats(frame) for frame in frames)

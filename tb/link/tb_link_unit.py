@@ -22,7 +22,8 @@ from tactile_depth.link.framing import to_line
 from tb.link.axil_slave import AxilSlave, Registers
 from tb.stream import CLOCK_NS, MANY, parameters
 
-QUIET_CLOCKS = 2000  # without a byte: more than a packet of depth takes until its first one
+QUIET_CLOCKS = 300  # without a byte; a byte too many that comes later differs in the next comparison
+LAST_CLOCKS = 2000  # the same behind the last comparison: more than a packet of depth takes until its first byte
 LONGEST_CLOCKS = 60_000
 CLOCKS_A_BYTE = 4  # of a frame in words, to a line that takes a byte in each clock (docs/link.md)
 BROKEN = None  # a byte that could not be received
@@ -139,15 +140,17 @@ class Board:
     def places(self) -> range:
         return range(self.rows * self.columns)
 
-    async def compare(self, expected: bytes, what: str) -> None:
+    async def compare(self, expected: bytes, what: str, quiet_clocks: int = QUIET_CLOCKS) -> None:
         """Wait until everything has been sent, and compare bytes, pixels and registers."""
         quiet = 0
         for _ in range(LONGEST_CLOCKS):
             before = len(self.out)
             await RisingEdge(self.dut.clk)
             busy = self.to_device or self.beats or self.words or len(self.out) < len(expected)
+            busy = busy or len(self.pixels) < len(self.model.pixels)
+            busy = busy or len(self.registers.log) < len(self.model_registers.log)
             quiet = 0 if busy or len(self.out) != before else quiet + 1
-            if quiet > QUIET_CLOCKS:
+            if quiet > quiet_clocks:
                 break
         assert bytes(self.out).hex(" ") == expected.hex(" "), what
         assert self.pixels == [tuple(word) for word in self.model.pixels], what
@@ -236,6 +239,7 @@ async def one_after_another(dut: Any, stalls: float) -> None:
         await board.compare(board.send(list(to_line(link.Ask().pack()))), "counts")
         if turn % 3 == 2:
             await board.compare(await board.reset(), "reset")
+    await board.compare(b"", "nothing more", LAST_CLOCKS)
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
@@ -245,10 +249,11 @@ async def pictures(dut: Any, stalls: float) -> None:
     board = Board(dut, stalls)
     await board.start()
     await board.compare(board.answer(), "power-up")
-    for number in range(4):
+    for number in range(MANY):
         packets = board.picture(number)
         lost = board.chance.randrange(len(packets))
         again = board.chance.randrange(len(packets))
         for some in (packets[:lost] + packets[lost + 1 :], packets, packets[: again + 1] + packets[again:]):
             expected = b"".join(board.send(packet) for packet in some)
             await board.compare(expected, f"picture {number}")
+    await board.compare(b"", "nothing more", LAST_CLOCKS)
