@@ -4,6 +4,7 @@
 import os
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # here and in each process of a test: workers of pytest fill the cores
+os.environ["PYTHONDONTWRITEBYTECODE"] = ""  # a thousand processes import the same modules
 
 import itertools
 import json

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Steps of the flow for an ECP5: registers packed into multipliers, contents of memories that are built of slices.
+"""Steps of the flow for an ECP5: registers packed into multipliers, wide enables copied, memories built of slices.
 
 A MULT18X18D has registers at its inputs and at its output, which Yosys leaves outside. With them the routes between a
 product and its registers disappear, and so does most of the delay.
+
+The enable of the pipeline has thousands of readers, and wires over the whole device. Registers that it enables are at
+the end of such a wire; behind it, logic and memories take time too. They read a copy, whose wires are shorter.
 """
 
 from collections import Counter
@@ -16,6 +19,7 @@ WHOLE_WORDS = 2048  # words of a memory that boards/ecp5/td_ram.sv builds withou
 
 MULTIPLIER, REGISTER, MEMORY, LOGIC = "MULT18X18D", "TRELLIS_FF", "DP16KD", "LUT4"
 SIDES, WIDTH = "AB", 18
+READERS = 1000  # of a register whose logic and memories read a copy
 CLOCKS = 4  # number of clocks, of enables and of resets of a multiplier
 Bit = int | str  # of Yosys' JSON: number of a net, or "0", "1", "x"
 Cells = dict[str, dict[str, Any]]
@@ -171,6 +175,34 @@ def _configure(multiplier: dict[str, Any], controls: dict[str, Control]) -> None
     for pin, bit in pins.items():
         multiplier["connections"][pin] = [bit]
         multiplier["port_directions"][pin] = "input"
+
+
+def copy_enables(module: dict[str, Any]) -> int:
+    """Give a copy of each register that enables more than `READERS` registers to the logic and memories that read it.
+
+    The module is flat, of Yosys' JSON after synth_ecp5.
+
+    Returns
+    -------
+    number of copies
+    """
+    cells: Cells = module["cells"]
+    enabled = Counter(cell["connections"]["CE"][0] for cell in cells.values() if cell["type"] == REGISTER)
+    wide = {
+        name: cell["connections"]["Q"][0]
+        for name, cell in cells.items()
+        if cell["type"] == REGISTER and enabled[cell["connections"]["Q"][0]] > READERS
+    }
+    used = {bit for cell in cells.values() for bits in cell["connections"].values() for bit in bits}
+    free = 1 + max((bit for bit in used if isinstance(bit, int)), default=0)
+    copies: dict[Bit, Bit] = {bit: free + number for number, bit in enumerate(wide.values())}
+    for cell in cells.values():
+        for port, bits in cell["connections"].items():
+            if cell["type"] != REGISTER and cell["port_directions"][port] == "input":
+                cell["connections"][port] = [copies.get(bit, bit) for bit in bits]
+    for name, bit in wide.items():
+        cells[f"{name}_copy"] = {**cells[name], "connections": {**cells[name]["connections"], "Q": [copies[bit]]}}
+    return len(wide)
 
 
 def write_slices(folder: Path) -> None:

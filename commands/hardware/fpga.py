@@ -209,6 +209,7 @@ def synthesize(
     ecp5.write_slices(folder)
     design = yosys.design(folder, top, [*lines, f"synth_ecp5 -top {top}"])
     packed = ecp5.pack(design["modules"][top])
+    ecp5.copy_enables(design["modules"][top])
     (folder / f"{top}.json").write_text(json.dumps(design))
     return packed
 

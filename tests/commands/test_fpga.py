@@ -74,6 +74,29 @@ def test_packed_multipliers_compute_the_same(tmp_path: Path) -> None:
     assert not failed, (folder / "run.log").read_text()[-2000:]
 
 
+def test_logic_and_memories_read_a_copy_of_a_wide_enable(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ecp5, "READERS", 2)
+    directions = {"DI": "input", "CE": "input", "Q": "output", "A": "input", "Z": "output", "CEB": "input"}
+
+    def cell(kind: str, **connections: Any) -> dict[str, Any]:
+        return {
+            "type": kind,
+            "port_directions": {port: directions[port] for port in connections},
+            "connections": {port: [bit] for port, bit in connections.items()},
+        }
+
+    enables = {f"enable{bit}": cell(ecp5.REGISTER, DI=1, CE="1", Q=bit) for bit in (2, 3)}
+    enabled = {f"r{bit}": cell(ecp5.REGISTER, DI=1, CE=2 if bit < 23 else 3, Q=bit) for bit in range(20, 25)}
+    logic, memory = cell(ecp5.LOGIC, A=2, Z=30), cell(ecp5.MEMORY, CEB=2)
+    other = cell(ecp5.LOGIC, A=3, Z=31)
+    cells = {**enables, **enabled, "logic": logic, "memory": memory, "other": other}
+    assert ecp5.copy_enables({"cells": cells}) == 1  # the other enable has two readers
+    assert cells["enable2_copy"]["connections"] == {"DI": [1], "CE": ["1"], "Q": [32]}
+    assert logic["connections"]["A"] == memory["connections"]["CEB"] == [32]
+    assert other["connections"]["A"] == [3]
+    assert [cells[f"r{bit}"]["connections"]["CE"] for bit in (20, 23)] == [[2], [3]]
+
+
 def test_only_registers_without_reset_are_packed() -> None:
     """Feed one operand by a register with a reset, or directly by a port: the multiplier does not change."""
     pins = [f"{side}{place}" for side in "AB" for place in range(ecp5.WIDTH)]
