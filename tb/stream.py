@@ -2,6 +2,7 @@
 """Drivers and monitors of the streams between cores, and the loop that most testbenches share."""
 
 import gc
+import itertools
 import random
 from collections.abc import Iterator
 from typing import Any, ClassVar
@@ -29,6 +30,21 @@ MANY = RUN.repeats or (15 if REGRESS else 2)
 def sample(values: list[Any]) -> list[Any]:
     """Return all values in `make regress`, and the first and the last in `make test`."""
     return values if REGRESS else [values[0], values[-1]]
+
+
+def parametrize(*options: Any, **named: Any) -> Any:
+    """Return cocotb.parametrize, with every combination of values in `make regress` and `make mutate`.
+
+    In `make test` each value of each parameter takes part once at least: the first of each, the second of each, ..
+    """
+    parts = [*options, *named.items()]
+    if REGRESS or RUN.mutants or len(parts) < 2 or not all(values for _, values in parts):
+        return cocotb.parametrize(*parts)
+    names = [name for part, _ in parts for name in ((part,) if isinstance(part, str) else part)]
+    columns = [[(value,) if isinstance(part, str) else value for value in values] for part, values in parts]
+    longest = max(map(len, columns))
+    repeated = (itertools.islice(itertools.cycle(column), longest) for column in columns)
+    return cocotb.parametrize((names, [tuple(itertools.chain(*row)) for row in zip(*repeated, strict=True)]))
 
 
 def parameters(dut: Any, *names: str) -> tuple[int, ...]:

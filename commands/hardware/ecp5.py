@@ -187,7 +187,9 @@ def copy_enables(module: dict[str, Any]) -> int:
     number of copies
     """
     cells: Cells = module["cells"]
-    enabled = Counter(cell["connections"]["CE"][0] for cell in cells.values() if cell["type"] == REGISTER)
+    enabled = Counter(
+        bit for cell in cells.values() if cell["type"] == REGISTER for bit in cell["connections"].get("CE", ())
+    )
     wide = {
         name: cell["connections"]["Q"][0]
         for name, cell in cells.items()

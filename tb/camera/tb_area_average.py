@@ -10,7 +10,7 @@ from tactile_depth.camera.area_average import LATENCY, UNITY, area_average
 from tactile_depth.camera_configuration import GAIN_WIDTH
 from tb.camera.slots import Slot, Slots, Window, packed
 from tb.cases import on_bench
-from tb.stream import MANY, check_words, drive, parameters
+from tb.stream import MANY, check_words, drive, parameters, parametrize
 
 OUTPUTS = ["out_valid", "out_pixel", "out_last", "out_user"]
 
@@ -100,7 +100,7 @@ class Bench:
 
 
 @on_bench(Bench, milliseconds=20)
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.4, 0.0), (0.2, 0.2)]))
+@parametrize((("gap", "pause"), [(0.0, 0.0), (0.4, 0.0), (0.2, 0.2)]))
 async def frames(bench: Bench, gap: float, pause: float) -> None:
     for kind in ("black", "white", "lowest", "highest", *["range", "picture", "ties"] * MANY):
         bench.frame(bench.samples(kind), gap)
@@ -108,7 +108,7 @@ async def frames(bench: Bench, gap: float, pause: float) -> None:
 
 
 @on_bench(Bench, milliseconds=20)
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.2)]))
+@parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.2)]))
 async def gains(bench: Bench, gap: float, pause: float) -> None:
     """Change the gains with every frame: 0, 1, the largest, each bit, and random ones."""
     chance, largest = bench.slots.random, (1 << GAIN_WIDTH) - 1
@@ -134,7 +134,7 @@ async def a_gain_of_8_clips_the_mean_alone(bench: Bench) -> None:
 
 
 @on_bench(Bench, milliseconds=20)
-@cocotb.parametrize(gap=[0.0, 0.3])
+@parametrize(gap=[0.0, 0.3])
 async def broken_frames(bench: Bench, gap: float) -> None:
     """Break a frame after each of its first pixels, at random positions, and between frames; the next one follows at
     once or later."""

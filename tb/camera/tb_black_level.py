@@ -3,13 +3,12 @@
 
 from typing import Any
 
-import cocotb
 import numpy as np
 
 from tactile_depth.camera.black_level import LATENCY, black_level
 from tb.camera.slots import Slot, Slots, packed, unpacked
 from tb.cases import on_bench
-from tb.stream import MANY, drive, parameters
+from tb.stream import MANY, drive, parameters, parametrize
 
 OUTPUTS = ["out_valid", "out_samples", "out_colour", "out_row_start", "out_frame_start", "out_abort", "out_gains"]
 
@@ -69,7 +68,7 @@ class Bench:
 
 
 @on_bench(Bench, milliseconds=2)
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.4, 0.0), (0.2, 0.3)]))
+@parametrize((("gap", "pause"), [(0.0, 0.0), (0.4, 0.0), (0.2, 0.3)]))
 async def frames(bench: Bench, gap: float, pause: float) -> None:
     for _ in range(50 * MANY):
         bench.frame(bench.slots.random.choice((1, 2, 9, 30)), gap)

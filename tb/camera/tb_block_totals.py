@@ -10,7 +10,7 @@ from tactile_depth.camera.block_totals import LATENCY, block_areas, block_totals
 from tactile_depth.camera.row_sums import sums_over_blocks
 from tb.camera.slots import Slot, Slots, Window, packed, unpacked
 from tb.cases import on_bench
-from tb.stream import drive, parameters
+from tb.stream import drive, parameters, parametrize
 
 ROWS = 3
 FRAMES = 6
@@ -78,7 +78,7 @@ class Bench:
 
 
 @on_bench(Bench, milliseconds=2)
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.4, 0.0), (0.3, 0.3)]))
+@parametrize((("gap", "pause"), [(0.0, 0.0), (0.4, 0.0), (0.3, 0.3)]))
 async def frames(bench: Bench, gap: float, pause: float) -> None:
     for kind in ("lowest", "highest", *["random"] * FRAMES):
         bench.frame(kind, gap)

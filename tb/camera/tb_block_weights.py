@@ -7,14 +7,14 @@ from typing import Any
 import cocotb
 
 from tactile_depth.camera.block_weights import block_weights
-from tb.stream import drive, parameters
+from tb.stream import drive, parameters, parametrize
 
 LONGEST = 60  # pixels of an axis
 AXES = 20
 
 
 @cocotb.test()
-@cocotb.parametrize(pause=[0.0, 0.4])
+@parametrize(pause=[0.0, 0.4])
 async def axes(dut: Any, pause: float) -> None:
     weights, ends = block_weights(LONGEST, *parameters(dut, "Numerator", "Denominator"))
     chance = random.Random(cocotb.RANDOM_SEED)

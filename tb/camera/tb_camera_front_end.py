@@ -24,7 +24,7 @@ from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSink, AxisSource, broken, p
 from tb.camera.slots import camera_words, pack_settings
 from tb.cases import on_bench
 from tb.settings import RUN
-from tb.stream import CLOCK_NS, MANY, at_every_edge, sample
+from tb.stream import CLOCK_NS, MANY, at_every_edge, parametrize, sample
 
 KINDS = [kind for kind in BREAKS if kind not in SILENT]
 SETTLE = 60
@@ -103,9 +103,7 @@ class Bench:
 
 
 @on_bench(Bench, milliseconds=20)
-@cocotb.parametrize(
-    (("offers", "stalls"), [("none", "none"), ("random", "none"), ("none", "random"), ("long", "long")])
-)
+@parametrize((("offers", "stalls"), [("none", "none"), ("random", "none"), ("none", "random"), ("long", "long")]))
 async def pictures(bench: Bench, stalls: str) -> None:
     """Send pictures: every frame equals the model, and without stalls all have the same latency to their last pixel."""
     want, last = [], []
@@ -126,7 +124,7 @@ async def pictures(bench: Bench, stalls: str) -> None:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(kind=KINDS, stalls=["none", "random"])
+@parametrize(kind=KINDS, stalls=["none", "random"])
 async def broken_pictures(dut: Any, kind: str, stalls: str) -> None:
     """Send a good picture, a broken one and a good one: the good ones leave, and the other becomes one broken frame."""
     bench = Bench(dut, stalls, stalls)
@@ -170,7 +168,7 @@ async def settings_change_between_pictures(bench: Bench) -> None:
 
 
 @on_bench(Bench, milliseconds=20)
-@cocotb.parametrize(name=["columns", "rows", "window_x", "window_y"])
+@parametrize(name=["columns", "rows", "window_x", "window_y"])
 async def settings_in_every_bit(bench: Bench, name: str) -> None:
     """Set size and place of the window with one bit wrong, for each bit: the faults are the model's, and with the right
     settings the next picture is right."""

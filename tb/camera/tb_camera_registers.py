@@ -14,7 +14,7 @@ from tactile_depth.registers.register_map import CAMERA_MAP, CAMERA_REGISTERS, W
 from tb import structs
 from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
-from tb.stream import parameters
+from tb.stream import parameters, parametrize
 
 PARAMETERS = (
     *("PictureColumns", "PictureRows", "WindowX", "WindowY", "BlackLevel", "RedGain", "GreenGain", "BlueGain"),
@@ -88,7 +88,7 @@ async def reset_values(bench: Bench) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize(name=list(CAMERA_REGISTERS))
+@parametrize(name=list(CAMERA_REGISTERS))
 async def access(dut: Any, name: str) -> None:
     """Each field has the access of the map, byte by byte."""
     register = CAMERA_REGISTERS[name]

@@ -15,7 +15,7 @@ from tactile_depth.camera.camera_setup import CameraSetup, Entry, Kind
 from tb.camera.sccb_camera import SccbCamera
 from tb.cases import on_bench
 from tb.settings import RUN
-from tb.stream import CLOCK_NS, REGRESS, parameters, sample
+from tb.stream import CLOCK_NS, REGRESS, parameters, parametrize, sample
 
 Fault = Callable[[str, int, int], int | None]
 COUNTS = ("AddressBytes", "DeviceId", "QuarterClocks", "MillisecondClocks", "Attempts")
@@ -100,7 +100,7 @@ class Bench:
 
 
 @on_bench(Bench, milliseconds=20)
-@cocotb.parametrize(acknowledges=[True, False])
+@parametrize(acknowledges=[True, False])
 async def whole_list(bench: Bench) -> None:
     """Play the whole list: every register arrives, whatever the camera drives in the ninth bit, and the pins end as the
     list says."""
@@ -118,7 +118,7 @@ async def whole_list(bench: Bench) -> None:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(kind=["write", "read", "silent"], times=sample([1, 2, 3]))
+@parametrize(kind=["write", "read", "silent"], times=sample([1, 2, 3]))
 async def faults_that_end(dut: Any, kind: str, times: int) -> None:
     """Lose a write, answer with a wrong bit, or give no answer: the entry is sent again until it is right."""
     count: dict[int, int] = {}
@@ -181,7 +181,7 @@ async def faults_that_stay(dut: Any) -> None:
 
 
 @on_bench(Bench, milliseconds=20)
-@cocotb.parametrize(pin=["rst", "restart"])
+@parametrize(pin=["rst", "restart"])
 async def begun_afresh(bench: Bench, pin: str) -> None:
     """Reset or restart at any time: the list begins with its first entry and is completed."""
     chance = random.Random(cocotb.RANDOM_SEED)

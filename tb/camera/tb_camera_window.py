@@ -16,7 +16,7 @@ from tactile_depth.camera.camera_window import FAULTS, LATENCY, Settings, camera
 from tactile_depth.video.frame_guard import Word
 from tb.axis import BREAKS, SILENT, AxisSource, broken, positions, profile, spoiled, video
 from tb.cases import on_bench
-from tb.stream import CLOCK_NS, MANY, REGRESS, parameters
+from tb.stream import CLOCK_NS, MANY, REGRESS, parameters, parametrize
 
 KINDS = [kind for kind in BREAKS if kind not in SILENT]
 STALLS = {"none": ("none", "none"), "gaps": ("random", "none"), "both": ("random", "random")}
@@ -137,7 +137,7 @@ class Bench:
 
 
 @on_bench(Bench, milliseconds=5)
-@cocotb.parametrize(kind=KINDS, stalls=list(STALLS))
+@parametrize(kind=KINDS, stalls=list(STALLS))
 async def broken_pictures(bench: Bench, kind: str, stalls: str) -> None:
     """Send a good picture, a broken one and a good one, for every position of the break; with stalls for a few
     positions."""
@@ -153,7 +153,7 @@ async def broken_pictures(bench: Bench, kind: str, stalls: str) -> None:
 
 
 @on_bench(Bench, milliseconds=5)
-@cocotb.parametrize(stalls=list(STALLS))
+@parametrize(stalls=list(STALLS))
 async def windows_anywhere(bench: Bench) -> None:
     """Change the settings before, at the start of and within pictures; some windows exceed the picture."""
     outside = 0
@@ -192,7 +192,7 @@ async def resets(bench: Bench) -> None:
 
 
 @on_bench(Bench, milliseconds=20)
-@cocotb.parametrize(stalls=list(STALLS))
+@parametrize(stalls=list(STALLS))
 async def random_streams(bench: Bench) -> None:
     """Send random streams: good and broken pictures, several faults in one, stray words, flipped marks."""
     rng, flagged = bench.random, set()

@@ -14,7 +14,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 from tactile_depth.camera.dvp_receive import IDLE, Beat, DvpReceive, Pins, camera_pins
 from tactile_depth.common.td_async_fifo import AsyncFifo
 from tb.axis import AxisMonitor, AxisSink, profile
-from tb.stream import REGRESS, parameters, sample
+from tb.stream import REGRESS, parameters, parametrize, sample
 from tb.two_clocks import RATIOS, run_clock, watch
 
 ROWS, BYTES = 3, 12
@@ -116,7 +116,7 @@ def stalls(first: int, length: int) -> Iterator[bool]:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(ratio=list(RATIOS), accepts=sample(["none", "one_in_4", "random"]))
+@parametrize(ratio=list(RATIOS), accepts=sample(["none", "one_in_4", "random"]))
 async def whole_frames(dut: Any, ratio: str, accepts: str) -> None:
     """Send frames: every byte arrives if the sink is fast enough; otherwise frames are whole, or cut short and
     counted."""
@@ -132,7 +132,7 @@ async def whole_frames(dut: Any, ratio: str, accepts: str) -> None:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(ratio=sample(list(NEARLY)))
+@parametrize(ratio=sample(list(NEARLY)))
 async def frames_lost(dut: Any, ratio: str) -> None:
     """Stall anywhere in a frame: only that frame is lost, it is counted once, and only its beginning leaves."""
     fifo_depth = 1 << parameters(dut, "FifoLog2")[0]
@@ -159,7 +159,7 @@ async def frames_lost(dut: Any, ratio: str) -> None:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(ratio=sample(["equal", "half", "camera_24", "twice"]))
+@parametrize(ratio=sample(["equal", "half", "camera_24", "twice"]))
 async def anything(dut: Any, ratio: str) -> None:
     """Drive the pins at random, with vsync inside a row and for one cycle too; the sink stalls at random."""
     bench = Bench(dut)
@@ -176,7 +176,7 @@ async def anything(dut: Any, ratio: str) -> None:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(count=[2, 5, 254, 255, 300])
+@parametrize(count=[2, 5, 254, 255, 300])
 async def many_lost(dut: Any, count: int) -> None:
     """Send frames that the sink never takes, and count them up to 255."""
     bench = Bench(dut)
@@ -195,7 +195,7 @@ async def many_lost(dut: Any, count: int) -> None:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(clocks=[1, 2, 5])
+@parametrize(clocks=[1, 2, 5])
 async def resets(dut: Any, clocks: int) -> None:
     """Reset at any time in a frame: nothing of it leaves afterwards, and the next frame is whole."""
     bench = Bench(dut)

@@ -12,7 +12,7 @@ from tactile_depth.camera_configuration import CameraConfiguration
 from tb.camera.slots import Slot, Slots, unpacked
 from tb.cases import on_bench
 from tb.settings import RUN
-from tb.stream import MANY, drive
+from tb.stream import MANY, drive, parametrize
 
 OUTPUTS = ["out_valid", "out_samples", "out_colour", "out_row_start", "out_frame_start", "out_abort"]
 Place = tuple[int, int, int, int]  # x, y, width, height
@@ -121,7 +121,7 @@ async def every_code(bench: Bench) -> None:
 
 
 @on_bench(Bench, milliseconds=20)
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.5, 0.0), (0.2, 0.3)]))
+@parametrize((("gap", "pause"), [(0.0, 0.0), (0.5, 0.0), (0.2, 0.3)]))
 async def windows(bench: Bench, gap: float, pause: float) -> None:
     """Send whole and broken pictures with random windows; the picture after a broken one follows at once or later."""
     small = bench.rng.integers(0, 1 << 24, (4, 6))

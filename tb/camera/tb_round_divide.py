@@ -8,11 +8,11 @@ import cocotb
 import numpy as np
 
 from tactile_depth.camera.round_divide import LATENCY, round_divide
-from tb.stream import MANY, drive, parameters
+from tb.stream import MANY, drive, parameters, parametrize
 
 
 @cocotb.test()
-@cocotb.parametrize(pause=[0.0, 0.3])
+@parametrize(pause=[0.0, 0.3])
 async def means(dut: Any, pause: float) -> None:
     total_width, weight_width, drop = parameters(dut, "TotalWidth", "WeightWidth", "Drop")
     chance = random.Random(cocotb.RANDOM_SEED)

@@ -8,13 +8,13 @@ import numpy as np
 
 from tactile_depth.camera.row_sums import LATENCY, red_columns, row_sums
 from tb.camera.slots import Slot, Slots, Window, packed, unpacked
-from tb.stream import drive, extremes, parameters, uniform
+from tb.stream import drive, extremes, parameters, parametrize, uniform
 
 BLOCKS = 8
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.4, 0.0), (0.3, 0.3)]))
+@parametrize((("gap", "pause"), [(0.0, 0.0), (0.4, 0.0), (0.3, 0.3)]))
 async def rows(dut: Any, gap: float, pause: float) -> None:
     numerator, denominator, width, bayer = parameters(dut, "Numerator", "Denominator", "Width", "Bayer")
     window = Window(1, BLOCKS, numerator, denominator)

@@ -11,7 +11,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.common.td_async_fifo import AsyncFifo
 from tb.axis import profile
-from tb.stream import REGRESS, parameters
+from tb.stream import REGRESS, parameters, parametrize
 from tb.two_clocks import RATIOS, run_clock, watch
 
 WORDS = 400 if REGRESS else 150
@@ -81,7 +81,7 @@ def check_edges(events: Any, depth: int) -> None:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(ratio=list(RATIOS), offers=["none", "random"], accepts=["none", "random"])
+@parametrize(ratio=list(RATIOS), offers=["none", "random"], accepts=["none", "random"])
 async def words(dut: Any, ratio: str, offers: str, accepts: str) -> None:
     """Send words at every ratio of the clocks: all leave in order, and every output equals the model at every edge."""
     width, depth_log2 = parameters(dut, "Width", "DepthLog2")

@@ -11,7 +11,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.common.td_axis_skid import AxisSkid
 from tb.axis import PROFILES, AxisMonitor, AxisSink, AxisSource, profile
-from tb.stream import CLOCK_NS, REGRESS, parameters, sample
+from tb.stream import CLOCK_NS, REGRESS, parameters, parametrize, sample
 
 WORDS = 600 if REGRESS else 200
 FIELDS = ("data",)
@@ -60,7 +60,7 @@ def random_words(dut: Any, count: int) -> list[Any]:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize(offers=list(PROFILES), accepts=list(PROFILES))
+@parametrize(offers=list(PROFILES), accepts=list(PROFILES))
 async def words(dut: Any, offers: str, accepts: str) -> None:
     """Send words: all leave in order, at full rate each one cycle after it entered."""
     source, taken, left = await start(dut, offers, accepts)
@@ -76,7 +76,7 @@ async def words(dut: Any, offers: str, accepts: str) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize(accepts=["none", "alternate", "long"], clocks=sample([1, 2, 5]))
+@parametrize(accepts=["none", "alternate", "long"], clocks=sample([1, 2, 5]))
 async def resets(dut: Any, accepts: Any, clocks: int) -> None:
     """Reset in every phase: no word from before the reset leaves, and none from after it is lost."""
     source, taken, left = await start(dut, "none", accepts)

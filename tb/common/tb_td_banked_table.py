@@ -11,7 +11,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.common.td_banked_table import BankedTable
-from tb.stream import CLOCK_NS, parameters
+from tb.stream import CLOCK_NS, parameters, parametrize
 
 CLOCKS = 6000
 
@@ -111,7 +111,7 @@ class Bench:
 
 
 @cocotb.test()
-@cocotb.parametrize(pause=[0.0, 0.5])
+@parametrize(pause=[0.0, 0.5])
 async def frames_and_bus(dut: Any, pause: float) -> None:
     """Read in frames while both ports of the free bank are in use; reset from time to time."""
     bench = Bench(dut, pause)

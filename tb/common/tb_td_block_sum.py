@@ -11,7 +11,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.common.td_block_sum import CYCLES_TO_SUM, block_sum
-from tb.stream import CLOCK_NS, MANY, parameters
+from tb.stream import CLOCK_NS, MANY, parameters, parametrize
 
 NAMES = ("Rows", "Columns", "BlockLog2", "ColumnLog2", "Channels", "Width", "Signed", "SumWidth")
 
@@ -115,7 +115,7 @@ class Device:
 
 
 @cocotb.test()
-@cocotb.parametrize(gap=[0.0, 0.3])
+@parametrize(gap=[0.0, 0.3])
 async def sums(dut: Any, gap: float) -> None:
     """Capture one frame and several, one capture after another, and send frames after the last one."""
     device = Device(dut, gap)

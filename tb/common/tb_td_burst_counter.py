@@ -7,7 +7,7 @@ from typing import Any
 import cocotb
 
 from tactile_depth.common.td_burst_counter import burst_counter
-from tb.stream import drive, parameters
+from tb.stream import drive, parameters, parametrize
 
 
 def starts(words: int, chance: random.Random) -> list[Any]:
@@ -31,6 +31,6 @@ async def check(dut: Any, pause: float, before: int) -> None:
 
 
 @cocotb.test()
-@cocotb.parametrize(pause=[0.0, 0.3], before=[0, 2])
+@parametrize(pause=[0.0, 0.3], before=[0, 2])
 async def positions(dut: Any, pause: float, before: int) -> None:
     await check(dut, pause, before)

@@ -7,11 +7,11 @@ from typing import Any
 import cocotb
 
 from tactile_depth.common.td_delay_line import delay_line
-from tb.stream import drive, parameters
+from tb.stream import drive, parameters, parametrize
 
 
 @cocotb.test()
-@cocotb.parametrize(pause=[0.0, 0.3], before=[0, 7])
+@parametrize(pause=[0.0, 0.3], before=[0, 7])
 async def shift(dut: Any, pause: float, before: Any) -> None:
     width, delay = parameters(dut, "Width", "Delay")
     chance = random.Random(cocotb.RANDOM_SEED)

@@ -9,13 +9,13 @@ import cocotb
 import numpy as np
 
 from tactile_depth.common.td_dot_product import LATENCY, dot_product
-from tb.stream import drive, parameters
+from tb.stream import drive, parameters, parametrize
 
 FACTORS = ("a0", "b0", "a1", "b1")
 
 
 @cocotb.test()
-@cocotb.parametrize(pause=[0.0, 0.3])
+@parametrize(pause=[0.0, 0.3])
 async def products(dut: Any, pause: float) -> None:
     widths = parameters(dut, "AWidth", "BWidth") * 2
     chance = random.Random(cocotb.RANDOM_SEED)

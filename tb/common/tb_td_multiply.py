@@ -9,11 +9,11 @@ import cocotb
 import numpy as np
 
 from tactile_depth.common.td_multiply import LATENCY, multiply
-from tb.stream import drive, parameters
+from tb.stream import drive, parameters, parametrize
 
 
 @cocotb.test()
-@cocotb.parametrize(pause=[0.0, 0.3])
+@parametrize(pause=[0.0, 0.3])
 async def products(dut: Any, pause: float) -> None:
     chance = random.Random(cocotb.RANDOM_SEED)
     limits = [(-(1 << (width - 1)), (1 << (width - 1)) - 1) for width in parameters(dut, "AWidth", "BWidth")]

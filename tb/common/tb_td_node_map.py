@@ -10,7 +10,18 @@ from tactile_depth.common.td_node_map import latency, node_map, side
 from tb.cases import on_bench
 from tb.depth_frames import packed
 from tb.nodes import Grid, Nodes, reads_as_a_pause_ends, watch_active
-from tb.stream import REGRESS, Bench, StreamDriver, StreamMonitor, check_words, parameters, places, sample, send_apart
+from tb.stream import (
+    REGRESS,
+    Bench,
+    StreamDriver,
+    StreamMonitor,
+    check_words,
+    parameters,
+    parametrize,
+    places,
+    sample,
+    send_apart,
+)
 
 BEATS = 1024  # that a test sends, at least
 
@@ -81,7 +92,7 @@ async def at_power_up(dut: Any) -> None:
 
 
 @on_bench(Map, milliseconds=60)
-@cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
+@parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
 async def frames_while_the_bus_rewrites(device: Map) -> None:
     """Rewrite nodes while frames stream: the frame before a change-over has the old words, the frame after it the
     new."""
@@ -103,7 +114,7 @@ async def read_as_a_pause_ends(device: Map) -> None:
 
 
 @on_bench(Map, milliseconds=20)
-@cocotb.parametrize(pause=[0.0, 0.3])
+@parametrize(pause=[0.0, 0.3])
 async def named_inside_a_frame(device: Map) -> None:
     """Select the other bank at any beat of a frame: the next frame uses it."""
     stride = device.row + 1 if REGRESS or len(device.beats) < 500 else len(device.beats) // 8

@@ -9,11 +9,11 @@ import cocotb
 import numpy as np
 
 from tactile_depth.common.td_ramp import latency, ramp
-from tb.stream import drive, parameters
+from tb.stream import drive, parameters, parametrize
 
 
 @cocotb.test()
-@cocotb.parametrize(pause=[0.0, 0.3])
+@parametrize(pause=[0.0, 0.3])
 async def ramps(dut: Any, pause: float) -> None:
     chance = random.Random(cocotb.RANDOM_SEED)
     width, step_width, count = parameters(dut, "Width", "StepWidth", "Count")

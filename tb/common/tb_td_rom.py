@@ -8,11 +8,11 @@ from typing import Any
 import cocotb
 
 from tactile_depth.common.td_rom import LATENCY, rom
-from tb.stream import drive, parameters
+from tb.stream import drive, parameters, parametrize
 
 
 @cocotb.test()
-@cocotb.parametrize(pause=[0.0, 0.3])
+@parametrize(pause=[0.0, 0.3])
 async def every_word(dut: Any, pause: float) -> None:
     (depth,) = parameters(dut, "Depth")
     words = [int(line, 16) for line in Path("rom.hex").read_text().split()]

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import cocotb
 
 from tactile_depth.contact.contact_debounce import BEGAN, ENDED, TOUCHING, ContactDebounce
-from tb.stream import REGRESS, drive, parameters
+from tb.stream import REGRESS, drive, parameters, parametrize
 
 
 class Frame(NamedTuple):
@@ -72,7 +72,7 @@ async def random_frames(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-@cocotb.parametrize(debounce=[0, 1, 2, 5, 255 if REGRESS else 20])
+@parametrize(debounce=[0, 1, 2, 5, 255 if REGRESS else 20])
 async def debounce(dut: Any, debounce: int) -> None:
     """Begin and end contact with exactly `debounce` frames in a row; one frame less has no effect, and another frame
     restarts the count."""

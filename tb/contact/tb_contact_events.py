@@ -13,7 +13,7 @@ from tactile_depth.contact.record_packets import RecordPackets
 from tb.axis import profile
 from tb.cases import on_bench
 from tb.contact.depth_bench import WORD_HIGH, DepthBench
-from tb.stream import REGRESS
+from tb.stream import REGRESS, parametrize
 
 FRAMES = {0.0: 1000, 0.1: 1000} if REGRESS else {0.0: 300, 0.1: 100}  # by the probability of a gap
 
@@ -188,7 +188,7 @@ def random_settings(bench: Any, rng: Any, depth: np.ndarray) -> Any:
 
 
 @on_bench(Bench, milliseconds=100)
-@cocotb.parametrize(gap=[0.0, 0.1])
+@parametrize(gap=[0.0, 0.1])
 async def random_frames(bench: Bench, gap: float) -> None:
     """Send random maps, back to back or with gaps: every field of every record equals numpy on the map."""
     rng = np.random.default_rng(cocotb.RANDOM_SEED)

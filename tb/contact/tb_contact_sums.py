@@ -10,7 +10,7 @@ from cocotb.triggers import RisingEdge
 from tactile_depth.contact.contact_sums import ContactSums, Sums, cycles_to_sums
 from tb.cases import on_bench
 from tb.contact.depth_bench import DepthBench
-from tb.stream import REGRESS
+from tb.stream import REGRESS, parametrize
 
 FRAMES = 1000 if REGRESS else 200
 # Lowest bit and bits of the fields of contact_sums_t: least row and column, greatest row and column, moments, weight
@@ -69,7 +69,7 @@ class Bench(DepthBench):
 
 
 @on_bench(Bench, milliseconds=100)
-@cocotb.parametrize(gap=[0.0, 0.1])
+@parametrize(gap=[0.0, 0.1])
 async def random_frames(bench: Bench) -> None:
     """Send maps of every kind, back to back or with gaps, with a threshold near their values."""
     rng = np.random.default_rng(cocotb.RANDOM_SEED)

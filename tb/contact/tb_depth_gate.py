@@ -12,7 +12,7 @@ from cocotb.triggers import RisingEdge
 from tactile_depth.contact.depth_gate import DepthGate, Word
 from tb.axis import PROFILES, AxisMonitor, profile
 from tb.cases import on_bench
-from tb.stream import CLOCK_NS, depth_position, parameters
+from tb.stream import CLOCK_NS, depth_position, parameters, parametrize
 
 ROWS, COLUMNS = 3, 5
 FIELDS = ("data", "position")
@@ -147,7 +147,7 @@ class Bench:
 
 
 @on_bench(Bench)
-@cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
+@parametrize(accepts=list(PROFILES), gap=[0, 6])
 async def waiting(bench: Bench, accepts: str, gap: int) -> None:
     """Stall with drop_frames at 0: no word is lost, and each is tapped in the cycle in which it leaves."""
     for _ in range(15):
@@ -161,7 +161,7 @@ async def waiting(bench: Bench, accepts: str, gap: int) -> None:
 
 
 @on_bench(Bench)
-@cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
+@parametrize(accepts=list(PROFILES), gap=[0, 6])
 async def dropping(bench: Bench, accepts: str, gap: int) -> None:
     """Stall with drop_frames at 1: the pipeline never waits, and each word is tapped one cycle after it entered."""
     bench.drop_frames = True
@@ -187,7 +187,7 @@ async def dropping(bench: Bench, accepts: str, gap: int) -> None:
 
 
 @on_bench(Bench)
-@cocotb.parametrize(stands=[0, 1, 2], gap=[0, 1, 2, 3, 4])
+@parametrize(stands=[0, 1, 2], gap=[0, 1, 2, 3, 4])
 async def words_left_standing(bench: Bench, stands: Any, gap: Any) -> None:
     """Change drop_frames while words are in the gate: each of them is tapped once, in order."""
     total = ROWS * COLUMNS
@@ -221,7 +221,7 @@ def remaining_words(bench: Any, total: int, stands: int) -> Any:
 
 
 @on_bench(Bench, milliseconds=10)
-@cocotb.parametrize(accepts=list(PROFILES))
+@parametrize(accepts=list(PROFILES))
 async def changes_at_random(bench: Bench, accepts: str) -> None:
     """Change the bit in random cycles: a frame keeps the value with which it began."""
 
@@ -242,7 +242,7 @@ async def changes_at_random(bench: Bench, accepts: str) -> None:
 
 
 @on_bench(Bench, milliseconds=10)
-@cocotb.parametrize(drop_frames=[False, True])
+@parametrize(drop_frames=[False, True])
 async def resets(bench: Bench, drop_frames: Any) -> None:
     """Reset in any cycle of a stalled frame: nothing of it leaves."""
     bench.drop_frames = drop_frames

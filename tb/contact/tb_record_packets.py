@@ -8,7 +8,7 @@ import cocotb
 
 from tactile_depth.contact.record_packets import RecordPackets
 from tb.axis import PROFILES, profile
-from tb.stream import drive, parameters
+from tb.stream import drive, parameters, parametrize
 
 PROFILES["rarely"] = lambda rng: (rng.random() < 0.05 for _ in iter(int, 1))
 PROFILES["never"] = lambda rng: iter(lambda: False, True)
@@ -28,7 +28,7 @@ def stimuli(words: int, accepts: str, chance: random.Random) -> list[dict[str, i
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(accepts=[*PROFILES])
+@parametrize(accepts=[*PROFILES])
 async def packets(dut: Any, accepts: str) -> None:
     """Receive whole packets in order; with a slow sink as many are missing as record_lost counts."""
     (words,) = parameters(dut, "Words")

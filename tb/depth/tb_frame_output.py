@@ -11,7 +11,7 @@ from cocotb.triggers import RisingEdge
 
 from tactile_depth.depth.frame_output import Clock, frame_output
 from tb.cases import on_bench
-from tb.stream import CLOCK_NS, depth_position, parameters
+from tb.stream import CLOCK_NS, depth_position, parameters, parametrize
 
 
 class Bench:
@@ -89,7 +89,7 @@ class Bench:
 
 
 @on_bench(Bench)
-@cocotb.parametrize(gap=[0, 7], pause=[0.0, 0.4])
+@parametrize(gap=[0, 7], pause=[0.0, 0.4])
 async def frames(bench: Bench, gap: int) -> None:
     """Send frames: those marked bad do not leave, the others do, and out_of_step stays low."""
     marks = [0, 1, 0, 0, 1, 1, 0, *(bench.random.randint(0, 1) for _ in range(6))]
@@ -131,7 +131,7 @@ async def whatever_comes(bench: Bench) -> None:
 
 
 @on_bench(Bench)
-@cocotb.parametrize(bad=[False, True])
+@parametrize(bad=[False, True])
 async def resets(bench: Bench, bad: Any) -> None:
     """Reset in any row of a frame: nothing of the frame leaves afterwards."""
     for row in range(1, bench.rows + 1):

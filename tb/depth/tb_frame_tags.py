@@ -11,7 +11,7 @@ from cocotb.triggers import RisingEdge
 
 from tactile_depth.depth.frame_tags import FrameTags
 from tb.cases import on_bench
-from tb.stream import CLOCK_NS, parameters
+from tb.stream import CLOCK_NS, parameters, parametrize
 
 
 class Bench:
@@ -54,13 +54,13 @@ class Bench:
 
 
 @on_bench(Bench)
-@cocotb.parametrize(pause=[0.0, 0.4])
+@parametrize(pause=[0.0, 0.4])
 async def frames_as_close_as_they_can_be(bench: Bench, pause: float) -> None:
     await bench.frames(30, lambda: bench.pixels, pause)
 
 
 @on_bench(Bench)
-@cocotb.parametrize(reset=[0.0, 0.01])
+@parametrize(reset=[0.0, 0.01])
 async def frames_apart(bench: Bench, reset: Any) -> None:
     """Send frames at each distance, from the closest until the one before has left; then at random."""
     distances = iter(range(bench.pixels, bench.model.latency + bench.pixels + 2))

@@ -15,7 +15,7 @@ from tb.cases import on_bench
 from tb.common.capture_bench import request, request_after
 from tb.depth_frames import DepthDriver, depth_words, packed, random_depths
 from tb.nodes import Grid
-from tb.stream import REGRESS, Bench, parameters, sample
+from tb.stream import REGRESS, Bench, parameters, parametrize, sample
 
 WORDS = 2048  # that a test sends, about
 
@@ -133,9 +133,7 @@ class Capture:
 
 
 @on_bench(Capture, milliseconds=100)
-@cocotb.parametrize(
-    (("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.5), (0.6, 0.0), (0.3, 0.3)])), ("log2", sample([0, 1, 3]))
-)
+@parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.5), (0.6, 0.0), (0.3, 0.3)])), ("log2", sample([0, 1, 3])))
 async def captures(device: Capture, gap: float, log2: int) -> None:
     """Capture frames in a row; earlier frames do not count."""
     await device.send()
@@ -148,7 +146,7 @@ async def captures(device: Capture, gap: float, log2: int) -> None:
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-@cocotb.parametrize(high=[False, True])
+@parametrize(high=[False, True])
 async def most_frames(dut: Any, high: bool) -> None:
     """Ask for more frames than fit the sum, all at one end of the range, while the exponent changes."""
     device = Capture(dut, 0.0, 0.0)
@@ -176,7 +174,7 @@ async def depths_of_all_kinds(device: Capture) -> None:
 
 
 @on_bench(Capture, milliseconds=200)
-@cocotb.parametrize(pause=[0.0, 0.4])
+@parametrize(pause=[0.0, 0.4])
 async def requests_at_any_time(device: Capture) -> None:
     """Request a capture while idle, armed, summing and writing, and in the cycles of a frame's first word, its last
     word and done."""

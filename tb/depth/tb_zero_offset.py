@@ -19,7 +19,7 @@ from tactile_depth.registers.register_map import TABLES
 from tb.cases import on_bench
 from tb.depth_frames import DepthDriver, depth_words, packed, random_depths
 from tb.nodes import Grid, Nodes
-from tb.stream import Bench, depth_position, parameters, places, sample
+from tb.stream import Bench, depth_position, parameters, parametrize, places, sample
 
 WORDS = 2048  # that a test sends, at least
 
@@ -157,7 +157,7 @@ async def at_power_up(dut: Any) -> None:
 
 
 @on_bench(Zero, milliseconds=60)
-@cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
+@parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
 async def frames_while_the_bus_rewrites(device: Zero) -> None:
     """Rewrite the zero offset while frames stream: the frame before a change-over has the old one, the frame after it
     the new."""

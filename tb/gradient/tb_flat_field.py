@@ -16,7 +16,18 @@ from tactile_depth.registers.register_map import TABLES
 from tb.cases import on_bench
 from tb.nodes import Grid, Nodes, reads_as_a_pause_ends
 from tb.pixels import pack
-from tb.stream import MANY, Bench, StreamDriver, StreamMonitor, check_words, parameters, raster, sample, send_apart
+from tb.stream import (
+    MANY,
+    Bench,
+    StreamDriver,
+    StreamMonitor,
+    check_words,
+    parameters,
+    parametrize,
+    raster,
+    sample,
+    send_apart,
+)
 
 PIXELS = 2048  # that a test sends, at least
 PIXEL = ["pixel", "position"]
@@ -143,7 +154,7 @@ async def at_power_up(dut: Any) -> None:
 
 
 @on_bench(Field, milliseconds=60)
-@cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
+@parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
 async def frames_while_the_bus_rewrites(device: Field) -> None:
     await device.gains.write(device.gains.random(device.bench.random))
     device.gains.due = True

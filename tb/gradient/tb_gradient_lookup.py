@@ -16,7 +16,7 @@ from tactile_depth.gradient.gradient_lookup import LATENCY, gradient_codes, grad
 from tactile_depth.registers.register_map import TABLES
 from tb.cases import on_bench
 from tb.pixels import pack, unpack
-from tb.stream import Bench, StreamDriver, StreamMonitor, configuration, parameters, send_apart, uniform
+from tb.stream import Bench, StreamDriver, StreamMonitor, configuration, parameters, parametrize, send_apart, uniform
 from tb.table_bus import READ_CLOCKS, TableBus, signed
 
 PIXEL = ["pixel", "position"]
@@ -150,7 +150,7 @@ class Lookup:
         self.expected.clear()
 
 
-TRAFFIC = cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
+TRAFFIC = parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
 
 
 @on_bench(Lookup, milliseconds=20)

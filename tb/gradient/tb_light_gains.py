@@ -14,7 +14,18 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.fixed_point import Format
 from tactile_depth.gradient.light_gains import LATENCY, RATES, Light
 from tb.cases import on_bench
-from tb.stream import MANY, Bench, StreamDriver, StreamMonitor, check_words, parameters, raster, sample, send_apart
+from tb.stream import (
+    MANY,
+    Bench,
+    StreamDriver,
+    StreamMonitor,
+    check_words,
+    parameters,
+    parametrize,
+    raster,
+    sample,
+    send_apart,
+)
 
 RATIOS = ["red", "green", "blue", "position"]
 WIDTHS = ["Rows", "Columns", "RatioWidth", "RatioFraction", "GainWidth", "OutWidth", "OutFraction"]
@@ -127,7 +138,7 @@ class Gains:
         self.used, self.monitor = [], Monitor()
 
 
-TRAFFIC = cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.5, 0.5)])))
+TRAFFIC = parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.5, 0.5)])))
 
 
 @on_bench(Gains, milliseconds=60)

@@ -16,7 +16,7 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.gradient.polynomial_gradient import LATENCY, coefficients, slope_codes
 from tactile_depth.registers.register_map import TABLES
 from tb.cases import on_bench
-from tb.stream import Bench, StreamDriver, StreamMonitor, parameters, send_apart
+from tb.stream import Bench, StreamDriver, StreamMonitor, parameters, parametrize, send_apart
 from tb.table_bus import READ_CLOCKS, TableBus, signed
 
 COLOURS = ["red", "green", "blue"]
@@ -240,7 +240,7 @@ def corners_of(random: Any, count: int, width: int) -> Any:
     return np.array([random.choice((*6 * [low, high], -1, 0)) for _ in range(count)])
 
 
-TRAFFIC = cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
+TRAFFIC = parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
 
 
 @on_bench(Gradient, milliseconds=20)

@@ -15,7 +15,7 @@ from tactile_depth.gradient.reference_capture import reference_capture, referenc
 from tb.cases import on_bench
 from tb.common.capture_bench import request, request_after
 from tb.pixels import pack
-from tb.stream import REGRESS, Bench, StreamDriver, configuration, parameters, raster, sample, send_apart
+from tb.stream import REGRESS, Bench, StreamDriver, configuration, parameters, parametrize, raster, sample, send_apart
 
 PIXELS = 512  # that a test sends, about
 SUM_CLOCKS = CYCLES_TO_SUM + 1  # from a pixel to its sum in the memory
@@ -176,7 +176,7 @@ class Capture:
 
 
 @on_bench(Capture, milliseconds=100)
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]), ("log2", sample([0, 3, 1])))
+@parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]), ("log2", sample([0, 3, 1])))
 async def captures(device: Capture, gap: float, log2: int) -> None:
     """Capture frames in a row, with and without broken ones between."""
     await device.send()
@@ -224,7 +224,7 @@ async def any_sum(dut: Any) -> None:
 
 
 @on_bench(Capture, milliseconds=200)
-@cocotb.parametrize(pause=[0.0, 0.4])
+@parametrize(pause=[0.0, 0.4])
 async def requests_at_any_time(device: Capture) -> None:
     """Request a capture while idle, armed, summing and dividing, and in the cycles of a frame's first pixel, its last
     pixel and done."""

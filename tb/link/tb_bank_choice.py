@@ -7,7 +7,7 @@ from typing import Any
 import cocotb
 
 from tactile_depth.link.bank_choice import BankChoice, Seen
-from tb.stream import drive
+from tb.stream import drive, parametrize
 
 CLOCKS = 1500
 
@@ -39,7 +39,7 @@ def stimuli(writes: float, publishes: float, reads: float, chance: random.Random
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
-@cocotb.parametrize(writes=[0.1, 0.5, 1.0], publishes=[0.1, 0.6], reads=[0.03, 0.3, 1.0])
+@parametrize(writes=[0.1, 0.5, 1.0], publishes=[0.1, 0.6], reads=[0.03, 0.3, 1.0])
 async def banks(dut: Any, writes: float, publishes: float, reads: float) -> None:
     """Compare every output; the write bank counts inside a frame, the read bank while it is read."""
     clocks = stimuli(writes, publishes, reads, random.Random(cocotb.RANDOM_SEED))

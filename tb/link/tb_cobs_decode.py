@@ -8,7 +8,7 @@ import cocotb
 
 from tactile_depth.link.cobs_decode import LONGEST_PIECE, CobsDecode, Decoded
 from tactile_depth.link.framing import RUN, cobs_encode
-from tb.stream import drive, parameters
+from tb.stream import drive, parameters, parametrize
 
 LENGTHS = (*range(8), 16, RUN - 1, RUN, RUN + 1, 2 * RUN, 2 * RUN + 1)  # of data
 BROKEN = -1
@@ -82,7 +82,7 @@ KINDS = ("whole", "whole", "whole", "empty", "changed", "cut", "extra", "broken"
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(gap=[0.0, 0.4], resets=[0.0, 0.01])
+@parametrize(gap=[0.0, 0.4], resets=[0.0, 0.01])
 async def pieces(dut: Any, gap: float, resets: float) -> None:
     """Decode good and bad pieces in any order, the first of them before a delimiter."""
     (longest,) = parameters(dut, "Longest")

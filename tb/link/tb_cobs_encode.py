@@ -9,7 +9,7 @@ import cocotb
 from tactile_depth.link.framing import DELIMITER, RUN, cobs_encode
 from tb.cases import on_bench
 from tb.link.byte_packets import BYTE, STREAMS, Bench, random_packet, words
-from tb.stream import MANY, REGRESS, parameters
+from tb.stream import MANY, REGRESS, parameters, parametrize
 
 
 def on_line(packet: bytes, run: int) -> bytes:
@@ -44,7 +44,7 @@ async def check(bench: Bench, sent: Iterable[bytes]) -> None:
 
 
 @on_bench(Bench, milliseconds=20, out_fields=BYTE)
-@cocotb.parametrize((("offers", "accepts"), STREAMS))
+@parametrize((("offers", "accepts"), STREAMS))
 async def packets(bench: Bench, offers: str, accepts: str) -> None:
     """Send packets at the limits of a run, and random ones; long runs are shared out over the streams."""
     (run,) = parameters(bench.dut, "Run")
@@ -66,7 +66,7 @@ async def time_of_a_piece(bench: Bench) -> None:
 
 
 @on_bench(Bench, milliseconds=20, out_fields=BYTE)
-@cocotb.parametrize(accepts=["none", "alternate"])
+@parametrize(accepts=["none", "alternate"])
 async def resets(bench: Bench) -> None:
     """Reset in every phase of a packet: nothing of it is left, and the next one is right."""
     packet = b"\1\2\0\3\0"

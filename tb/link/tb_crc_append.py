@@ -9,7 +9,7 @@ import cocotb
 from tactile_depth.link.framing import CRC_BYTES
 from tb.cases import on_bench
 from tb.link.byte_packets import STREAMS, Bench, random_packet, words
-from tb.stream import MANY
+from tb.stream import MANY, parametrize
 
 
 def with_crc(packet: bytes) -> bytes:
@@ -25,7 +25,7 @@ async def check(bench: Bench, sent: Sequence[bytes]) -> None:
 
 
 @on_bench(Bench, milliseconds=2)
-@cocotb.parametrize((("offers", "accepts"), STREAMS))
+@parametrize((("offers", "accepts"), STREAMS))
 async def packets(bench: Bench) -> None:
     """Send the text that defines the CRC, short packets, and random ones."""
     sent = [b"123456789", b"\0", b"\0\0\0\0", b"\xff" * 4]
@@ -43,7 +43,7 @@ async def time(bench: Bench) -> None:
 
 
 @on_bench(Bench)
-@cocotb.parametrize(accepts=["none", "alternate"])
+@parametrize(accepts=["none", "alternate"])
 async def resets(bench: Bench) -> None:
     """Reset in every phase of a packet: nothing of it is left, and the next one has its own CRC."""
     packet = b"\1\2\0\3"

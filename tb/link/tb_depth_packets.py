@@ -20,7 +20,7 @@ from tactile_depth.link.depth_formats import DepthFormat, sent_shape, to_bytes, 
 from tactile_depth.link.packets import LARGEST_SHIFT, Depth, Trailer
 from tb.axis import PROFILES, profile
 from tb.cases import on_bench
-from tb.stream import CLOCK_NS, MANY, parameters
+from tb.stream import CLOCK_NS, MANY, parameters, parametrize
 
 FORMATS = (DepthFormat.WORDS, DepthFormat.SHORT, DepthFormat.AVERAGED)
 LONGEST_SILENCE = 8  # clocks
@@ -165,7 +165,7 @@ class Bench:
 
 
 @on_bench(Bench, milliseconds=20)
-@cocotb.parametrize(accepts=[*PROFILES])
+@parametrize(accepts=[*PROFILES])
 async def frames(bench: Bench) -> None:
     """Send frames of every format with several shifts."""
     for depth_format in FORMATS:

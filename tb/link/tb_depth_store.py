@@ -12,7 +12,7 @@ import cocotb
 
 from tactile_depth.contact.contact_events import WORDS
 from tactile_depth.link.bank_choice import BankChoice
-from tb.stream import MANY, drive, parameters
+from tb.stream import MANY, drive, parameters, parametrize
 
 Pins = dict[str, int]
 LATENCY = 2  # clocks from value_read to the value
@@ -136,7 +136,7 @@ class Play:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(write_pause=[0.0, 0.6], read_pause=[0.0, 0.5, 0.95])
+@parametrize(write_pause=[0.0, 0.6], read_pause=[0.0, 0.5, 0.95])
 async def frames(dut: Any, write_pause: float, read_pause: float) -> None:
     """Compare every value and word, which frame waits, and which is lost."""
     rows, columns, width, lanes = parameters(dut, "Rows", "Columns", "DataWidth", "Lanes")

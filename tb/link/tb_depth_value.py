@@ -9,7 +9,7 @@ import numpy as np
 
 from tactile_depth.link.depth_formats import DepthFormat, to_bytes
 from tactile_depth.link.packets import LARGEST_SHIFT
-from tb.stream import MANY, drive, parameters
+from tb.stream import MANY, drive, parameters, parametrize
 
 LATENCY = 3
 
@@ -35,7 +35,7 @@ def codes_of(width: int, shift: int, count: int, chance: random.Random) -> list[
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(average=[False, True])
+@parametrize(average=[False, True])
 async def values(dut: Any, average: bool) -> None:
     """Send values of every shift, with gaps between their codes; between values the code is random."""
     (width,) = parameters(dut, "DataWidth")

@@ -20,7 +20,7 @@ from tactile_depth.link.depth_formats import DepthFormat, exact_shift
 from tactile_depth.link.device import Build, LinkDevice
 from tactile_depth.link.framing import to_line
 from tb.link.axil_slave import AxilSlave, Registers
-from tb.stream import CLOCK_NS, MANY, parameters
+from tb.stream import CLOCK_NS, MANY, parameters, parametrize
 
 QUIET_CLOCKS = 300  # without a byte; a byte too many that comes later differs in the next comparison
 LAST_CLOCKS = 2000  # the same behind the last comparison: more than a packet of depth takes until its first byte
@@ -217,7 +217,7 @@ class Board:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(stalls=[0.0, 0.4])
+@parametrize(stalls=[0.0, 0.4])
 async def one_after_another(dut: Any, stalls: float) -> None:
     """Compare each answer: requests, damaged ones, selections, frames in each format, resets."""
     board = Board(dut, stalls)
@@ -243,7 +243,7 @@ async def one_after_another(dut: Any, stalls: float) -> None:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(stalls=[0.0, 0.4])
+@parametrize(stalls=[0.0, 0.4])
 async def pictures(dut: Any, stalls: float) -> None:
     """Compare pixels: whole pictures, such that lack a packet, begin again, or repeat a packet."""
     board = Board(dut, stalls)

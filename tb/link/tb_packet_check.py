@@ -9,7 +9,7 @@ import cocotb
 
 from tactile_depth.link.framing import CRC_BYTES
 from tactile_depth.link.packet_check import Checked, PacketCheck
-from tb.stream import drive
+from tb.stream import drive, parametrize
 
 POLYNOMIAL = 0xEDB88320
 
@@ -89,7 +89,7 @@ async def compare(dut: Any, inputs: list[dict[str, int]]) -> list[bool]:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(gap=[0.0, 0.4], resets=[0.0, 0.01])
+@parametrize(gap=[0.0, 0.4], resets=[0.0, 0.01])
 async def packets(dut: Any, gap: float, resets: float) -> None:
     """Check packets that follow each other at once, or with gaps."""
     chance = random.Random(cocotb.RANDOM_SEED)

@@ -12,7 +12,7 @@ from tactile_depth.link.framing import LONGEST_BODY
 from tactile_depth.link.packets import SELECT, TO_DEVICE, Ask, Kind, Picture, Read, Select, Write, unpack
 from tb.axis import profile
 from tb.cases import on_bench
-from tb.stream import CLOCK_NS
+from tb.stream import CLOCK_NS, parametrize
 
 LENGTHS = {  # of kind and fields: about the limits, and near each power of two
     Kind.ASK: (1, 2, 3),
@@ -148,7 +148,7 @@ def body(kind: int, length: int, chance: random.Random) -> bytes:
 
 
 @on_bench(Bench, resets=0.0)
-@cocotb.parametrize(offers=["none", "random"], accepts=["none", "random"])
+@parametrize(offers=["none", "random"], accepts=["none", "random"])
 async def lengths(bench: Bench) -> None:
     """Give packets of every kind, with lengths about the limits, in any order."""
     packets = [body(kind, length, bench.random) for kind, some in LENGTHS.items() for length in some]

@@ -11,7 +11,7 @@ from tactile_depth.link.packet_mux import DEPTH, RECORD, SOURCES, PacketMux
 from tb.cases import on_bench
 from tb.link.byte_packets import STREAMS, Bench, random_packet, words
 from tb.link.byte_packets import packets as packets_of
-from tb.stream import MANY, at_every_edge, drive
+from tb.stream import MANY, at_every_edge, drive, parametrize
 
 PINS = [f"{name}_{pin}" for pin in ("valid", "data", "last") for name in SOURCES]
 OUTPUTS = ["out_valid", "out_data", "out_last", *(f"{name}_ready" for name in SOURCES)]
@@ -73,7 +73,7 @@ def numbered(bench: Bench, count: int) -> dict[str, list[bytes]]:
 
 
 @on_bench(MuxBench)
-@cocotb.parametrize((("offers", "accepts"), STREAMS), ("apart", [False, True]))
+@parametrize((("offers", "accepts"), STREAMS), ("apart", [False, True]))
 async def packets(bench: MuxBench, apart: bool) -> None:
     """Send packets on all streams: each stream's leave whole and in order."""
     sent = numbered(bench, 4 * MANY)

@@ -10,7 +10,7 @@ import cocotb
 from tactile_depth.link.framing import LONGEST_BODY
 from tactile_depth.link.packet_store import PacketStore
 from tb.axis import PROFILES, profile
-from tb.stream import drive, parameters, sample
+from tb.stream import drive, parameters, parametrize, sample
 
 PROFILES["rarely"] = lambda rng: (rng.random() < 0.05 for _ in iter(int, 1))
 PROFILES["bursts"] = lambda rng: iter(bursts(rng).__next__, None)
@@ -105,7 +105,7 @@ async def compare(dut: Any, bank: int, inputs: list[dict[str, int]]) -> Check:
 
 
 @cocotb.test(timeout_time=40, timeout_unit="ms")
-@cocotb.parametrize(accepts=sample(["none", "random", "bursts", "rarely"]), gap=[0.0, 0.5], resets=[0.0, 0.003])
+@parametrize(accepts=sample(["none", "random", "bursts", "rarely"]), gap=[0.0, 0.5], resets=[0.0, 0.003])
 async def packets(dut: Any, accepts: str, gap: float, resets: float) -> None:
     """Store packets, whether there is room or not, and read all of each, or a part."""
     (bank,) = parameters(dut, "BankBytes")

@@ -15,7 +15,7 @@ from tactile_depth.link.framing import to_line
 from tactile_depth.link.packets import MOST_PIXELS, Picture
 from tb.axis import AxisMonitor, AxisSink, AxisSource, profile
 from tb.cases import on_bench
-from tb.stream import CLOCK_NS, MANY, parameters
+from tb.stream import CLOCK_NS, MANY, parameters, parametrize
 
 LONGEST = 5_000  # clocks until all pixels have left
 
@@ -88,7 +88,7 @@ def with_a_bit_changed(packet: Picture, field: str, bit: int) -> Picture:
 
 
 @on_bench(Bench, milliseconds=0.6)
-@cocotb.parametrize(stalls=["none", "random", "alternate", "one_in_4"])
+@parametrize(stalls=["none", "random", "alternate", "one_in_4"])
 async def pictures(bench: Bench, stalls: str) -> None:
     """Send pictures of which packets are lost, come twice, or have a wrong bit in their header, and whole ones."""
     size = bench.size

@@ -10,7 +10,7 @@ import cocotb
 from tactile_depth.contact.contact_events import WORDS, record
 from tactile_depth.link.packets import RECORD, RecordPacket
 from tb.axis import PROFILES, profile
-from tb.stream import drive
+from tb.stream import drive, parametrize
 
 PACKET = RECORD.size
 CALM = {"rst": 0, "s_event_tvalid": 0, "s_event_tdata": 0, "s_event_tlast": 0, "record_ready": 1}
@@ -88,7 +88,7 @@ def check(inputs: Sequence[dict[str, int]], seen: dict[str, Any]) -> int:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(accepts=[*PROFILES])
+@parametrize(accepts=[*PROFILES])
 async def packets(dut: Any, accepts: str) -> None:
     """Compare every byte; a record that comes before the first byte is taken replaces the one that waits."""
     inputs = stimuli(accepts, random.Random(cocotb.RANDOM_SEED))

@@ -15,7 +15,7 @@ from tactile_depth.link.packets import Ask, PacketReader, Read, ReadReply, Write
 from tb.axis import AxisMonitor, AxisSink, AxisSource, profile
 from tb.cases import on_bench
 from tb.link.axil_slave import AxilSlave, Registers
-from tb.stream import CLOCK_NS, MANY, parameters
+from tb.stream import CLOCK_NS, MANY, parameters, parametrize
 
 Request = Read | Write
 LONGEST = 5_000  # clocks until all replies have left
@@ -104,7 +104,7 @@ class Bench:
 
 
 @on_bench(Bench, milliseconds=0.3)
-@cocotb.parametrize(stalls=["none", "random", "long"])
+@parametrize(stalls=["none", "random", "long"])
 async def requests(bench: Bench, stalls: str) -> None:
     """Send requests with and without refused accesses, many of them with the number of the one before, and asks."""
     number = 0
@@ -164,7 +164,7 @@ async def forgotten_at_any_time(bench: Bench) -> None:
 
 
 @cocotb.test(timeout_time=0.3, timeout_unit="ms")
-@cocotb.parametrize(stalls=["none", "random"])
+@parametrize(stalls=["none", "random"])
 async def resets(dut: Any, stalls: str) -> None:
     """Reset in every clock of a request: nothing of it is left, and the same number is done again."""
     bench = Bench(dut, stalls)

@@ -12,7 +12,7 @@ from cocotb.triggers import RisingEdge
 from tactile_depth.link.depth_formats import DepthFormat
 from tactile_depth.link.packets import Status
 from tb.axis import PROFILES, profile
-from tb.stream import CLOCK_NS
+from tb.stream import CLOCK_NS, parametrize
 
 PROFILES["rarely"] = lambda rng: (rng.random() < 0.2 for _ in iter(int, 1))
 CLOCKS = 3000
@@ -59,14 +59,14 @@ async def play(dut: Any, requests: float, resets: float, accepts: str) -> int:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(accepts=["none", "random", "rarely", "long"], requests=[0.005, 0.05, 0.5])
+@parametrize(accepts=["none", "random", "rarely", "long"], requests=[0.005, 0.05, 0.5])
 async def packets(dut: Any, accepts: str, requests: float) -> None:
     """Send packets one after another and far apart."""
     assert await play(dut, requests, 0.0, accepts) > 5, "the test is void"
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(accepts=["none", "random"])
+@parametrize(accepts=["none", "random"])
 async def resets(dut: Any, accepts: str) -> None:
     """Send a packet after each reset, whatever was on its way."""
     assert await play(dut, 0.01, 0.02, accepts) > 5, "the test is void"

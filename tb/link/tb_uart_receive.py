@@ -10,7 +10,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.link.uart import receive, transmit
-from tb.stream import CLOCK_NS, parameters
+from tb.stream import CLOCK_NS, parameters, parametrize
 
 BYTES = 40
 LEVELS = 120
@@ -52,7 +52,7 @@ async def play(dut: Any, levels: Any, resets: Any = ()) -> Any:
 
 
 @cocotb.test(timeout_time=0.5, timeout_unit="ms")
-@cocotb.parametrize((("off", "gap"), [(0, 0), (0, 40), (-TOLERANCE, 0), (TOLERANCE, 0)]))
+@parametrize((("off", "gap"), [(0, 0), (0, 40), (-TOLERANCE, 0), (TOLERANCE, 0)]))
 async def words(dut: Any, off: Any, gap: Any) -> None:
     """Receive every byte, also back to back, from a sender that is slower or faster."""
     (divider,) = parameters(dut, "Divider")
@@ -66,7 +66,7 @@ async def words(dut: Any, off: Any, gap: Any) -> None:
 
 
 @cocotb.test(timeout_time=0.5, timeout_unit="ms")
-@cocotb.parametrize(longest=[1, 3, 12])
+@parametrize(longest=[1, 3, 12])
 async def noise(dut: Any, longest: Any) -> None:
     """Receive levels of random length: glitches, breaks, bytes that begin at any time."""
     (divider,) = parameters(dut, "Divider")
@@ -81,7 +81,7 @@ async def noise(dut: Any, longest: Any) -> None:
 
 
 @cocotb.test(timeout_time=0.5, timeout_unit="ms")
-@cocotb.parametrize(rate=[0.1, 0.01])
+@parametrize(rate=[0.1, 0.01])
 async def resets(dut: Any, rate: float) -> None:
     """Reset in any clock of bytes and breaks: nothing of them is left, and bytes come once the line is high."""
     (divider,) = parameters(dut, "Divider")

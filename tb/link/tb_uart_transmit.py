@@ -12,7 +12,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.link.uart import BITS, receive, transmit
 from tb.axis import AxisSource, profile
-from tb.stream import CLOCK_NS, parameters
+from tb.stream import CLOCK_NS, parameters, parametrize
 
 BYTES = 40
 
@@ -38,7 +38,7 @@ async def start(dut: Any, offers: str) -> Any:
 
 
 @cocotb.test(timeout_time=0.5, timeout_unit="ms")
-@cocotb.parametrize(offers=["none", "long", "random"])
+@parametrize(offers=["none", "long", "random"])
 async def words(dut: Any, offers: str) -> None:
     """Send every byte in order; each bit has its length, and no stop bit is shorter."""
     (divider,) = parameters(dut, "Divider")

@@ -15,7 +15,7 @@ from tactile_depth.poisson.back_substitution import LATENCY as BACK_SUBSTITUTION
 from tactile_depth.poisson.back_substitution import back_substitution
 from tactile_depth.poisson.forward_elimination import LATENCY as FORWARD_ELIMINATION
 from tactile_depth.poisson.forward_elimination import forward_elimination
-from tb.stream import MANY, check_bursts, configuration, sample, uniform, with_and_without_en
+from tb.stream import MANY, check_bursts, configuration, parametrize, sample, uniform, with_and_without_en
 
 MODELS = {"forward_elimination": forward_elimination, "back_substitution": back_substitution}
 LATENCIES = {"forward_elimination": FORWARD_ELIMINATION, "back_substitution": BACK_SUBSTITUTION}
@@ -40,22 +40,20 @@ async def check(dut: Any, amplitude: Any, frames: int = 3, **behaviour: Any) -> 
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(
-    (("gap", "pause"), sample([(0, 0.0), (30, 0.0), (0, 0.3), (30, 0.3)])), ("full_scale", [False, True])
-)
+@parametrize((("gap", "pause"), sample([(0, 0.0), (30, 0.0), (0, 0.3), (30, 0.3)])), ("full_scale", [False, True]))
 async def frames(dut: Any, gap: float, pause: float, full_scale: bool) -> None:
     await check(dut, 1.0 if full_scale else UNCLIPPED[dut._name], gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.003, 0.1, None])
+@parametrize(amplitude=[0.003, 0.1, None])
 async def many_frames(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     await check(dut, amplitude, frames=MANY)
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.1, None])
+@parametrize(amplitude=[0.1, None])
 async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     """Reset as the first words enter and leave and in the middle of a frame; None: while values are clipped."""
     config = configuration()
@@ -65,7 +63,7 @@ async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(strays=[1, 2, 11])
+@parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """Start a frame after part of another one, and after more than one without a start of frame in between."""
     await check(dut, 0.1, frames=1, strays=strays)

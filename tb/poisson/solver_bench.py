@@ -20,6 +20,7 @@ from tb.stream import (
     check_maps,
     configuration,
     interrupt,
+    parametrize,
     sample,
     send_apart,
     uniform,
@@ -72,13 +73,13 @@ def codes(frames: int, amplitude: float) -> Any:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.3, 0.0), (0.0, 0.3), (0.3, 0.3)])))
+@parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.3, 0.0), (0.0, 0.3), (0.3, 0.3)])))
 async def frames(dut: Any, gap: float, pause: float) -> None:
     assert not await check(dut, codes(4, 0.002), gap, pause)
 
 
 @cocotb.test(timeout_time=200, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.002, 0.05, None])
+@parametrize(amplitude=[0.002, 0.05, None])
 async def many_frames(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     await check(dut, codes(MANY, amplitude))
@@ -97,7 +98,7 @@ async def a_frame_does_not_know_the_one_before(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.002, 1.0])
+@parametrize(amplitude=[0.002, 1.0])
 async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     """Reset at two positions in a row of the second frame, four in `make regress`, as the first one leaves: every core
     is active, and clips if it can."""
@@ -108,7 +109,7 @@ async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-@cocotb.parametrize(rows=[1, 3])
+@parametrize(rows=[1, 3])
 async def a_frame_begins_afresh(dut: Any, rows: int) -> None:
     """Start a frame after rows of an incomplete frame, and after part of another row."""
     columns = configuration().columns

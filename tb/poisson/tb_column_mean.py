@@ -8,7 +8,7 @@ import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.forward_elimination import zero_mean
-from tb.stream import MANY, configuration, drive, uniform
+from tb.stream import MANY, configuration, drive, parametrize, uniform
 
 CLOSEST = 6  # cycles between two rows, at least: the way of an addend into the mean
 
@@ -39,12 +39,12 @@ async def check(dut: Any, amplitude: float | None, frames: int, pause: float, st
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.01, 1.0, None], pause=[0.0, 0.3])
+@parametrize(amplitude=[0.01, 1.0, None], pause=[0.0, 0.3])
 async def means(dut: Any, amplitude: float | None, pause: float) -> None:
     await check(dut, amplitude, MANY * 3, pause)
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(strays=[1, 5])
+@parametrize(strays=[1, 5])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     await check(dut, 0.5, 3, 0.0, strays)

@@ -16,6 +16,7 @@ from tb.stream import (
     extremes,
     interrupt,
     parameters,
+    parametrize,
     raster,
     send_apart,
     uniform,
@@ -53,7 +54,7 @@ async def check(dut: Any, gradient: Any, gap: float = 0.0, pause: float = 0.0, i
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.1, 0.3), (0.7, 0.0)]), ("rows", [1, 4]))
+@parametrize((("gap", "pause"), [(0.0, 0.0), (0.1, 0.3), (0.7, 0.0)]), ("rows", [1, 4]))
 async def frames(dut: Any, gap: float, pause: float, rows: int) -> None:
     width, columns = parameters(dut, "Width", "Columns")
     await check(dut, uniform((3, rows, columns, 2), width), gap, pause)

@@ -6,7 +6,7 @@ from typing import Any
 import cocotb
 
 from tactile_depth.poisson.frame_stack import LATENCY, frame_stack
-from tb.stream import check_frame_memory, parameters, places, sample
+from tb.stream import check_frame_memory, parameters, parametrize, places, sample
 
 FRAMES = 4  # in place, the order of rows in the memory flips with every frame
 
@@ -19,13 +19,13 @@ async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), sample([(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)])))
+@parametrize((("gap", "pause"), sample([(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)])))
 async def frames(dut: Any, gap: float, pause: float) -> None:
     await check(dut, gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(halves=[1, 3, 5])
+@parametrize(halves=[1, 3, 5])
 async def reset_in_mid_frame(dut: Any, halves: int) -> None:
     columns, rows = parameters(dut, "Columns", "Rows")
     await check(dut, frames=2, interrupts=[halves * columns * rows // 2 + columns // 2])
@@ -40,7 +40,7 @@ async def resets_as_a_frame_begins_to_leave(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
-@cocotb.parametrize(strays=[1, 2, 11])
+@parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """Start a frame after part of another one, and after more than one without a start of frame in between."""
     await check(dut, frames=2, strays=strays)

@@ -8,7 +8,7 @@ import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.spectral_divide import LATENCY, spectral_divide
-from tb.stream import MANY, check_bursts, configuration, extremes, parameters, sample, uniform
+from tb.stream import MANY, check_bursts, configuration, extremes, parameters, parametrize, sample, uniform
 
 
 async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
@@ -22,14 +22,14 @@ async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), sample([(0, 0.0), (9, 0.0), (9, 0.3)])), ("amplitude", [0.001, 1.0]))
+@parametrize((("gap", "pause"), sample([(0, 0.0), (9, 0.0), (9, 0.3)])), ("amplitude", [0.001, 1.0]))
 async def frames(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     columns, width = parameters(dut, "Columns", "Width")
     await check(dut, uniform((3 * columns, columns, 1), width, amplitude), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.01, 0.2, None])
+@parametrize(amplitude=[0.01, 0.2, None])
 async def many_frames(dut: Any, amplitude: float) -> None:
     """Reach ties of the rounding, and values that just clip."""
     columns, width = parameters(dut, "Columns", "Width")
@@ -45,7 +45,7 @@ async def limits(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(late=[False, True])
+@parametrize(late=[False, True])
 async def reset_in_mid_frame(dut: Any, late: bool) -> None:
     """Reset as the first words enter and leave, and in the middle of the second frame."""
     columns, width = parameters(dut, "Columns", "Width")
@@ -54,7 +54,7 @@ async def reset_in_mid_frame(dut: Any, late: bool) -> None:
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
-@cocotb.parametrize(strays=[1, 2, 11])
+@parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """Start a frame after part of another one, and after more than one without a start of frame in between."""
     columns, width = parameters(dut, "Columns", "Width")

@@ -18,6 +18,7 @@ from tb.stream import (
     check_maps,
     configuration,
     interrupt,
+    parametrize,
     send_apart,
     uniform,
 )
@@ -69,13 +70,13 @@ async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrup
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
+@parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
 async def frames_that_fit(dut: Any, gap: float, pause: float) -> None:
     await check(dut, codes(3, 0.002), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=200, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.002, 0.05, None])
+@parametrize(amplitude=[0.002, 0.05, None])
 async def many_frames(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     await check(dut, codes(MANY, amplitude))
@@ -90,7 +91,7 @@ async def frames_that_saturate(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.002, 1.0])
+@parametrize(amplitude=[0.002, 1.0])
 async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     """Reset as the third frame enters and the first one leaves: every core is active, and clips if it can."""
     size = configuration().columns
@@ -99,7 +100,7 @@ async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-@cocotb.parametrize(rows=[1, 3])
+@parametrize(rows=[1, 3])
 async def a_frame_begins_afresh(dut: Any, rows: int) -> None:
     """Start a frame after rows of an incomplete frame, and after part of another row."""
     columns = configuration().columns

@@ -7,11 +7,11 @@ import cocotb
 import numpy as np
 
 from tactile_depth.poisson.thomas_table import LATENCY, thomas_table
-from tb.stream import configuration, drive
+from tb.stream import configuration, drive, parametrize
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-@cocotb.parametrize(pause=[0.0, 0.3])
+@parametrize(pause=[0.0, 0.3])
 async def every_entry(dut: Any, pause: float) -> None:
     config = configuration()
     table = thomas_table(config)

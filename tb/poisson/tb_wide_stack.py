@@ -9,7 +9,7 @@ from cocotb.triggers import RisingEdge
 
 from tactile_depth.poisson.wide_stack import LEAD, latency, wide_stack
 from tb.pairs import AloneMonitor, PairMonitor
-from tb.stream import Bench, check_frame_starts, check_words, interrupt, parameters, places, sample
+from tb.stream import Bench, check_frame_starts, check_words, interrupt, parameters, parametrize, places, sample
 from tb.wide import WideDriver, WideMonitor
 
 FRAMES = 4  # in place, the order of rows in the memory flips with every frame
@@ -76,13 +76,13 @@ async def check(
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), sample([(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)])))
+@parametrize((("gap", "pause"), sample([(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)])))
 async def frames(dut: Any, gap: int, pause: float) -> None:
     await check(dut, gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(halves=[1, 3, 5])
+@parametrize(halves=[1, 3, 5])
 async def reset_in_mid_frame(dut: Any, halves: int) -> None:
     columns, rows, paths = parameters(dut, "Columns", "Rows", "InWords")
     clocks = columns // paths
@@ -99,7 +99,7 @@ async def resets_as_a_frame_begins_to_leave(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
-@cocotb.parametrize(strays=[1, 2, 11])
+@parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """Start a frame after part of another one, and after more than one without a start of frame in between."""
     await check(dut, 2, strays=strays)

@@ -13,7 +13,7 @@ from tactile_depth.poisson.wide_stack import LEAD as IN_LEAD
 from tactile_depth.poisson.wide_stack import wide_stack
 from tactile_depth.poisson.wide_substitution import LATENCY, wide_substitution
 from tb.pairs import AloneMonitor, PairMonitor
-from tb.stream import MANY, check_bursts, configuration, uniform, with_and_without_en
+from tb.stream import MANY, check_bursts, configuration, parametrize, uniform, with_and_without_en
 from tb.wide import WideDriver
 
 UNCLIPPED = 0.05  # amplitude at which nothing clips
@@ -73,20 +73,20 @@ async def check(dut: Any, amplitude: Any, count: int = 3, **behaviour: Any) -> N
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(pause=[0.0, 0.3], full_scale=[False, True])
+@parametrize(pause=[0.0, 0.3], full_scale=[False, True])
 async def frames(dut: Any, pause: float, full_scale: bool) -> None:
     await check(dut, 1.0 if full_scale else UNCLIPPED, gap=30, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.003, 0.1, None])
+@parametrize(amplitude=[0.003, 0.1, None])
 async def many_frames(dut: Any, amplitude: float) -> None:
     """Reach ties of the rounding, clip every value that can clip, and let frame follow frame without a pause."""
     await check(dut, amplitude, count=MANY)
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.1, None])
+@parametrize(amplitude=[0.1, None])
 async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     """Reset as the first words enter and leave and in the middle of a frame; None: while values are clipped."""
     config = configuration()
@@ -96,7 +96,7 @@ async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(strays=[1, 2, 11])
+@parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """Start a frame after part of another one, and after more than one without a start of frame in between."""
     await check(dut, 0.1, count=1, strays=strays)

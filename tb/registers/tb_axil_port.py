@@ -14,7 +14,7 @@ from tactile_depth.registers.register_map import ADDRESS_WIDTH
 from tb.axil import present, read, take, write, write_beats
 from tb.cases import on_bench
 from tb.registers.axil_pins import INPUTS, PortChecker, expected, pin, pins, reset
-from tb.stream import REGRESS
+from tb.stream import REGRESS, parametrize
 
 WORDS = ("read_data", "late_data")
 FLAGS = ("write_refused", "read_refused", "read_late", "late_refused")
@@ -112,7 +112,7 @@ async def address_and_data_in_either_order(checker: Checker, dut: Any) -> None:
 
 
 @on_bench(Checker)
-@cocotb.parametrize(ahead=["aw", "w"])
+@parametrize(ahead=["aw", "w"])
 async def the_next_waits_for_this(checker: Checker, dut: Any, ahead: Any) -> None:
     """Offer an address or a word while the previous one waits for its other half: it is not taken."""
     writes = [(0x18, 0x1234), (0x60, 0xABCD_EF01)]
@@ -205,7 +205,7 @@ async def offered_in_reset(checker: Checker, dut: Any) -> None:
 
 
 @on_bench(Checker)
-@cocotb.parametrize(pressure=[0.0, 0.6])
+@parametrize(pressure=[0.0, 0.6])
 async def random_traffic(checker: Checker, dut: Any, pressure: float) -> None:
     """Drive random beats, answers and resets; ready of the responses is low with probability `pressure`."""
     rng = random.Random(cocotb.RANDOM_SEED)

@@ -34,7 +34,7 @@ from tb.registers.register_file import (
     pulse,
     write,
 )
-from tb.stream import REGRESS
+from tb.stream import REGRESS, parametrize
 
 RANDOM_CLOCKS = 10_000 if REGRESS else 2_000
 SATURATION_BITS = structs.members("events_t")["saturations"][1]  # of the count of values clipped in a cycle
@@ -64,7 +64,7 @@ async def reset_values(checker: Checker, dut: Any) -> None:
 
 
 @on_bench(Checker)
-@cocotb.parametrize(register=[name for name in REGISTERS if name not in PORTS])
+@parametrize(register=[name for name in REGISTERS if name not in PORTS])
 async def access(checker: Checker, dut: Any, register: Any) -> None:
     """Write and read every register: each field has the access of the map. The ports to the tables have other tests."""
     register, build = REGISTERS[register], checker.build
@@ -154,7 +154,7 @@ async def choose(dut: Any, table: int, index: int) -> None:
 
 
 @on_bench(Checker)
-@cocotb.parametrize(table=list(TABLES.values()))
+@parametrize(table=list(TABLES.values()))
 async def table_entries(checker: Checker, dut: Any, table: Any) -> None:
     """Write and read entries in turn, with the first after the last."""
     size, writes = checker.build.table_sizes[table], checker.model.table_writes
@@ -212,7 +212,7 @@ async def a_write_beside_a_read_of_a_table(checker: Checker, dut: Any) -> None:
 
 
 @on_bench(Checker)
-@cocotb.parametrize(lag=[0, 7])
+@parametrize(lag=[0, 7])
 async def commits(checker: Checker, dut: Any, lag: int) -> None:
     """Commit: the change-over comes with the next frame start, is pending until the table follows, and closes that
     table."""
@@ -264,7 +264,7 @@ async def resets_and_banks(checker: Checker, dut: Any) -> None:
 
 
 @on_bench(Checker)
-@cocotb.parametrize(name=list(CAPTURES))
+@parametrize(name=list(CAPTURES))
 async def capture(checker: Checker, dut: Any, name: str) -> None:
     """Start a capture: the start goes out once, the table is closed while the capture is busy, and its end commits the
     table."""
@@ -299,7 +299,7 @@ async def capture(checker: Checker, dut: Any, name: str) -> None:
 
 
 @on_bench(Checker)
-@cocotb.parametrize(register=["STATUS", "CONTROL", "INTERRUPT_STATUS"])
+@parametrize(register=["STATUS", "CONTROL", "INTERRUPT_STATUS"])
 async def setting_wins_over_clearing(checker: Checker, dut: Any, register: str) -> None:
     """Raise events one cycle before, in, and one cycle after the cycle in which a write clears their bits."""
     counted = dict.fromkeys(COUNTERS, 1) | {"SATURATIONS": 9}
@@ -326,7 +326,7 @@ async def setting_wins_over_clearing(checker: Checker, dut: Any, register: str) 
 
 
 @on_bench(Checker)
-@cocotb.parametrize(event=["record_valid", "row_long"])
+@parametrize(event=["record_valid", "row_long"])
 async def interrupts(checker: Checker, dut: Any, event: str) -> None:
     """Check irq: high while the bit of an event is set and not masked, low after a 1 is written to the bit."""
     await write(dut, "INTERRUPT_MASK", WORD)
@@ -378,7 +378,7 @@ async def what_shows_as_it_is(checker: Checker, dut: Any) -> None:
 
 
 @on_bench(Checker, lag=5)
-@cocotb.parametrize(pressure=[0.0, 0.6])
+@parametrize(pressure=[0.0, 0.6])
 async def random_traffic(checker: Checker, dut: Any, pressure: float) -> None:
     """Drive random reads, writes and events; ready of the responses is low with probability `pressure`."""
     rng = random.Random(cocotb.RANDOM_SEED)

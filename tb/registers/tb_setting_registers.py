@@ -5,12 +5,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import cocotb
-
 from tactile_depth.registers.register_map import REGISTERS, WORD
 from tactile_depth.registers.setting_registers import MASKS, RESETS, SETTINGS, SettingRegisters
 from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
+from tb.stream import parametrize
 
 
 class Bench(RegisterBench):
@@ -45,7 +44,7 @@ async def reset_values(bench: Bench) -> None:
 
 
 @on_bench(Bench)
-@cocotb.parametrize(name=list(SETTINGS))
+@parametrize(name=list(SETTINGS))
 async def every_bit_and_byte(bench: Bench, name: str) -> None:
     """Write single bits and bytes: a write sets the bits of its strobed bytes, and no other bit."""
     for strobe in range(16):

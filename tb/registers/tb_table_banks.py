@@ -6,13 +6,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import cocotb
-
 from tactile_depth.registers.register_map import TABLES, WORD
 from tactile_depth.registers.table_banks import CAPTURES, COMMIT, TableBanks
 from tb import structs
 from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
+from tb.stream import parametrize
 
 ALL = (1 << len(TABLES)) - 1
 START = {table: register.pack(start=1) for table, register in CAPTURES.items()}
@@ -152,7 +151,7 @@ async def resets(bench: Bench) -> None:
 
 
 @on_bench(Bench)
-@cocotb.parametrize(table=list(CAPTURES))
+@parametrize(table=list(CAPTURES))
 async def captures(bench: Bench, table: str) -> None:
     """Capture: a start makes a request, the capture closes only its table, and its end commits it."""
     register, start, bit = CAPTURES[table], START[table], COMMIT.field(table).mask

@@ -3,17 +3,16 @@
 
 from typing import Any
 
-import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles
 
 from tb.selection import Level, case, up_to
-from tb.stream import sample
+from tb.stream import parametrize, sample
 from tb.tactile_depth.bench import CONTROL, started
 
 
 @case(Level.FORMATS, whole_rows=True)
-@cocotb.parametrize(accepts=up_to({Level.FORMATS: ["none"], Level.WHOLE: ["random"]}))
+@parametrize(accepts=up_to({Level.FORMATS: ["none"], Level.WHOLE: ["random"]}))
 async def contact(dut: Any, accepts: str) -> None:
     """Check `contact`: set by the deciding beat, cleared by the first beat of the next frame, held by its register
     bit."""

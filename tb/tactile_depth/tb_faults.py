@@ -5,13 +5,13 @@ right."""
 from itertools import product
 from typing import Any
 
-import cocotb
 import numpy as np
 
 from tactile_depth.registers.register_map import WORD
 from tactile_depth.video.frame_guard import FAULTS
 from tb.axis import broken
 from tb.selection import Level, case, named, up_to
+from tb.stream import parametrize
 from tb.tactile_depth.bench import CONTROL, Stream, started
 from tb.tactile_depth.scoreboard import STATUS, STICKY
 
@@ -19,7 +19,7 @@ TIMEOUT = 60  # clocks
 
 
 @case(whole_rows=True)
-@cocotb.parametrize(fault=named(FAULTS), accepts=up_to({Level.WHOLE: ["random"], Level.LONG: ["none"]}))
+@parametrize(fault=named(FAULTS), accepts=up_to({Level.WHOLE: ["random"], Level.LONG: ["none"]}))
 async def malformed(dut: Any, fault: str, accepts: str) -> None:
     """Send A, B, A back to back with B broken: B never leaves nor sets contact, and both A are right."""
     timeout = TIMEOUT if fault == "timed_out" else 0
@@ -50,7 +50,7 @@ async def malformed(dut: Any, fault: str, accepts: str) -> None:
 
 
 @case()
-@cocotb.parametrize(fault=up_to({Level.WHOLE: named(FAULTS[-1:]), Level.LONG: named(FAULTS[:-1])}))
+@parametrize(fault=up_to({Level.WHOLE: named(FAULTS[-1:]), Level.LONG: named(FAULTS[:-1])}))
 async def faults_side_by_side(dut: Any, fault: str) -> None:
     """Send a broken frame between whole and broken ones: each is counted, and the whole ones are right."""
     timeout = TIMEOUT if fault == "timed_out" else 0
@@ -71,7 +71,7 @@ async def faults_side_by_side(dut: Any, fault: str) -> None:
 
 
 @case(Level.FORMATS, whole_rows=True)
-@cocotb.parametrize(accepts=["none", "random"])
+@parametrize(accepts=["none", "random"])
 async def every_fault_in_a_row(dut: Any, accepts: str) -> None:
     """Send broken frames between good ones and one after another, several in flight at once."""
     pipeline = await started(dut, accepts=accepts)
@@ -123,9 +123,7 @@ async def silence(dut: Any) -> None:
 
 
 @case()
-@cocotb.parametrize(
-    offers=["none", "random"], accepts=up_to({Level.WHOLE: ["alternate", "random"], Level.LONG: ["none"]})
-)
+@parametrize(offers=["none", "random"], accepts=up_to({Level.WHOLE: ["alternate", "random"], Level.LONG: ["none"]}))
 async def random_streams(dut: Any, offers: str, accepts: str) -> None:
     """Send random streams of good and broken frames, stray words and pauses."""
     pipeline = await started(dut, offers=offers, accepts=accepts)

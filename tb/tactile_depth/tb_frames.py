@@ -14,7 +14,7 @@ from tactile_depth.tactile_depth import default_parameters, top_parameters
 from tb.axis import PROFILES
 from tb.selection import Level, case, up_to
 from tb.settings import RUN
-from tb.stream import MANY, configuration
+from tb.stream import MANY, configuration, parametrize
 from tb.tactile_depth.bench import CONTROL, started
 from tb.tactile_depth.scoreboard import STATUS
 
@@ -95,7 +95,7 @@ async def back_to_back(dut: Any) -> None:
 
 
 @case(Level.STREAM, whole_rows=True)
-@cocotb.parametrize(
+@parametrize(
     (
         ("offers", "accepts"),
         up_to(
@@ -144,7 +144,7 @@ async def many_frames(dut: Any) -> None:
 
 
 @case(Level.FORMATS, whole_rows=True)
-@cocotb.parametrize(accepts=["none", "random"])
+@parametrize(accepts=["none", "random"])
 async def saturation(dut: Any, accepts: str) -> None:
     """Send a pyramid deeper than full scale: it is clipped where the model clips, counted and flagged, and never
     wraps."""
@@ -162,7 +162,7 @@ async def saturation(dut: Any, accepts: str) -> None:
 
 
 @case(Level.FORMATS)
-@cocotb.parametrize(taken=[0, 5])
+@parametrize(taken=[0, 5])
 async def depth_frames_are_dropped(dut: Any, taken: int) -> None:
     """Stall the sink with drop_frames set: frames are lost, the input never waits, and the next frame is whole.
 

@@ -14,7 +14,7 @@ from tb.axil import OFFSET, present, read, take, write
 from tb.axis import broken, video
 from tb.pixels import pack
 from tb.selection import Level, case, up_to
-from tb.stream import REGRESS
+from tb.stream import REGRESS, parametrize
 from tb.tactile_depth.bench import COMMIT, CONTROL, Pipeline, started
 from tb.tactile_depth.scoreboard import STATUS
 
@@ -179,7 +179,7 @@ async def the_register_port_waits(dut: Any) -> None:
 
 
 @case(whole_rows=True)
-@cocotb.parametrize(accepts=["none", "random"])
+@parametrize(accepts=["none", "random"])
 async def written_all_the_time(dut: Any, accepts: str) -> None:
     """Write registers all the time: no code and no latency changes."""
     pipeline = await started(dut, offers="random", accepts=accepts)
@@ -242,7 +242,7 @@ async def written_phase_by_phase(dut: Any) -> None:
 
 
 @case(needs=as_sent, whole_rows=True)
-@cocotb.parametrize(accepts=up_to({Level.WHOLE: ["random"], Level.LONG: ["none"]}))
+@parametrize(accepts=up_to({Level.WHOLE: ["random"], Level.LONG: ["none"]}))
 async def written_in_every_phase(dut: Any, accepts: str) -> None:
     """Write each register at each pixel of a frame, while frames come without a gap: no code and no latency changes.
 

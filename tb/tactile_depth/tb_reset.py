@@ -11,13 +11,14 @@ from tactile_depth.latency import first_depth_latency
 from tactile_depth.registers.register_map import MAP
 from tb.axis import broken, profile
 from tb.selection import Level, case, up_to
+from tb.stream import parametrize
 from tb.tactile_depth.bench import CONTROL, Stream, started
 
 PHASES = ("mid_frame", "filling", "waiting", "output", "stalled", "full", "idle")
 
 
 @case(Level.STREAM)
-@cocotb.parametrize(
+@parametrize(
     (
         ("clocks", "phase"),
         up_to(

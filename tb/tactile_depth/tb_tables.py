@@ -13,7 +13,7 @@ from tactile_depth.registers.axil_port import Response
 from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.table_entries import one_word, reference_entries
 from tb.selection import Level, case, named, up_to
-from tb.stream import MANY, REGRESS, configuration
+from tb.stream import MANY, REGRESS, configuration, parametrize
 from tb.tactile_depth.bench import HEAD_CLOCKS, SKID_WORDS, Pipeline, started
 from tb.tactile_depth.device_tables import Content
 
@@ -53,7 +53,7 @@ def random_entries(pipeline: Pipeline, name: str, rng: np.random.Generator) -> n
 
 
 @case(Level.FORMATS)
-@cocotb.parametrize(
+@parametrize(
     name=up_to({Level.FORMATS: named(SHORT), Level.WHOLE: named([name for name in BUILT if name not in SHORT])}),
 )
 async def written(dut: Any, name: str) -> None:
@@ -131,7 +131,7 @@ async def committed_at_the_first_pixel(dut: Any) -> None:
 
 
 @case(needs=looks_up)
-@cocotb.parametrize(offers=["none", "random"], accepts=up_to({Level.WHOLE: ["random"], Level.LONG: ["none"]}))
+@parametrize(offers=["none", "random"], accepts=up_to({Level.WHOLE: ["random"], Level.LONG: ["none"]}))
 async def rewritten_while_frames_stream(dut: Any, offers: str, accepts: str) -> None:
     """Rewrite the whole table repeatedly while frames stream back to back.
 
@@ -178,7 +178,7 @@ async def rewritten_while_frames_stream(dut: Any, offers: str, accepts: str) -> 
 
 
 @case(needs=looks_up)
-@cocotb.parametrize(fraction=[1, 8, 128])
+@parametrize(fraction=[1, 8, 128])
 async def many_frames_of_any_slopes(dut: Any, fraction: int) -> None:
     """Reach ties of every rounding, and clip every value that can clip, with steep and small slopes."""
     pipeline = await started(dut)

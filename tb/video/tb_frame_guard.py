@@ -16,7 +16,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 from tactile_depth.video.frame_guard import FAULTS, frame_guard
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSource, broken, faults_of, positions, profile, spoiled, video
 from tb.cases import on_bench
-from tb.stream import CLOCK_NS, REGRESS, parameters, raster
+from tb.stream import CLOCK_NS, REGRESS, parameters, parametrize, raster
 
 TIMEOUT = 5
 RANDOM_FRAMES = 60
@@ -151,7 +151,7 @@ async def long_silences(bench: Bench) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize(kind=list(BREAKS), stalls=list(STALLS))
+@parametrize(kind=list(BREAKS), stalls=list(STALLS))
 async def faults(dut: Any, kind: str, stalls: str) -> None:
     """Send a good frame, a broken one and a good one, for every position of the break; with stalls for a third of
     them."""
@@ -171,7 +171,7 @@ async def faults(dut: Any, kind: str, stalls: str) -> None:
 
 
 @on_bench(Bench)
-@cocotb.parametrize(stalls=list(STALLS))
+@parametrize(stalls=list(STALLS))
 async def words_before_the_first_frame(bench: Bench) -> None:
     """Send any number of words before a frame: they are dropped as one fault, and the frame is right."""
     for count in range(1, 2 * bench.columns + 2):
@@ -223,7 +223,7 @@ async def silence_without_movement(dut: Any) -> None:
 
 
 @on_bench(Bench)
-@cocotb.parametrize(clocks=[1, 2, 16])
+@parametrize(clocks=[1, 2, 16])
 async def resets(bench: Bench, clocks: Any) -> None:
     """Reset at every position of a good frame and of the filler of a broken one; the next frame is right."""
     for position in bench.places("start_early"):
@@ -240,7 +240,7 @@ async def resets(bench: Bench, clocks: Any) -> None:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(timeout=[0, 1, TIMEOUT], stalls=list(STALLS))
+@parametrize(timeout=[0, 1, TIMEOUT], stalls=list(STALLS))
 async def random_streams(dut: Any, timeout: int, stalls: str) -> None:
     """Send random streams: good and broken frames, several faults in one, stray words, flipped marks, long silences."""
     bench = Bench(dut, stalls)

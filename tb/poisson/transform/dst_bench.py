@@ -13,7 +13,7 @@ from tactile_depth.poisson.transform.dst_forward import dst_forward
 from tactile_depth.poisson.transform.dst_forward import latency as dst_forward_latency
 from tactile_depth.poisson.transform.dst_inverse import dst_inverse
 from tactile_depth.poisson.transform.dst_inverse import latency as dst_inverse_latency
-from tb.stream import MANY, check_bursts, extremes, parameters, sample, uniform, with_and_without_en
+from tb.stream import MANY, check_bursts, extremes, parameters, parametrize, sample, uniform, with_and_without_en
 
 CORES: dict[str, tuple[Any, Any]] = {
     "dst_forward": (dst_forward, dst_forward_latency),
@@ -36,14 +36,14 @@ async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", sample([0.3, 1.0, None])))
+@parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", sample([0.3, 1.0, None])))
 async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     size, width = parameters(dut, "Size", "InWidth")
     await check(dut, uniform((5, size, 1), width, amplitude), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.1, None])
+@parametrize(amplitude=[0.1, None])
 async def many_bursts(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     size, width = parameters(dut, "Size", "InWidth")
@@ -58,7 +58,7 @@ async def limits(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("late", "clips"), sample([(False, True), (False, False), (True, False), (True, True)])))
+@parametrize((("late", "clips"), sample([(False, True), (False, False), (True, False), (True, True)])))
 async def reset_in_mid_burst(dut: Any, late: bool, clips: bool) -> None:
     """Reset in each cycle in which a burst begins to enter, or to leave; a clip after the reset is not counted."""
     size, width = parameters(dut, "Size", "InWidth")

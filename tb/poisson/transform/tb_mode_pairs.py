@@ -9,7 +9,7 @@ import numpy as np
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.mode_pairs import latency as mode_pairs_latency
 from tactile_depth.poisson.transform.mode_pairs import mode_pairs
-from tb.stream import check_bursts, parameters, uniform
+from tb.stream import check_bursts, parameters, parametrize, uniform
 
 
 async def check(dut: Any, x: Any, **behaviour: Any) -> None:
@@ -28,7 +28,7 @@ async def check(dut: Any, x: Any, **behaviour: Any) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3), (200, 0.3)]))
+@parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3), (200, 0.3)]))
 async def bursts(dut: Any, gap: float, pause: float) -> None:
     size, width = parameters(dut, "Size", "Width")
     await check(dut, uniform((6, size, 1), width), gap=gap, pause=pause)

@@ -9,7 +9,7 @@ import numpy as np
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.sdf_butterfly import LATENCY, sdf_butterfly
 from tactile_depth.poisson.transform.sdf_fft import Stage
-from tb.stream import check_bursts, extremes, parameters, uniform
+from tb.stream import check_bursts, extremes, parameters, parametrize, uniform
 
 FIELDS = ["re", "im"]
 
@@ -25,7 +25,7 @@ async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0]))
+@parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0]))
 async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     size, width = parameters(dut, "Size", "Width")
     await check(dut, uniform((8, size, 2), width, amplitude), gap=gap, pause=pause)
@@ -45,7 +45,7 @@ async def limits_in_every_pairing(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize(late=[False, True])
+@parametrize(late=[False, True])
 async def reset_in_mid_burst(dut: Any, late: bool) -> None:
     """Reset in each cycle in which a burst begins to enter, or to leave."""
     size, width, delay = parameters(dut, "Size", "Width", "Delay")

@@ -9,7 +9,7 @@ import numpy as np
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.sdf_fft import latency as sdf_fft_latency
 from tactile_depth.poisson.transform.sdf_fft import sdf_fft
-from tb.stream import MANY, check_bursts, extremes, parameters, uniform
+from tb.stream import MANY, check_bursts, extremes, parameters, parametrize, uniform
 
 FIELDS = ["re", "im"]
 
@@ -25,14 +25,14 @@ async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0]))
+@parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0]))
 async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     size, width = parameters(dut, "Size", "Width")
     await check(dut, uniform((5, size, 2), width, amplitude), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.1, None])
+@parametrize(amplitude=[0.1, None])
 async def many_bursts(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     size, width = parameters(dut, "Size", "Width")
@@ -47,7 +47,7 @@ async def limits(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-@cocotb.parametrize(late=[False, True])
+@parametrize(late=[False, True])
 async def reset_in_mid_burst(dut: Any, late: bool) -> None:
     """Reset in each cycle in which a burst begins to enter, or to leave."""
     size, width = parameters(dut, "Size", "Width")

@@ -6,7 +6,7 @@ from typing import Any
 import cocotb
 
 from tactile_depth.poisson.transform.transpose import LATENCY, transpose
-from tb.stream import check_frame_memory, parameters, places
+from tb.stream import check_frame_memory, parameters, parametrize, places
 
 FRAMES = 4  # in place, rows and columns of the memory change roles with every frame
 
@@ -22,13 +22,13 @@ async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)]))
+@parametrize((("gap", "pause"), [(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)]))
 async def frames(dut: Any, gap: float, pause: float) -> None:
     await check(dut, gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(late=[False, True])
+@parametrize(late=[False, True])
 async def reset_in_mid_frame(dut: Any, late: bool) -> None:
     """Reset as the first words enter, as the last row enters, as reading begins, and in the middle of a third frame."""
     (columns,) = parameters(dut, "Columns")
@@ -37,7 +37,7 @@ async def reset_in_mid_frame(dut: Any, late: bool) -> None:
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
-@cocotb.parametrize(strays=[1, 2, 11])
+@parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """Start a frame after part of another one, and after more than one without a start of frame in between."""
     await check(dut, frames=2, strays=strays)

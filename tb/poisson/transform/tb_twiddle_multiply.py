@@ -9,7 +9,7 @@ import numpy as np
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.twiddle_multiply import LATENCY, phase_factors, twiddle_factors, twiddle_multiply
 from tb.settings import RUN
-from tb.stream import check_bursts, extremes, parameters, uniform
+from tb.stream import check_bursts, extremes, parameters, parametrize, uniform
 
 FIELDS = ["re", "im"]
 
@@ -32,7 +32,7 @@ async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0]))
+@parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0]))
 async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     size, width = parameters(dut, "Size", "InWidth")
     await check(dut, uniform((6, size, 2), width, amplitude), gap=gap, pause=pause)
@@ -46,7 +46,7 @@ async def limits(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize(part=[0, 1])
+@parametrize(part=[0, 1])
 async def ties(dut: Any, part: Any) -> None:
     """Send a burst of products that drop exactly half a step, then for each lower bit one of half a step and that bit
     alone.

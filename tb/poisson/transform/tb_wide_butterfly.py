@@ -8,7 +8,7 @@ import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.wide_butterfly import LATENCY, wide_butterfly
-from tb.stream import extremes, parameters, uniform
+from tb.stream import extremes, parameters, parametrize, uniform
 from tb.wide import check_wide
 
 
@@ -30,7 +30,7 @@ def shape(dut: Any, bursts: int) -> tuple[int, ...]:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0]))
+@parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0]))
 async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     (width,) = parameters(dut, "Width")
     await check(dut, uniform(shape(dut, 12), width, amplitude), gap=gap, pause=pause)

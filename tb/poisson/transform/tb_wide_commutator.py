@@ -8,7 +8,7 @@ import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.wide_commutator import wide_commutator
-from tb.stream import parameters, uniform
+from tb.stream import parameters, parametrize, uniform
 from tb.wide import check_wide
 
 BURSTS = 12
@@ -25,7 +25,7 @@ async def check(dut: Any, **behaviour: Any) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3), (2, 0.3)]))
+@parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3), (2, 0.3)]))
 async def bursts(dut: Any, gap: int, pause: float) -> None:
     await check(dut, gap=gap, pause=pause)
 

@@ -10,7 +10,7 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.wide_commutator import LEAD, from_beats
 from tactile_depth.poisson.transform.wide_corner_turn import latency as wide_corner_turn_latency
 from tactile_depth.poisson.transform.wide_corner_turn import wide_corner_turn
-from tb.stream import parameters, uniform
+from tb.stream import parameters, parametrize, uniform
 from tb.wide import RowPairDriver, WideMonitor, check_row_pairs
 
 BURSTS = 12
@@ -37,7 +37,7 @@ async def check(dut: Any, **behaviour: Any) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3), (200, 0.3)]))
+@parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3), (200, 0.3)]))
 async def bursts(dut: Any, gap: int, pause: float) -> None:
     await check(dut, gap=gap, pause=pause)
 

@@ -9,7 +9,7 @@ import numpy as np
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.wide_dst_forward import latency as wide_dst_forward_latency
 from tactile_depth.poisson.transform.wide_dst_forward import wide_dst_forward
-from tb.stream import MANY, extremes, parameters, sample, uniform, with_and_without_en
+from tb.stream import MANY, extremes, parameters, parametrize, sample, uniform, with_and_without_en
 from tb.wide import check_wide
 
 TRANSFORM: Any = wide_dst_forward
@@ -36,14 +36,14 @@ def shape(dut: Any, bursts: int) -> tuple[int, ...]:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", sample([0.3, 1.0, None])))
+@parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", sample([0.3, 1.0, None])))
 async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     (width,) = parameters(dut, "InWidth")
     await check(dut, uniform(shape(dut, 5), width, amplitude), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.1, None])
+@parametrize(amplitude=[0.1, None])
 async def many_bursts(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     (width,) = parameters(dut, "InWidth")
@@ -58,7 +58,7 @@ async def limits(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("late", "clips"), sample([(False, True), (False, False), (True, False), (True, True)])))
+@parametrize((("late", "clips"), sample([(False, True), (False, False), (True, False), (True, True)])))
 async def reset_in_mid_burst(dut: Any, late: bool, clips: bool) -> None:
     """Reset in each cycle in which a burst begins to enter, or to leave; a clip after the reset is not counted."""
     size, width, paths = parameters(dut, "Size", "InWidth", "Words")

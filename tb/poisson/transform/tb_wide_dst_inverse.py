@@ -12,7 +12,7 @@ from tactile_depth.poisson.transform.wide_corner_turn import wide_corner_turn
 from tactile_depth.poisson.transform.wide_dst_inverse import latency as wide_dst_inverse_latency
 from tactile_depth.poisson.transform.wide_dst_inverse import wide_dst_inverse
 from tactile_depth.poisson.transform.wide_row_pairs import rows_of_bursts
-from tb.stream import MANY, extremes, parameters, sample, uniform, with_and_without_en
+from tb.stream import MANY, extremes, parameters, parametrize, sample, uniform, with_and_without_en
 from tb.wide import RowPairDriver, WideMonitor, all_stages_clip, alone, check_row_pairs
 
 TRANSFORM: Any = wide_dst_inverse
@@ -51,14 +51,14 @@ async def check(dut: Any, bursts: Any, **behaviour: Any) -> None:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", sample([0.3, 1.0, None])))
+@parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", sample([0.3, 1.0, None])))
 async def bursts(dut: Any, gap: int, pause: float, amplitude: float) -> None:
     (width,) = parameters(dut, "InWidth")
     await check(dut, uniform(shape(dut, 8), width, amplitude), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.1, None])
+@parametrize(amplitude=[0.1, None])
 async def many_bursts(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     (width,) = parameters(dut, "InWidth")
@@ -86,7 +86,7 @@ async def limits(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("late", "clips"), sample([(False, True), (False, False), (True, False), (True, True)])))
+@parametrize((("late", "clips"), sample([(False, True), (False, False), (True, False), (True, True)])))
 async def reset_in_mid_burst(dut: Any, late: bool, clips: bool) -> None:
     """Reset in each cycle in which a burst begins to enter, or to leave; a clip after the reset is not counted."""
     size, width, words = parameters(dut, "Size", "InWidth", "Words")

@@ -9,7 +9,7 @@ import numpy as np
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.wide_fft import latency as wide_fft_latency
 from tactile_depth.poisson.transform.wide_fft import wide_fft
-from tb.stream import MANY, extremes, parameters, uniform
+from tb.stream import MANY, extremes, parameters, parametrize, uniform
 from tb.wide import all_stages_clip, check_wide
 
 
@@ -35,14 +35,14 @@ def shape(dut: Any, bursts: int) -> tuple[int, ...]:
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3), (3, 0.0)]), ("amplitude", [0.3, 1.0]))
+@parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3), (3, 0.0)]), ("amplitude", [0.3, 1.0]))
 async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     (width,) = parameters(dut, "Width")
     await check(dut, uniform(shape(dut, 8), width, amplitude), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.1, None])
+@parametrize(amplitude=[0.1, None])
 async def many_bursts(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     (width,) = parameters(dut, "Width")
@@ -57,7 +57,7 @@ async def limits(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-@cocotb.parametrize(late=[False, True])
+@parametrize(late=[False, True])
 async def reset_in_mid_burst(dut: Any, late: bool) -> None:
     """Reset in each cycle in which a burst begins to enter, or to leave."""
     size, width, paths = parameters(dut, "Size", "Width", "Paths")

@@ -10,7 +10,7 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.wide_commutator import to_beats
 from tactile_depth.poisson.transform.wide_row_pairs import latency as wide_row_pairs_latency
 from tactile_depth.poisson.transform.wide_row_pairs import rows_of_bursts, wide_row_pairs
-from tb.stream import check_bursts, extremes, parameters, uniform
+from tb.stream import check_bursts, extremes, parameters, parametrize, uniform
 from tb.wide import RowPairDriver, WideMonitor, alone
 
 
@@ -44,7 +44,7 @@ def shape(dut: Any, bursts: int) -> tuple[int, ...]:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3), (200, 0.3)]), ("amplitude", [0.4, None]))
+@parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3), (200, 0.3)]), ("amplitude", [0.4, None]))
 async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     (width,) = parameters(dut, "Width")
     await check(dut, uniform(shape(dut, 12), width, amplitude), gap=gap, pause=pause)

@@ -16,6 +16,7 @@ from tb.stream import (
     check_words,
     interrupt,
     parameters,
+    parametrize,
     send_apart,
     uniform,
 )
@@ -55,7 +56,7 @@ async def check(dut: Any, gap: Any = 0.0, pause: float = 0.0, interrupts: Any = 
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize(gap=[0.0, 0.1, 0.8], pause=[0.0, 0.3])
+@parametrize(gap=[0.0, 0.1, 0.8], pause=[0.0, 0.3])
 async def rows(dut: Any, gap: float, pause: float) -> None:
     await check(dut, gap, pause)
 
@@ -68,7 +69,7 @@ async def reset_in_mid_row(dut: Any) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize((("rows", "words"), [(0, 1), (1, -1), (1, 1)]))
+@parametrize((("rows", "words"), [(0, 1), (1, -1), (1, 1)]))
 async def a_frame_begins_afresh(dut: Any, rows: int, words: Any) -> None:
     """Start a frame after `rows` rows and `words` words of an incomplete frame."""
     (columns,) = parameters(dut, "Columns")

@@ -12,7 +12,7 @@ from tactile_depth.poisson.transform.wide_commutator import positions
 from tactile_depth.poisson.transform.wide_fft import wide_factors
 from tactile_depth.poisson.transform.wide_twiddle import LATENCY, wide_twiddle
 from tb.settings import RUN
-from tb.stream import extremes, parameters, uniform
+from tb.stream import extremes, parameters, parametrize, uniform
 from tb.wide import check_wide
 
 
@@ -39,7 +39,7 @@ def shape(dut: Any, bursts: int) -> tuple[int, ...]:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0, None]))
+@parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0, None]))
 async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     (width,) = parameters(dut, "InWidth")
     await check(dut, uniform(shape(dut, 12), width, amplitude), gap=gap, pause=pause)
