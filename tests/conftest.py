@@ -54,12 +54,18 @@ def pytest_generate_tests(metafunc: Any) -> None:
 
 
 def chosen_structures(simulator: str, structures: Sequence[Structure]) -> list[tuple[Structure, Any]]:
-    """Return the structures that run on a simulator, each with its marks; all on Verilator if it counts coverage."""
+    """Return the structures that run on a simulator, each with its marks; all on Verilator if it counts coverage.
+
+    The whole suite plays the first structure of a small core, `make test CORE=` and `make regress` play the others too.
+    """
     if RUN.coverage:
         return [(structure, ()) for structure in structures if simulator == "verilator"]
-    first = [(structure, ()) for structure in structures if simulator in structure.on]
+    first = [structure for structure in structures if simulator in structure.on]
     late = [structure for structure in structures if simulator in structure.late and simulator not in structure.on]
-    return [*first, *((structure, pytest.mark.regress) for structure in late)]
+    if not RUN.cores:
+        late = [*(structure for structure in first[1:] if not structure.device), *late]
+        first = [structure for structure in first if structure not in late]
+    return [*((structure, ()) for structure in first), *((structure, pytest.mark.regress) for structure in late)]
 
 
 def begins_at_random(item: Any) -> bool:
