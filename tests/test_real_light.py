@@ -57,9 +57,9 @@ def quadratic(real: Any) -> td.Pipeline:
     return td.Pipeline(td.load("gelsight-mini"), real / "background.png", model="quadratic")
 
 
-@pytest.mark.parametrize(("model", "areas"), [("cubic", 0.0015), ("quadratic", 0.001)])
+@pytest.mark.parametrize("model", ["cubic", "quadratic"])
 def test_another_light_changes_no_press(
-    pipeline: td.Pipeline, quadratic: td.Pipeline, presses: Any, model: str, areas: float
+    pipeline: td.Pipeline, quadratic: td.Pipeline, presses: Any, model: str
 ) -> None:
     """Measured with `cubic`: caps within 0.06 % on average, 1.2 % at worst, areas within 0.11 %."""
     pipeline = {"cubic": pipeline, "quadratic": quadratic}[model]
@@ -69,7 +69,7 @@ def test_another_light_changes_no_press(
         caps = mean(values, "cap") / mean(same, "cap")
         assert abs(caps.mean() - 1) < 0.001, light
         assert np.abs(caps - 1).max() < 0.02, light
-        assert (mean(values, "area") / mean(same, "area")).mean() == pytest.approx(1, abs=areas), light
+        assert (mean(values, "area") / mean(same, "area")).mean() == pytest.approx(1, abs=0.0015), light
 
 
 def test_the_record_of_a_press_is_that_of_its_circle(pipeline: td.Pipeline, presses: Any) -> None:

@@ -174,6 +174,7 @@ module light_gains_move #(
   input logic [2:0]                 write,
   input logic                       commits,
   input logic [3*GainWidth-1:0]     gains,
+  input logic [3*GainWidth-1:0]     used,
   input logic                       valid_q,
   input logic [3:0]                 position_q,
   input logic                       out_valid,
@@ -250,21 +251,21 @@ module light_gains_move #(
     assume (!started || rate == rate_q);  // a move is prepared before the last pixel comes
     for (int c = 0; c < 3; c++) begin
       int total, mean;
-      total = int'(sum[c]) >>> rate;
+      total = int'(sum[c]) >>> (int'(rate) + int'(int'(used[c*GainWidth+:GainWidth]) < 2 * Least - Step));
       mean = total >>> Drop;
       if (total[Drop-1:0] > Drop'(1 << (Drop - 1)) || (total[Drop-1:0] == Drop'(1 << (Drop - 1)) && mean[0])) begin
         mean = mean + 1;
       end
       move[c] = 0;
-      if (2 * int'(net[c]) >= Pixels) move[c] = Step;
-      else if (2 * int'(net[c]) <= -Pixels) move[c] = -Step;
+      if (8 * int'(net[c]) >= 3 * Pixels) move[c] = Step;
+      else if (8 * int'(net[c]) <= -3 * Pixels) move[c] = -Step;
       else if (4 * int'(near) >= Pixels) move[c] = mean;
       wanted[c] = int'(gains[c*GainWidth+:GainWidth]) - move[c];
       if (wanted[c] < Least) wanted[c] = Least;
       if (wanted[c] > Most) wanted[c] = Most;
       counts_agree[c] = core_net[c] == net[c] && core_sum[c] == sum[c];
-      compared_agrees[c] = int'($signed(slowed[6*c+:6])) == total && up[c] == (2 * int'(net[c]) <= -Pixels)
-          && down[c] == (2 * int'(net[c]) >= Pixels) && near_enough == (4 * int'(near) >= Pixels);
+      compared_agrees[c] = int'($signed(slowed[6*c+:6])) == total && up[c] == (8 * int'(net[c]) <= -3 * Pixels)
+          && down[c] == (8 * int'(net[c]) >= 3 * Pixels) && near_enough == (4 * int'(near) >= Pixels);
       moves_agree[c] = int'($signed(moves[c*(GainWidth+1)+:GainWidth+1])) == move[c];
       differs[c] = gains[c*GainWidth+:GainWidth] != wanted_q[c*GainWidth+:GainWidth];
     end
@@ -290,7 +291,7 @@ module light_gains_move #(
       if (in_last_row && column >= 16'd4) settles: assert (quiet >= 2'd1);
       if (in_last_row && column >= 16'd5) settled: assert (quiet >= 2'd2);
       moves_when_due: assert ((move_q & differs) == '0);
-      steps: cover (move_q[0] && 2 * int'(net[0]) >= Pixels && out_valid);
+      steps: cover (move_q[0] && 8 * int'(net[0]) >= 3 * Pixels && out_valid);
       follows: cover (move_q[2] && near == 4'(Pixels) && sum[2] == 6'd6);
     end
   end

@@ -74,13 +74,12 @@ module zero_capture
   typedef enum logic [1:0] {Idle, Armed, Summing} state_e;
   state_e state;
   logic [3:0] log2, log2_next;
-  logic [CountWidth-1:0] frames_to_come, frames_to_come_next;  // after this one
+  logic [CountWidth-1:0] frames_to_come;  // after this one
   logic take, frame_start, frame_end, begins, ends;
   assign take = g_level[Levels].valid;
   assign {frame_start, frame_end} = g_level[Levels].marks;
   assign begins = take & frame_start & state == Armed;
   assign log2_next = log2_frames > 4'($unsigned(MaxLog2)) ? 4'(MaxLog2) : log2_frames;
-  assign frames_to_come_next = begins ? (CountWidth'(1) << log2_next) - CountWidth'(1) : frames_to_come;
   assign busy = state != Idle | done;
 
   logic read_en, write_en, complete;
@@ -91,7 +90,8 @@ module zero_capture
     .Width(Width + Levels), .SumWidth(SumWidth)
   ) u_sum (
     .clk, .rst(rst | request), .in_valid(take & (state == Summing | begins)), .in_frame_start(frame_start),
-    .in_first_frame(begins), .in_last_frame(frames_to_come_next == '0), .in_data(g_level[Levels].words),
+    .in_first_frame(begins), .in_last_frame((begins ? CountWidth'(log2_next) : frames_to_come) == '0),
+    .in_data(g_level[Levels].words),
     .read_en, .read_block(read_node), .read_sums(sums_read),
     .write_en, .write_block(write_node), .write_sums(sums), .write_complete(complete)
   );
@@ -122,7 +122,7 @@ module zero_capture
     if (begins) begin
       state <= Summing;
       log2 <= log2_next;
-      frames_to_come <= frames_to_come_next;
+      frames_to_come <= (CountWidth'(1) << log2_next) - CountWidth'(1);
     end
     // After the last one all ones again: what follows before done is written nowhere.
     if (take && frame_end) frames_to_come <= frames_to_come - CountWidth'(1);

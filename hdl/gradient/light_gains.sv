@@ -5,11 +5,12 @@
 //
 // The gains follow the light where nothing touches. Of a frame's N pixels, its last row left out:
 //
-//   2 |pixels with out >= 1/8 less those with out <= -1/8| >= N    the light of this colour stepped: gain -+ 1/8
-//   else 4 (pixels with all |out| < 1/8) >= N                      gain - round( sum of their out >> rate / 2^SumLog2 )
+//   8 |pixels with out >= 1/8 less those with out <= -1/8| >= 3 N  the light of this colour stepped: gain -+ 1/8
+//   else 4 (pixels with all |out| < 1/8) >= N                      gain - round( sum of their out >> slow / 2^SumLog2 )
 //   else                                                           a large contact: the gain is held
 //
-// and 1/2 <= gain < 2. A frame uses the gains as they stood when its first pixel came, and moves them as its last pixel
+// and 1/2 <= gain < 2; slow is rate, and 1 more if the frame used a gain below 7/8: in more light a gain moves less, or
+// it would swing. A frame uses the gains as they stood when its first pixel came, and moves them as its last pixel
 // comes, if `follow` is high and `in_bad` was not. `write` of a colour replaces its gain by write_gain, and wins; less
 // than 1/2 counts as 1/2.
 // Stream in: colours relative to the reference, raster order. Stream out: deviations, I gain / reference - 1.
@@ -135,6 +136,8 @@ module light_gains
     assign moved = $signed({1'b0, gains[c]}) - move;
     assign kept = moved[GainWidth] ? '1 : moved[GainWidth-1:0];  // no move takes a gain of 1/2 below 0
     assign chosen = write[c] ? write_gain : commits ? kept : gains[c];
+    logic [3:0] slow;
+    assign slow = {1'b0, rate} + 4'(used[c] < One - GainWidth'(Step));
     assign next = chosen[GainWidth-1-:2] == '0 ? One >> 1 : chosen;
     always_ff @(posedge clk) begin
       if (en) begin
@@ -147,9 +150,9 @@ module light_gains
           sum <= (restart ? '0 : sum) + ({above, below} == '0 ? SumWidth'(counted_deviation) : '0);
         end
       end
-      slowed <= sum >>> rate;
-      up <= 2 * (CountWidth + 2)'(net) <= -(CountWidth + 2)'(Pixels);
-      down <= 2 * (CountWidth + 2)'(net) >= (CountWidth + 2)'(Pixels);
+      slowed <= sum >>> slow;
+      up <= 8 * (CountWidth + 4)'(net) <= -(CountWidth + 4)'(3 * Pixels);
+      down <= 8 * (CountWidth + 4)'(net) >= (CountWidth + 4)'(3 * Pixels);
       move <= up ? -Step : down ? Step : near_enough ? mean : '0;
       gains[c] <= next;
       if (free) used[c] <= next;

@@ -50,12 +50,15 @@ module depth_store
   // Beats in. A frame has ended, and awaits its record, in bank ended_bank.
 
   logic in_frame, begins, ends, write_bank, read_bank, reading, awaited, ended_bank, word_comes, record_ends;
-  logic [BeatWidth-1:0] next_beat, beat;
-  logic [Lanes*DataWidth-1:0] values;
+  logic [BeatWidth-1:0] next_beat, beat, written_beat;
+  logic [Lanes*DataWidth-1:0] values, written_values;
+  logic stored;  // the beat belongs to a frame
+  logic [1:0] writes;  // of each bank, a clock after the beat: the memories of a bank are far apart
   logic unused_tlast;
   assign unused_tlast = s_axis_tlast;
   assign begins = s_axis_tvalid & s_axis_tuser;
   assign ends = s_axis_tvalid & in_frame & ~s_axis_tuser & next_beat == BeatWidth'(Beats - 1);
+  assign stored = s_axis_tvalid & (s_axis_tuser | in_frame);
   assign beat = s_axis_tuser ? '0 : next_beat;
   bank_choice u_banks (
     .clk, .rst, .keep, .write_begin(begins), .write_end(ends), .publish(record_ends), .write_bank,
@@ -75,6 +78,9 @@ module depth_store
   always_ff @(posedge clk) begin
     if (begins || ends) in_frame <= begins;
     if (s_axis_tvalid) next_beat <= beat + BeatWidth'(1);
+    writes <= {stored & write_bank, stored & ~write_bank};
+    written_beat <= beat;
+    written_values <= values;
     if (ends) ended_bank <= write_bank;
     if (s_event_tvalid) word <= s_event_tlast ? '0 : word + 4'd1;
     awaited <= ends | (awaited & ~record_ends);
@@ -108,9 +114,9 @@ module depth_store
   for (genvar b = 0; b < 2; b++) begin : g_bank
     logic [Lanes*DataWidth-1:0] read_values;
     td_ram #(.Width(Lanes * DataWidth), .Depth(Beats)) u_values (
-      .clk, .write_en(s_axis_tvalid & (s_axis_tuser | in_frame) & write_bank == 1'(b)), .write_address(beat),
-      .write_data(values), .read_en(value_read & read_bank == 1'(b)),
-      .read_address(value_address[PlaceWidth-1:LaneLog2]), .read_data(read_values)
+      .clk, .write_en(writes[b]), .write_address(written_beat), .write_data(written_values),
+      .read_en(value_read & read_bank == 1'(b)), .read_address(value_address[PlaceWidth-1:LaneLog2]),
+      .read_data(read_values)
     );
     always_ff @(posedge clk) bank_q[b] <= read_values;
   end

@@ -223,7 +223,7 @@ def _settle(ratios: np.ndarray, lsb: np.float32, limit: float, rounds: int, enou
                     total[colour] += deviation[colour]
         for colour in range(3):
             before, after = gains[colour], gains[colour]
-            if 2 * abs(net[colour]) >= pixels:
+            if 8 * abs(net[colour]) >= 3 * pixels:
                 after = before - limit * np.sign(net[colour])
             elif 4 * count >= pixels:
                 after = before / (1 + total[colour] / count)

@@ -78,7 +78,7 @@ class Gains:
                     if place & 12 == 12:
                         if dut.follow.value and not bad:
                             deviations = light.deviations(np.array(ratios).reshape(self.shape), self.used[-1])
-                            gains = light.followed(deviations, gains, int(dut.rate.value))
+                            gains = light.followed(deviations, gains, self.used[-1], int(dut.rate.value))
                         bad = False
             write = int(dut.write.value)
             written = light.limited(np.array(int(dut.write_gain.value)))

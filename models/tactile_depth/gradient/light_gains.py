@@ -8,9 +8,10 @@ light of the reference over that of the picture. Where nothing touches, ratio * 
     gain        16 bits unsigned, 15 fraction bits, 1/2 <= gain < 2
     deviation   17 bits signed, 15 fraction bits, ratio * gain - 1; 0 where all three ratios of a pixel are 0
 
-A frame moves the gains by the deviations of its pixels, the last row left out. A step of the light moves most pixels of
-a colour beyond 1/8 in one direction: then the gain moves by 1/8. Contact leaves many pixels of all colours within 1/8:
-then the gain moves by their mean. A contact so large that it does neither leaves the gain as it is.
+A frame moves the gains by the deviations of its pixels, the last row left out. A step of the light moves three eighths
+of the pixels of a colour, or more, beyond 1/8 in one direction: then the gain moves by 1/8. Contact leaves many pixels
+of all colours within 1/8: then the gain moves by their mean. A contact so large that it does neither leaves the gain as
+it is. With half of the pixels in place of three eighths a light at which a third of them are near would stay as it is.
 
 A stream has the filter of the hardware (`LightFilter`): the gains that a frame moved act on the next frame. A single
 picture has the gains at which its own deviations come to rest (`settled`).
@@ -90,8 +91,12 @@ class Light:
         drop = self.ratio_fraction + self.gain_width - 1 - self.deviation.fraction
         return round_saturate(difference, drop, self.deviation.width, monitor, "light_gains")
 
-    def followed(self, deviations: np.ndarray, gains: np.ndarray, rate: int = 0) -> np.ndarray:
-        """Return the gains, int64 (3,), that a frame of deviations (rows, columns, 3) moves `gains` to."""
+    def followed(self, deviations: np.ndarray, gains: np.ndarray, used: np.ndarray, rate: int = 0) -> np.ndarray:
+        """Return the gains, int64 (3,), that a frame of deviations (rows, columns, 3) moves `gains` to.
+
+        The frame has the gains `used`. Where they are below 7/8 they move half as far: in more light a gain that moved
+        by the mean deviation would go beyond, and swing.
+        """
         counted = deviations[:-1].reshape(-1, 3)
         above, below = counted >= self.near, counted <= -self.near
         net = np.count_nonzero(above, axis=0) - np.count_nonzero(below, axis=0)
@@ -100,9 +105,10 @@ class Light:
         if 4 * np.count_nonzero(near) >= self.pixels:
             third = -(-2 * self.pixels // 3)
             drop = (third - 1).bit_length() + self.deviation.fraction - (self.gain_width - 1)
-            fine = round_half_even(counted[near].sum(axis=0) >> rate, drop)
+            slow = rate + (used < self.unity - (self.unity >> NEAR_LOG2))
+            fine = round_half_even(counted[near].sum(axis=0) >> slow, drop)
         coarse = np.sign(net) << (self.gain_width - 1 - NEAR_LOG2)
-        return self.limited(gains - np.where(2 * np.abs(net) >= self.pixels, coarse, fine))
+        return self.limited(gains - np.where(8 * np.abs(net) >= 3 * self.pixels, coarse, fine))
 
 
 def settled(ratios: np.ndarray, light: Light) -> np.ndarray:
@@ -143,7 +149,7 @@ def _settled(ratios: np.ndarray) -> np.ndarray:
         if 4 * count >= pixels:
             mean = deviations.astype(np.float64) @ near.astype(np.float64) / count  # sums are exact in any order
             gains = gains / (1 + mean)
-        gains = np.where(2 * np.abs(net) >= pixels, before - limit * np.sign(net), gains).clip(0.5, 2)
+        gains = np.where(8 * np.abs(net) >= 3 * pixels, before - limit * np.sign(net), gains).clip(0.5, 2)
         if np.abs(gains - before).max() < SETTLED:
             break
     return gains
@@ -170,7 +176,7 @@ class LightFilter:
         """Return the gains of a frame of ratios (rows, columns, 3), and move them for the next unless it is bad."""
         used = self.gains
         if self.follow and not bad:
-            self.gains = self.light.followed(self.light.deviations(ratios, used), used, self.rate)
+            self.gains = self.light.followed(self.light.deviations(ratios, used), used, used, self.rate)
         return used
 
     def take_all(self, ratios: np.ndarray) -> np.ndarray:
