@@ -25,11 +25,12 @@ from tactile_depth.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WI
 from tactile_depth.errors import InputError, InputWarning
 from tactile_depth.frames import Frames, camera_scale
 from tactile_depth.pipeline import Pipeline
+from tactile_depth.presets import CHIP
 from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.sensor import Sensor
 
 RESULTS = ("extremes.json",)
-CHOSEN = {"DATA_WIDTH": "15", "COEFF_WIDTH": "18", "GAIN_WIDTH": "16", "DEPTH_RANGE": "2"}  # docs/hardware.md, ULX3S
+CHOSEN = {run_request.WORDS[name]: f"{value:g}" for name, value in CHIP.words.items()}
 GRID = {"ROWS": "48", "COLS": "64"}
 THRESHOLD_MM = 0.1  # of `td.Pipeline`: gel that is less deep counts as untouched
 RIGHT = 0.03  # of the true height: a map so near to the first of the stream is right again
