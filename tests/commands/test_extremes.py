@@ -147,7 +147,7 @@ def sensor_row(name: str, narrowest: bool = False, rtl: bool = False, **variable
     return row
 
 
-@pytest.mark.parametrize(("narrowest", "words", "bar_mm"), [(False, "15/18/16", 0.006), (True, "12/10/16", 0.03)])
+@pytest.mark.parametrize(("narrowest", "words", "bar_mm"), [(False, "15/10/16", 0.006), (True, "12/10/16", 0.03)])
 def test_a_plain_contact_has_the_height_that_was_drawn(narrowest: bool, words: str, bar_mm: float) -> None:
     """Compare with bars near what was measured: 0.003 mm, and 0.020 mm with the narrowest words."""
     row = sensor_row("ball", narrowest)
@@ -165,7 +165,7 @@ def test_one_frame_without_light_costs_that_frame_alone() -> None:
     assert row.python.startswith("refused: pictures: it is black")
 
 
-@pytest.mark.parametrize(("name", "frames"), [("light x 0.8", 2), ("light x 1.25", 8)])
+@pytest.mark.parametrize(("name", "frames"), [("light x 0.8", 2), ("light x 1.25", 4)])
 def test_gains_follow_a_step_of_the_light(name: str, frames: int) -> None:
     row = sensor_row(name)
     assert row.worst.height > 1
@@ -173,9 +173,9 @@ def test_gains_follow_a_step_of_the_light(name: str, frames: int) -> None:
     assert abs(row.alone.height) < 0.01  # a picture by itself
 
 
-def test_gains_swing_in_much_more_light() -> None:
+def test_gains_come_to_rest_in_much_more_light() -> None:
     row = sensor_row("no contact, light x 1.6")
-    assert row.last.height > 0.1
+    assert row.last.height < 0.03
     assert row.alone.height < 0.03  # a picture by itself
 
 
@@ -214,11 +214,11 @@ def test_a_sensor_row_that_is_not_as_it_must_be_is_named() -> None:
     broken = replace(row, bit_exact=False, registers_agree=False, saturations={"flat_field": 1})
     lines = sensor_extremes.faults(sensor_extremes.CASES[0], broken)
     assert len(lines) == 3
-    assert all(line.startswith("ball, 15/18/16: ") for line in lines)
+    assert all(line.startswith("ball, 15/10/16: ") for line in lines)
 
 
 def test_light_gains_of_ten_million_frames() -> None:
-    """Find them where they were, and within 0.2 % of the light; in much more light only with LIGHT.rate 1."""
+    """Find them where they were, and within 0.2 % of the light."""
     request, drawn = requested()
     sensor = sensor_extremes.on_grid(drawn, sensor_extremes.untouched_picture(drawn, sensor_extremes.DIM))
     config = run_request.configure(request, sensor)
@@ -226,9 +226,7 @@ def test_light_gains_of_ten_million_frames() -> None:
     assert {state.light for state in states} == set(long_state.LIGHTS)
     for state in states:
         assert state.settled_after >= 0, state
-        if not state.light.endswith("in turn") and not (state.light in ("x 1.6", "x 1.99") and state.rate == 0):
-            assert state.off_percent < 0.2, state
-    assert next(each for each in states if (each.light, each.rate) == ("x 1.6", 0)).off_percent > 5
+        assert state.off_percent < 0.2 or state.light.endswith("in turn"), state
 
 
 def test_the_gains_that_are_skipped_to_are_those_of_every_frame(monkeypatch: pytest.MonkeyPatch) -> None:
