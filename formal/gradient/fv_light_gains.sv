@@ -175,6 +175,8 @@ module light_gains_move #(
   input logic                       commits,
   input logic [3*GainWidth-1:0]     gains,
   input logic [3*GainWidth-1:0]     used,
+  input logic                       free,
+  input logic                       in_frame,
   input logic                       valid_q,
   input logic [3:0]                 position_q,
   input logic                       out_valid,
@@ -215,6 +217,7 @@ module light_gains_move #(
   logic signed [4:0] net[3], core_net[3];
   logic signed [5:0] sum[3], core_sum[3];
   logic [1:0] quiet;  // clocks since the core counted
+  logic [1:0] steady;  // clocks since the gains of the frame could change
   always_comb begin
     for (int c = 0; c < 3; c++) begin
       is_above[c] = int'($signed(out[c*OutWidth+:OutWidth])) >= Near;
@@ -231,6 +234,7 @@ module light_gains_move #(
   always_ff @(posedge clk) begin
     rate_q <= rate;
     quiet <= en && counts ? '0 : quiet + 2'(quiet != '1);
+    steady <= free || rst || !started ? '0 : steady + 2'(steady != '1);
     if (en && out_valid && !out_position[2]) begin
       if (begins) known <= 1'b1;
       near <= (begins ? '0 : near) + 4'(is_near);
@@ -280,8 +284,11 @@ module light_gains_move #(
   always_comb begin
     if (started) begin
       if (known) counts_are_those: assert (counts_agree == '1 && core_near == near);
-      if (known && !counts && quiet >= 2'd1) compared: assert (compared_agrees == '1);
-      if (known && !counts && quiet >= 2'd2) moves_are_those: assert (moves_agree == '1);
+      if (known && !counts && quiet >= 2'd1 && steady >= 2'd1) compared: assert (compared_agrees == '1);
+      if (known && !counts && quiet >= 2'd2 && steady >= 2'd2) moves_are_those: assert (moves_agree == '1);
+      if (row != '0 || column >= 16'd1) goes_on: assert (in_frame);
+      if (row != '0 || column >= 16'd2) stays: assert (steady >= 2'd1);
+      if (row != '0 || column >= 16'd3) stayed: assert (steady >= 2'd2);
       if (in_last_row && column >= 16'd1) taken: assert (!(valid_q && !position_q[2]));
       if (in_last_row && column >= 16'd2) left: assert (!(out_valid && !out_position[2]));
       if (in_last_row && column >= 16'd3) counted: assert (!counts);
