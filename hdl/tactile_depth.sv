@@ -8,8 +8,7 @@
 // Stream out: depth codes in raster order (tridiagonal: bottom row first), Lanes neighbours in a beat with the first in
 // the lowest bits, each sign-extended to whole bytes; tuser with the first beat of a frame, tlast with the last of a
 // row; depth_mm = code * depth_lsb_mm, pressed in is positive. Latency: fixed, models/tactile_depth/latency.py. Gaps in
-// the input change no result, and not the cycles from the last pixel to the first depth. A stalled sink stops the
-// pipeline. Registers: docs/registers.md. Bit-accurate model: models/tactile_depth/tactile_depth.py.
+// the input change nothing. A stalled sink stops all. Bit-accurate model: models/tactile_depth/tactile_depth.py.
 
 `default_nettype none
 
@@ -41,7 +40,6 @@ module tactile_depth
   output logic                    m_axis_tuser,
   output logic                    contact,
   output logic                    irq,  // level
-
   output logic [31:0]             m_event_tdata,
   output logic                    m_event_tvalid,
   input  wire                     m_event_tready,
@@ -143,9 +141,8 @@ module tactile_depth
     .s_axil_arprot, .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready,
     .irq, .events, .levels, .first_depth_latency, .first_depth_latency_valid, .record, .contact_settings, .timeout,
     .dark_level, .light_command, .light_gains, .frame_start(en & pixel_frame_start), .table_command,
-    .table_answer(slope_answer | zero_answer),
-    .table_bank, .table_in_use(slope_in_use | zero_in_use), .reference_command, .reference_status, .zero_command,
-    .zero_status, .register_command, .register_answer
+    .table_answer(slope_answer | zero_answer), .table_bank, .table_in_use(slope_in_use | zero_in_use),
+    .reference_command, .reference_status, .zero_command, .zero_status, .register_command, .register_answer
   );
 
 endmodule
