@@ -15,7 +15,7 @@ ROOMS = {
     "run": ("calibrate", "reflex", "sim"),
     "study": ("baselines", "budget", "certify", "extremes", "figures", "presses", "report", "sweep", "trade", "tune"),
     "verify": ("coverage", "formal", "lint", "mutate", "netlists", "quick", "regress", "sign-off", "test", "upsets"),
-    "hardware": ("asic", "fpga", "registers", "synth", "wrap"),
+    "hardware": ("asic", "fpga", "nexus", "registers", "synth", "wrap"),
 }
 COMMANDS = {command: room for room, commands in ROOMS.items() for command in commands}
 

@@ -104,18 +104,23 @@ def parse(arguments: list[str]) -> Request:
     )
     target = values.get("TARGET", "")
     one_of(Argument("TARGET", target), BOARDS)
-    numbers = variables.whole_numbers(values, "SEEDS", DEFAULT_SEEDS)
-    if not numbers or not all(1 <= seed <= LARGEST_SEED for seed in numbers) or len(set(numbers)) < len(numbers):
-        raise InputError(
-            f"SEEDS={values['SEEDS']}: accepted are different whole numbers from 1 with commas between, as 1,2,3"
-        )
-    minutes = variables.number(values, "MINUTES", DEFAULT_MINUTES, 1, LARGEST_MINUTES)
+    seeds, minutes = effort(values, DEFAULT_SEEDS)
     clock_mhz = values.get("CLOCK_MHZ", str(DEFAULT_CLOCK_MHZ))
     if clock_mhz not in map(str, CLOCKS_MHZ):
         raise InputError(f"CLOCK_MHZ={clock_mhz}: accepted are {', '.join(map(str, CLOCKS_MHZ))}")
     sensor = _sensor(values)
     design = run_request.of_values(values, run_request.WITH_CAMERA, "chip", "")
-    return Request(target, numbers, minutes, int(clock_mhz), sensor, design)
+    return Request(target, seeds, minutes, int(clock_mhz), sensor, design)
+
+
+def effort(values: dict[str, str], default_seeds: tuple[int, ...]) -> tuple[tuple[int, ...], int]:
+    """Return SEEDS, and MINUTES of a processor for each. Raises InputError."""
+    numbers = variables.whole_numbers(values, "SEEDS", default_seeds)
+    if not numbers or not all(1 <= seed <= LARGEST_SEED for seed in numbers) or len(set(numbers)) < len(numbers):
+        raise InputError(
+            f"SEEDS={values['SEEDS']}: accepted are different whole numbers from 1 with commas between, as 1,2,3"
+        )
+    return numbers, variables.number(values, "MINUTES", DEFAULT_MINUTES, 1, LARGEST_MINUTES)
 
 
 def _sensor(values: dict[str, str]) -> Camera | None:
@@ -147,9 +152,9 @@ def camera_of(request: Request, camera: CameraConfiguration | None) -> CameraCon
     return camera
 
 
-def check() -> None:
-    """Raise InputError unless every tool is installed."""
-    for tool in TOOLS:
+def check(*tools: str) -> None:
+    """Raise InputError unless every tool is installed; TOOLS without names."""
+    for tool in tools or TOOLS:
         if not (BIN / tool).exists():
             raise InputError(f"{tool} is not installed: run `{BIN / 'pip'} install -r requirements-hardware.txt`")
 
@@ -417,17 +422,24 @@ def sources(arguments: list[str]) -> str:
     return synthesis.sources(request.design, [*repository.TECHNOLOGY, *repository.BOARDS[request.target]])
 
 
+def routed(report: dict[str, Any]) -> list[str]:
+    """Return the lines of a report that say what is used of the device, and the clock."""
+    rows, columns = report["grid"]
+    each = ", ".join(f"{value:.1f}" if value else "not routed" for value in report["fmax_mhz_by_seed"].values())
+    return [
+        f"{report['device']}, {rows} x {columns}, {report['solver']}, {report['boundary']}",
+        *(
+            f"{name:<14} {both['used']:>8,} of {both['available']:>7,}  {100 * both['used'] / both['available']:5.1f} %"
+            for name, both in report["utilization"].items()
+            if both["available"] > 1
+        ),
+        f"routed clock   {report['fmax_mhz']:.1f} MHz, median of {each}; asked {report['clock_mhz']:.0f}",
+    ]
+
+
 def table(report: dict[str, Any]) -> str:
     """Return the printed report."""
-    rows, columns = report["grid"]
-    lines = [f"{report['device']}, {rows} x {columns}, {report['solver']}, {report['boundary']}"]
-    lines += [
-        f"{name:<14} {both['used']:>8,} of {both['available']:>7,}  {100 * both['used'] / both['available']:5.1f} %"
-        for name, both in report["utilization"].items()
-        if both["available"] > 1
-    ]
-    each = ", ".join(f"{value:.1f}" if value else "not routed" for value in report["fmax_mhz_by_seed"].values())
-    lines.append(f"routed clock   {report['fmax_mhz']:.1f} MHz, median of {each}; asked {report['clock_mhz']:.0f}")
+    lines = routed(report)
     if "crossing_ns" in report:
         lines.append(f"camera's clock {report['camera_fmax_mhz']:.1f} MHz; asked {report['camera_clock_mhz']:.0f}")
         each = ", ".join(f"{value:.2f}" for value in report["crossing_ns_by_seed"].values())

@@ -6,7 +6,9 @@ table over grids and both solvers. Exit status: 0 when the design fits, 1 when n
 
 The cores of the top and of the solver keep their boundaries, so that each has its figures and the design is their sum.
 With CAMERA, BAYER and WINDOW the camera front end comes along, in a row of its own. commands/hardware/targets.py has
-the mappings. The count of models/tactile_depth/cost.py stands below the sum.
+the mappings. The count of models/tactile_depth/cost.py stands below the sum. The logic depth is the longest path from
+and to a register, memory, multiplier or port: the sum of the delays of its cells, without wires, by Yosys' `sta` on the
+mapped netlist. An ECP5 has none, because Yosys has no delays of its registers, memories and multipliers.
 """
 
 import importlib.metadata
@@ -20,7 +22,7 @@ import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from concurrent.futures import as_completed
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -50,6 +52,10 @@ CONFIGURING = (
     *("GRADIENT", "CALIBRATION", "CAMERA_SIZE", "CONFIG"),
 )
 NOTES = TARGETS[DEFAULT_TARGET].notes
+DEPTH = "sta.txt"
+LONGEST = re.compile(  # of the report of sta, in ps, from the end of the path to its start
+    r"Latest arrival time in .*:\n +(\d+) (.*)\n(?:.*\n)*? +\d+ (.*)\n +0 +\\?(.*) \(<primary input>\)"
+)
 
 
 @dataclass(frozen=True)
@@ -73,6 +79,7 @@ class Design:
     memories: list[Memory]
     misfit: str  # the resources that are not enough; empty when the design fits
     seconds: float
+    logic_depth: dict[str, Any] = field(default_factory=dict)  # ns, start, end; empty when it is not known
 
 
 def parse(arguments: list[str]) -> tuple[Target, str, list[int], run_request.Request]:
@@ -164,9 +171,15 @@ def mapped(
     keep = [f"setattr -mod -set keep_hierarchy 1 {core}" for core in cores]
     scripts = []
     for name, steps in target.mappings.items():
-        commands = [*(f"blackbox {box}" for box in boxes if name == "logic"), *steps]
+        commands = [
+            *(f"blackbox {box}" for box in boxes if name == "logic"),
+            *steps,
+            f"tee -q -o {name}.json stat -json",
+        ]
+        if name == "logic" and target.delays:
+            commands += [*target.delays, f"tee -q -o {DEPTH} sta"]
         script = folder / f"{name}.ys"
-        script.write_text("\n".join([*lines, *keep, *commands, f"tee -q -o {name}.json stat -json"]) + "\n")
+        script.write_text("\n".join([*lines, *keep, *commands]) + "\n")
         scripts.append(script)
     with threads(len(scripts)) as pool:
         runs = [pool.submit(yosys.run, script) for script in scripts]
@@ -175,6 +188,20 @@ def mapped(
     if faults:
         raise RuntimeError("; ".join(faults))
     return {name: tally(folder / f"{name}.json") for name in target.mappings}
+
+
+def logic_depth(report: Path) -> dict[str, Any]:
+    """Return the longest path in a report of `sta`: its ns without wires, start and end; empty without a report.
+
+    Raises RuntimeError: the report has no path.
+    """
+    if not report.exists():
+        return {}
+    path = LONGEST.search(report.read_text())
+    if path is None:
+        raise RuntimeError(f"Yosys found no path: see {os.path.relpath(report)}")
+    picoseconds, end, cell, port = path.groups()
+    return {"ns": int(picoseconds) / 1000, "start": cell if port == "clk" else port, "end": end}
 
 
 def misfit(totals: Mapping[str, float], target: Target) -> str:
@@ -238,13 +265,13 @@ def synthesize(
     plain = {name: sum(memory.plain()[name] for memory in arrays) for name in target.plain}
     details = in_ultras(arrays) if plain else {}
 
-    def design(totals: dict[str, float], listed: list[Core]) -> Design:
+    def design(totals: dict[str, float], listed: list[Core], depth: dict[str, Any]) -> Design:
         seconds = round(time.monotonic() - began, 1)
         model = modelled(config, target)
-        return Design(described, totals, model, details, listed, arrays, misfit(totals, target), seconds)
+        return Design(described, totals, model, details, listed, arrays, misfit(totals, target), seconds, depth)
 
     if misfit(plain, target):
-        return design(plain, [])
+        return design(plain, [], {})
     ultras = [memory.path for memory in arrays if memory.style == "ultra"] if plain else []
     boxes = [module for module in modules if path_of(module) in ultras]
     cells = mapped(target, lines, cores, boxes, folder, f"{config.solver} {config.rows}x{config.columns}")
@@ -261,7 +288,15 @@ def synthesize(
         details |= in_ultras(arrays) if plain else {}
     totals = {name: sum(core.counts[name] for core in listed) for name in listed[0].counts}
     details |= {name: totals.pop(name) for name in list(totals) if name not in target.has}
-    return design(totals, sorted(listed, key=lambda core: -core.counts["LUT"]))
+    reports = [folder / DEPTH] if camera is None else [folder / DEPTH, folder / CAMERA_UNIT / DEPTH]
+    depth = max(map(logic_depth, reports), key=lambda path: path.get("ns", 0))
+    return design(totals, sorted(listed, key=lambda core: -core.counts["LUT"]), depth)
+
+
+def depth_text(design: Design) -> list[str]:
+    """Return the line of the longest path, none where it is not known."""
+    path = design.logic_depth
+    return [f"logic depth: {path['ns']:.2f} ns, {path['start']} -> {path['end']}"] if path else []
 
 
 def text(design: Design, target: Target) -> str:
@@ -305,6 +340,7 @@ def text(design: Design, target: Target) -> str:
             f"of the {target.device.name}: {use}",
             f"LUTs: {d[LOGIC]:,g} logic, {d[MEMORY]:,g} memory, {d[SHIFT]:,g} shift registers",
             *stores,
+            *depth_text(design),
             *target.notes,
         ]
     )
@@ -410,7 +446,12 @@ def run(arguments: list[str]) -> int:
     recorded.record("synth", arguments, recordable(built, name))
     if grids:
         head, *rows = grid_rows(document)
-        print("\n".join([table(head, rows), *target.notes]))
+        depths = [
+            f"{each.configuration['solver']}, {each.configuration['grid']}: " + "".join(depth_text(each))
+            for each in built
+            if each.logic_depth
+        ]
+        print("\n".join([table(head, rows), *depths, *target.notes]))
     elif not built[0].misfit:
         print(text(built[0], target))
     print(f"results: {os.path.relpath(out / 'resources.json')}")

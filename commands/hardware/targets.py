@@ -24,7 +24,8 @@ Cells = Mapping[str, tuple[str, float]]  # resource and number of it, by cell
 class Target:
     """A device, its resources, and its mappings: lines of Yosys after reading, and the cells that count.
 
-    `plain` names the memories that are counted by the plain rule of commands/hardware/fpga_memory.py.
+    `plain` names the memories that are counted by the plain rule of commands/hardware/fpga_memory.py, and `delays` are
+    lines that make a mapped design ready for Yosys' `sta`; without them the target has no logic depth.
     """
 
     device: Device
@@ -33,6 +34,7 @@ class Target:
     cells: Mapping[str, Cells]
     notes: tuple[str, ...]
     plain: tuple[str, ...] = ()
+    delays: tuple[str, ...] = ()
 
     def sources(self) -> list[Path]:
         """Return the sources that replace cores of hdl/."""
@@ -115,9 +117,18 @@ TARGETS = {
             "Registers beside multipliers are packed as a 7-series DSP takes them, the closest that Yosys knows.",
             "UltraRAM, BRAM36: the plain rule, 4,096 x 72 bits and the widths of a block RAM; 'mapped' is Yosys, which "
             "packs several words into a row of an UltraRAM where Vivado does not.",
+            "Logic depth: by Yosys' delays of 7-series cells, without wires, across the cores.",
             "No clock: nothing is placed or routed. constraints/xczu7ev_ooc.tcl does that with Vivado.",
         ),
         ("UltraRAM", "BRAM36"),
+        (
+            "setattr -mod -unset keep_hierarchy *",
+            "flatten -noscopeinfo",  # sta follows no path into another module
+            "autoname",
+            # The mapping ends with bare boxes for registers and carries, so the library is read again for their delays.
+            "delete =$paramod*",
+            "read_verilog -overwrite -lib -specify +/xilinx/cells_sim.v",
+        ),
     ),
     "ecp5": Target(
         ECP5,

@@ -176,6 +176,36 @@ def routed() -> str:
 ULX3S_CELLS = {"MULT18X18D": "MULT18X18D", "DP16KD": "DP16KD", "TRELLIS_COMB": "LUT", "TRELLIS_FF": "registers"}
 
 
+def routed_alone() -> str:
+    rows = []
+    for _, figures, source in runs("nexus"):
+        clocks = ", ".join(f"{mhz:.1f}" for mhz in figures["fmax_mhz_by_seed"].values())
+        used = (f"{both['used']:,} of {both['available']:,}" for both in map(figures["utilization"].get, NEXUS_CELLS))
+        clock = f"{figures['fmax_mhz']:.1f} ({clocks})"
+        rows.append(
+            (
+                figures["lanes"],
+                figures["data_width"],
+                figures["device"],
+                clock,
+                f"{figures['clock_mhz']:g}",
+                *used,
+                *source,
+            )
+        )
+    head = (
+        "lanes P",
+        "bits of a word",
+        "device",
+        "routed clock, MHz: median (each seed)",
+        "asked, and assumed elsewhere",
+    )
+    return compact((*head, *NEXUS_CELLS.values(), *SOURCE), rows)
+
+
+NEXUS_CELLS = {"MULT18_CORE": "18 x 18", "OXIDE_EBR": "block memories", "OXIDE_COMB": "LUT", "OXIDE_FF": "registers"}
+
+
 def in_cells() -> str:
     rows: list[tuple[object, ...]] = []
     for name, figures, source in runs("asic"):
@@ -289,6 +319,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "make synth": lambda: synthesized(False),
     "make synth TARGET=ecp5": lambda: synthesized(False, "ecp5"),
     "make fpga": routed,
+    "make nexus": routed_alone,
     "make asic": in_cells,
     "make asic by core": by_core,
     "estimate at 45 nm": estimated,

@@ -67,6 +67,19 @@ def test_a_multiplication_of_27_by_18_bits_is_one_dsp_with_its_registers(tmp_pat
     assert cells["logic"][synth.TOP]["DSP48E1"] == 2
     counts = synth.counted(XCZU7EV, cells, synth.TOP, [], [])
     assert (counts["DSP48E2"], counts["LUT"], counts["FF"]) == (2, 0, 0)
+    path = synth.logic_depth(tmp_path / synth.DEPTH)
+    assert path["start"].endswith("(DSP48E1.CLK->PCOUT)")
+    assert path["end"].endswith("(DSP48E1.PCIN)")
+    assert 1.0 < path["ns"] < 2.0
+    design = synth.Design({}, {}, {}, {}, [], [], "", 0.0, path)
+    assert synth.depth_text(design) == [f"logic depth: {path['ns']:.2f} ns, {path['start']} -> {path['end']}"]
+
+
+def test_a_device_without_delays_has_no_logic_depth(tmp_path: Path) -> None:
+    assert synth.logic_depth(tmp_path / synth.DEPTH) == {}
+    (tmp_path / synth.DEPTH).write_text("No timing paths found.\n")
+    with pytest.raises(RuntimeError, match="found no path"):
+        synth.logic_depth(tmp_path / synth.DEPTH)
 
 
 @pytest.mark.parametrize(
