@@ -21,6 +21,7 @@ import numpy as np
 
 from commands.common import repository, variables, wrapper
 from commands.common import simulator as simulation
+from commands.hardware import fpga
 from commands.hardware import yosys as yosys_runner
 from commands.verify import items
 from tactile_depth.built_in import load
@@ -221,7 +222,7 @@ def board_sources() -> list[Path]:
 def wrappers_of_boards() -> list[Path]:
     """Write the wrappers that each board instantiates, without and with a camera, and return their paths."""
     fields = [default_parameters() | {"Camera": camera} for camera in (0, 1)]
-    return [wrapper.write(FOLDER, name, each) for name in repository.BOARDS for each in fields]
+    return [wrapper.write(FOLDER, name, each) for name in fpga.BOARDS for each in fields]
 
 
 def checks() -> list[Check]:
