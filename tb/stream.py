@@ -4,7 +4,7 @@
 import gc
 import itertools
 import random
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, ClassVar
 
 import cocotb
@@ -32,7 +32,7 @@ def sample(values: list[Any]) -> list[Any]:
     return values if REGRESS else [values[0], values[-1]]
 
 
-def parametrize(*options: Any, **named: Any) -> Any:
+def parametrize(*options: Any, **named: Any) -> Callable[[Any], Any]:
     """Return cocotb.parametrize, with every combination of values in `make regress` and `make mutate`.
 
     In `make test` each value of each parameter takes part once at least: the first of each, the second of each, ..
