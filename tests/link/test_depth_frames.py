@@ -175,6 +175,17 @@ def test_packets_that_come_twice_change_nothing(frame_packets: list[bytes]) -> N
     assert (host.delivered, host.lost) == (1, 0)
 
 
+def test_a_status_that_waited_for_the_trailer_is_no_reset(frame_packets: list[bytes]) -> None:
+    """The device takes the fields of a status when it is due, and finishes the packet that has begun."""
+    device = device_of(BUILD)
+    device.offer(extreme_codes(BUILD, np.random.default_rng(7)), Record(0, 1, 0))
+    *_, trailer = lines(device)
+    old = replace(device.status(), sending=True)
+    host = DepthFrames()
+    host.feed(b"".join([*frame_packets[:-2], trailer, to_line(old.pack()), frame_packets[-1]]))
+    assert (host.delivered, host.lost, host.resets) == (1, 0, 0)
+
+
 def test_packets_in_a_wrong_order_give_no_frame(frame_packets: list[bytes]) -> None:
     frame_packets[3], frame_packets[4] = frame_packets[4], frame_packets[3]
     host = DepthFrames()

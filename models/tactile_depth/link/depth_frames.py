@@ -92,7 +92,9 @@ class DepthFrames:
         return None
 
     def _take_status(self, status: Status) -> None:
-        done = (status.sent - status.sending) % NUMBERS
+        # A status that waits while a trailer leaves says that the trailer's frame is being sent.
+        is_old = status.sending and status.sent == self._done
+        done = status.sent if is_old else (status.sent - status.sending) % NUMBERS
         if self.status is None:
             self._done, self._last_resets = done, status.resets
             self._restart(DepthFormat.NONE)
