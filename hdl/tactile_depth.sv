@@ -4,11 +4,11 @@
 //   s_axis -> video_unit -> gradient_unit -> poisson_unit -> depth_unit -> contact_unit -> m_axis, contact, m_event
 //                                    axil_registers <-> s_axil
 //
-// Stream in: AXI4-Stream Video, R in 23:16, B in 15:8, G in 7:0, raster order, one pixel a cycle sustained.
+// Stream in: AXI4-Stream Video, R in 23:16, B in 15:8, G in 7:0, raster order, a pixel a cycle; gaps change no result.
 // Stream out: depth codes in raster order (tridiagonal: bottom row first), Lanes neighbours in a beat with the first in
 // the lowest bits, each sign-extended to whole bytes; tuser with the first beat of a frame, tlast with the last of a
-// row; depth_mm = code * depth_lsb_mm, pressed in is positive. Latency: fixed, models/tactile_depth/latency.py. Gaps in
-// the input change nothing. A stalled sink stops all. Bit-accurate model: models/tactile_depth/tactile_depth.py.
+// row; depth_mm = code * depth_lsb_mm, pressed in is positive. A stalled sink stops the pipeline. Latency: fixed from
+// the last pixel, models/tactile_depth/latency.py. Bit-accurate model: models/tactile_depth/tactile_depth.py.
 
 `default_nettype none
 

@@ -177,14 +177,10 @@ def _configure(multiplier: dict[str, Any], controls: dict[str, Control]) -> None
         multiplier["port_directions"][pin] = "input"
 
 
-def copy_enables(module: dict[str, Any]) -> int:
+def copy_enables(module: dict[str, Any]) -> None:
     """Give a copy of each register that enables more than `READERS` registers to the logic and memories that read it.
 
     The module is flat, of Yosys' JSON after synth_ecp5.
-
-    Returns
-    -------
-    number of copies
     """
     cells: Cells = module["cells"]
     enabled = Counter(
@@ -204,7 +200,6 @@ def copy_enables(module: dict[str, Any]) -> int:
                 cell["connections"][port] = [copies.get(bit, bit) for bit in bits]
     for name, bit in wide.items():
         cells[f"{name}_copy"] = {**cells[name], "connections": {**cells[name]["connections"], "Q": [copies[bit]]}}
-    return len(wide)
 
 
 def write_slices(folder: Path) -> None:

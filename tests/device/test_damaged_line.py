@@ -125,14 +125,10 @@ class Host:
     def status(self) -> link.Status:
         """Ask on a clean line until all else has come; return the status."""
         self.rarity = 0
-        last, now = None, (self.ask(), self.counted)
-        while now[0].sending or now != last:
-            last, now = now, (self.ask(), self.counted)
-        return now[0]
-
-    @property
-    def counted(self) -> int:
-        return self.host.delivered + self.host.lost
+        last, status = None, self.ask()
+        while status.sending or status != last:
+            last, status = status, self.ask()
+        return status
 
     def ask(self) -> link.Status:
         before, end = self.statuses, time.monotonic() + WAIT_S
@@ -140,7 +136,7 @@ class Host:
             assert time.monotonic() < end, "no status"
             self.send(link.Ask())
             self.take(1.0)
-        while self.take(0.5):  # a busy machine may not run the device for a while
+        while self.take(0.2):
             pass
         assert self.host.status is not None
         return self.host.status

@@ -30,6 +30,8 @@ from tactile_depth.fixed_point import Format
 LATENCY = 2
 NEAR_LOG2 = 3
 """-log2 of the deviation from which a pixel may be contact, and of the step of a gain."""
+STEP_SHARE = 3 / 8
+"""Share of the pixels of a colour, those above less those below, from which a frame is a step of the light."""
 RATES = 8
 """Number of rates of the filter: a frame moves a gain by the mean over 2**rate."""
 ROUNDS = 40
@@ -108,7 +110,7 @@ class Light:
             slow = rate + (used < self.unity - (self.unity >> NEAR_LOG2))
             fine = round_half_even(counted[near].sum(axis=0) >> slow, drop)
         coarse = np.sign(net) << (self.gain_width - 1 - NEAR_LOG2)
-        return self.limited(gains - np.where(8 * np.abs(net) >= 3 * self.pixels, coarse, fine))
+        return self.limited(gains - np.where(np.abs(net) >= STEP_SHARE * self.pixels, coarse, fine))
 
 
 def settled(ratios: np.ndarray, light: Light) -> np.ndarray:
@@ -149,7 +151,7 @@ def _settled(ratios: np.ndarray) -> np.ndarray:
         if 4 * count >= pixels:
             mean = deviations.astype(np.float64) @ near.astype(np.float64) / count  # sums are exact in any order
             gains = gains / (1 + mean)
-        gains = np.where(8 * np.abs(net) >= 3 * pixels, before - limit * np.sign(net), gains).clip(0.5, 2)
+        gains = np.where(np.abs(net) >= STEP_SHARE * pixels, before - limit * np.sign(net), gains).clip(0.5, 2)
         if np.abs(gains - before).max() < SETTLED:
             break
     return gains
