@@ -161,16 +161,19 @@ def test_a_noisy_line(damage: dict[str, float], steady: td.Pipeline, sample: td.
     pictures = [np.roll(sample.image, shift, axis=1) for shift in generator.integers(0, 40, 60)]
     expected = steady(np.stack(pictures)).codes
     cable = plug(steady)
+    frames: list[td.DeviceFrame] = []
+    sent = 0
     with td.Device(cable.address, steady) as device:
         device.load()
         cable.setup.damage.update(damage)  # type: ignore[union-attr]
-        frames = list(device.depth(pictures))
+        while not device.status().lost:  # one time in a hundred the line loses none of these pictures
+            frames += device.depth(pictures)
+            sent += len(pictures)
         cable.setup.damage.clear()  # type: ignore[union-attr]
         status = device.status()
     for frame in frames:
         np.testing.assert_array_equal(frame.codes, expected[frame.picture])
-    assert len(frames) + status.lost == len(pictures)
-    assert status.lost
+    assert len(frames) + status.lost == sent
     assert frames[-1].lost <= status.lost
 
 
