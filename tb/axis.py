@@ -15,6 +15,7 @@ from cocotb_bus.drivers import BusDriver
 from cocotb_bus.monitors import BusMonitor
 
 from tactile_depth.video.frame_guard import Word
+from tb.pins import unsigned
 from tb.stream import at_every_edge
 
 VIDEO = ("data", "last", "user")
@@ -63,7 +64,7 @@ class AxisSource(BusDriver):  # type: ignore[misc]
         self.bus.valid.value = 0
 
     async def _driver_send(self, transaction: Iterable[Sequence[int] | None], sync: bool = True) -> None:
-        valid, ready, edge = self.bus.valid, self.bus.ready, RisingEdge(self.clock)
+        valid, ready, edge = self.bus.valid, unsigned(self.bus.ready), RisingEdge(self.clock)
         self.aborted = False
         offered = None  # a pin is written where it changes: each write costs as much as a read
         for word in transaction:
@@ -82,7 +83,7 @@ class AxisSource(BusDriver):  # type: ignore[misc]
             if offered != 1:
                 valid.value = offered = 1
             await edge
-            while not ready.value and not self.aborted:
+            while not ready() and not self.aborted:
                 await edge
             if self.aborted:
                 return
@@ -148,34 +149,35 @@ class AxisMonitor(BusMonitor):  # type: ignore[misc]
         at_every_edge(self.clock, self._watch())
 
     def _watch(self) -> Iterator[None]:
-        valid, ready = self.bus.valid, self.bus.ready
-        reset, was_reset = self.entity.rst, True  # so that nothing is read before the first edge
-        enable = getattr(self.entity, self.silence) if isinstance(self.silence, str) else None
+        valid, ready, reset = unsigned(self.bus.valid), unsigned(self.bus.ready), unsigned(self.entity.rst)
+        pins = [unsigned(pin) for pin in self.pins]
+        was_reset = True  # so that nothing is read before the first edge
+        enable = unsigned(getattr(self.entity, self.silence)) if isinstance(self.silence, str) else None
         held, since = None, 0
         while True:
             yield
             clock = self.clock_count = self.clock_count + 1
-            if reset.value:
-                assert clock == 1 or not was_reset or not valid.value, f"{self}: valid in reset"
+            if reset():
+                assert clock == 1 or not was_reset or not valid(), f"{self}: valid in reset"
                 was_reset, held = True, None
                 continue
-            if not valid.value:
+            if not valid():
                 assert held is None, f"{self}: clock {clock}: valid fell before ready came"
-                bool(ready.value)  # raises if it is unknown
-                if self.silence and (enable is None or enable.value):
+                ready()  # raises if it is unknown
+                if self.silence and (enable is None or enable()):
                     self.words.append(None)
                     self.taken.append(clock)
                     self.offered.append(clock)
                 was_reset = False
                 continue
             assert not was_reset, f"{self}: clock {clock}: valid right after reset"
-            word = self.make(int(pin.value) for pin in self.pins)
+            word = self.make([pin() for pin in pins])
             if held is None:
                 since = clock
             else:
                 assert word == held, f"{self}: clock {clock}: {held} became {word} before ready came"
             held = word
-            if ready.value:
+            if ready():
                 held = None
                 for part in self.parts(word):
                     self.words.append(part)

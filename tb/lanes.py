@@ -3,20 +3,8 @@
 
 from typing import Any
 
+from tb.pins import Read, signed
 from tb.stream import StreamMonitor
-
-
-class LanePin:
-    """Part of a pin that is one word of a beat."""
-
-    def __init__(self, handle: Any, lane: int, lanes: int) -> None:
-        self.handle, width = handle, len(handle) // lanes
-        self.bits = (lane + 1) * width - 1, lane * width
-
-    @property
-    def value(self) -> Any:
-        high, low = self.bits
-        return self.handle.value[high:low]
 
 
 class BeatMonitor(StreamMonitor):
@@ -26,6 +14,6 @@ class BeatMonitor(StreamMonitor):
         self.lanes = lanes
         super().__init__(dut, name, "start", ["data"], length)
 
-    def pins(self) -> tuple[Any, Any, Any]:
-        words = [(LanePin(self.bus.data, lane, self.lanes), False) for lane in range(self.lanes)]
-        return self.bus.start, self.frame_pin, words
+    def reads(self) -> tuple[Read, Read | None, list[Read]]:
+        start, begins_frame, _ = super().reads()
+        return start, begins_frame, [signed(self.bus.data, lane, self.lanes) for lane in range(self.lanes)]

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Monitors of pairs of rows, whose last one in a frame may be a row alone."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
+from tb.pins import Read
 from tb.stream import at_every_edge
 from tb.wide import WideMonitor
 
@@ -16,12 +17,12 @@ class PairMonitor(WideMonitor):
         self.alone = (rows - 1) // 2 if rows % 2 else None  # the pair of a frame that is a row alone
         self.pair = 0
 
-    def word(self, handles: Any) -> Any:
+    def word(self, reads: Sequence[Read]) -> Any:
         index = len(self.words) % self.length
         if index == 0:
             self.pair = 0 if self.frame_starts[-1] else self.pair + 1
         behind = self.pair == self.alone and index >= self.length // 2
-        return (0,) * self.paths if behind else super().word(handles)
+        return (0,) * self.paths if behind else super().word(reads)
 
 
 class AloneMonitor:

@@ -6,6 +6,7 @@ from typing import Any
 
 from tactile_depth.registers.axil_port import Response, strobed_bits
 from tactile_depth.registers.register_map import MAP, REGISTERS
+from tb.pins import unsigned
 
 OFFSETS = {register.offset: register.name for register in MAP}
 
@@ -19,8 +20,8 @@ class RegisterMirror:
 
     def __init__(self, dut: Any, *names: str) -> None:
         self.names = names
-        pins = ["bvalid", "bresp", "awvalid", "awready", "awaddr", "wvalid", "wready", "wdata", "wstrb"]
-        self.pins = SimpleNamespace(**{pin: getattr(dut, f"s_axil_{pin}") for pin in pins})
+        names_of_pins = ["bvalid", "bresp", "awvalid", "awready", "awaddr", "wvalid", "wready", "wdata", "wstrb"]
+        self.pins = SimpleNamespace(**{pin: unsigned(getattr(dut, f"s_axil_{pin}")) for pin in names_of_pins})
         self.address = self.data = self.strobe = 0  # address and data of the latest write
         self.reset()
 
@@ -34,13 +35,13 @@ class RegisterMirror:
     def clock(self) -> None:
         """Take one clock edge out of reset."""
         pins = self.pins
-        answers = bool(pins.bvalid.value)
+        answers = bool(pins.bvalid())
         name = OFFSETS.get(self.address & ~3) if answers and not self.answered else None
-        if name in self.words and int(pins.bresp.value) == Response.OKAY:
+        if name in self.words and pins.bresp() == Response.OKAY:
             mask = strobed_bits(self.strobe)
             self.words[name] = (self.data & mask | self.words[name] & ~mask) & REGISTERS[name].mask("rw")
         self.answered = answers
-        if pins.awvalid.value and pins.awready.value:
-            self.address = int(pins.awaddr.value)
-        if pins.wvalid.value and pins.wready.value:
-            self.data, self.strobe = int(pins.wdata.value), int(pins.wstrb.value)
+        if pins.awvalid() and pins.awready():
+            self.address = pins.awaddr()
+        if pins.wvalid() and pins.wready():
+            self.data, self.strobe = pins.wdata(), pins.wstrb()

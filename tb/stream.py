@@ -4,7 +4,7 @@
 import gc
 import itertools
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, ClassVar
 
 import cocotb
@@ -16,6 +16,8 @@ from cocotb_bus.monitors import BusMonitor
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
+from tb import pins
+from tb.pins import Read
 from tb.settings import RUN
 
 gc.freeze()  # what was imported stays; a collection costs more than what a short simulation leaves
@@ -159,17 +161,17 @@ class StreamDriver(BusDriver):
             self.frame_pin.value = 0
 
     async def _driver_send(self, transaction: Any, sync: bool = True) -> None:
-        qualifier, en, edge = getattr(self.bus, self.qualifier), self.entity.en, RisingEdge(self.clock)
-        pins = [getattr(self.bus, field) for field in self.fields]
+        qualifier, en, edge = getattr(self.bus, self.qualifier), pins.unsigned(self.entity.en), RisingEdge(self.clock)
+        driven = [getattr(self.bus, field) for field in self.fields]
         for index, word in enumerate(transaction):
             if index < 2:  # later ones are as the second
                 qualifier.value = int(index == 0 or self.qualifier == "valid")
                 if self.frame_pin is not None:
                     self.frame_pin.value = int(index == 0 and self.frame_start)
-            for pin, value in zip(pins, word, strict=True):
+            for pin, value in zip(driven, word, strict=True):
                 pin.value = int(value)
             await edge
-            while not en.value:
+            while not en():
                 await edge
         self.idle()
 
@@ -188,6 +190,7 @@ class StreamMonitor(BusMonitor):
         self.starts: list[Any] = []
         self.frame_starts: list[Any] = []
         self.frame_pin: Any = getattr(dut, f"{name}_frame_start", None)
+        self.reset = pins.unsigned(dut.rst)
         super().__init__(dut, name, dut.clk)
 
     async def _monitor_recv(self) -> None:
@@ -195,22 +198,23 @@ class StreamMonitor(BusMonitor):
 
     def _watch(self) -> Iterator[None]:
         left, clock = 0, 0  # `clock` counts clocks with en
-        qualifier, frame_pin, handles = self.pins()
-        en = self.entity.en
+        is_present, begins_frame, reads = self.reads()
+        en = pins.unsigned(self.entity.en)
         while True:
             yield
             if self.in_reset:
                 left = 0
                 continue
-            if not en.value:
+            if not en():
                 continue
             clock += 1
-            frame_start = frame_pin is not None and bool(int(frame_pin.value))
-            present = qualifier.value
-            assert present.is_resolvable, (
-                f"{qualifier._name} is {present}: is it reset, and is every driver made before Bench.start?"
-            )
-            if int(present):
+            frame_start = begins_frame is not None and bool(begins_frame())
+            try:
+                present = is_present()
+            except ValueError:
+                problem = f"{self.qualifier} is unknown: is it reset, and is every driver made before Bench.start?"
+                raise AssertionError(problem) from None
+            if present:
                 assert left == 0, f"burst cut short at clock {clock}"
                 self.starts.append(clock)
                 self.frame_starts.append(frame_start)
@@ -219,24 +223,24 @@ class StreamMonitor(BusMonitor):
                 assert not frame_start, f"a frame begins in clock {clock}, but no word"
             if left:
                 left -= 1
-                self.words.append(self.word(handles))
+                self.words.append(self.word(reads))
                 self._recv(self.words[-1])
 
-    def word(self, handles: Any) -> Any:
+    def word(self, reads: Sequence[Read]) -> Any:
         """Return the values of the fields; a message names the position of a word with bits that are not known."""
-        values = [handle.value for handle, _ in handles]
-        if not all(value.is_resolvable for value in values):
+        try:
+            return tuple([read() for read in reads])
+        except ValueError:
             burst, position = divmod(len(self.words), self.length)
-            got = ", ".join(f"{field} {value}" for field, value in zip(self.fields, values, strict=True))
-            raise AssertionError(f"RTL leaves unknown bits: burst {burst}, word {position} of it: got {got}")
-        return tuple(
-            int(value) if unsigned else value.to_signed() for value, (_, unsigned) in zip(values, handles, strict=True)
-        )
+            got = ", ".join(f"{field} {getattr(self.bus, field).value}" for field in self.fields)
+            raise AssertionError(f"RTL leaves unknown bits: burst {burst}, word {position} of it: got {got}") from None
 
-    def pins(self) -> tuple[Any, Any, Any]:
-        """Return the qualifier, the start of a frame, and each field with whether it is unsigned."""
-        fields = [(getattr(self.bus, field), field in self.unsigned) for field in self.fields]
-        return getattr(self.bus, self.qualifier), self.frame_pin, fields
+    def reads(self) -> tuple[Read, Read | None, list[Read]]:
+        """Return the functions that read the qualifier, the start of a frame, and each field."""
+        begins_frame = None if self.frame_pin is None else pins.unsigned(self.frame_pin)
+        kinds = [pins.unsigned if field in self.unsigned else pins.signed for field in self.fields]
+        fields = [kind(getattr(self.bus, field)) for kind, field in zip(kinds, self.fields, strict=True)]
+        return pins.unsigned(getattr(self.bus, self.qualifier)), begins_frame, fields
 
     def forget(self) -> None:
         self.words.clear()
@@ -250,7 +254,7 @@ class StreamMonitor(BusMonitor):
 
     @property
     def in_reset(self) -> bool:
-        return bool(self.entity.rst.value)
+        return bool(self.reset())
 
 
 class Bench:
@@ -272,14 +276,16 @@ class Bench:
         at_every_edge(self.dut.clk, self._run())
 
     def _run(self) -> Iterator[None]:
-        en, rst, saturations = self.dut.en, self.dut.rst, getattr(self.dut, "saturations", None)
+        driven, en, rst = self.dut.en, pins.unsigned(self.dut.en), pins.unsigned(self.dut.rst)
+        saturations = pins.unsigned(self.dut.saturations) if hasattr(self.dut, "saturations") else None
         while True:
-            moves = int(self.random.random() >= self.pause)
-            en.value = moves if self.in_reset is None else self.in_reset
+            moves = int(self.random.random() >= self.pause) if self.in_reset is None else self.in_reset
+            if moves != en():  # a write costs more than a read
+                driven.value = moves
             yield
-            self.clock += int(en.value)
-            if saturations is not None and not rst.value:
-                self.saturations += int(saturations.value)
+            self.clock += en()
+            if saturations is not None and not rst():
+                self.saturations += saturations()
 
     async def reset(self, en: Any = False) -> None:
         """Reset for one cycle, in which the words inside move only with `en`."""

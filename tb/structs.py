@@ -65,8 +65,9 @@ def _unpacked(name: str, word: int) -> dict[str, int]:
 def of(handle: Any, name: str) -> dict[str, int | None]:
     """Return the members of a signal, unsigned; None where a bit is unknown."""
     value = handle.value
-    if value.is_resolvable:
+    try:
         return {**unpack(name, int(value))}
-    bits = str(value)[::-1]
+    except ValueError:
+        bits = str(value)[::-1]
     words = {member: bits[low : low + width][::-1] for member, (low, width) in members(name).items()}
     return {member: int(word, 2) if set(word) <= {"0", "1"} else None for member, word in words.items()}

@@ -9,7 +9,7 @@ import cocotb
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.common.td_table_port import WORD_BITS, answered
-from tb import structs
+from tb import pins, structs
 
 TO_TABLE = 1  # cycles from an access on the bus to the table
 READ_CLOCKS = 3  # cycles from a read on the bus to the entry
@@ -28,6 +28,7 @@ class TableBus:
         self.dut, self.select, self.width, self.words, self.signed = dut, select, width, words, signed
         self.chance = random.Random(cocotb.RANDOM_SEED)
         self.command: Mapping[str, int] | None = None  # in the cycle before this one
+        self.read_command, self.reset = pins.unsigned(dut.table_command), pins.unsigned(dut.rst)
         self.idle()
         cocotb.start_soon(self._watch())
 
@@ -70,16 +71,16 @@ class TableBus:
 
         To be called at each edge."""
         before = self.command
-        command = structs.of(self.dut.table_command, "table_command_t")
+        command = structs.unpack("table_command_t", self.read_command())
         own = command["select"] == self.select and (command["write"] or command["read"])
-        self.command = command if own and not self.dut.rst.value else None  # type: ignore[assignment]
+        self.command = command if own and not self.reset() else None
         return before
 
     async def _watch(self) -> None:
         """Check that the table answers 0 while the bus names another."""
-        named: int | None = self.select
+        named, answer, edge = self.select, pins.unsigned(self.dut.table_answer), RisingEdge(self.dut.clk)
         while True:
-            await RisingEdge(self.dut.clk)
+            await edge
             if named != self.select:
-                assert int(self.dut.table_answer.value) == 0, "an answer of a table that is not named"
-            named = structs.of(self.dut.table_command, "table_command_t")["select"]
+                assert answer() == 0, "an answer of a table that is not named"
+            named = structs.unpack("table_command_t", self.read_command())["select"]

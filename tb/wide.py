@@ -14,54 +14,30 @@ import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.wide_commutator import LEAD
-from tb.lanes import LanePin
+from tb.pins import Late, Read, signed, unsigned
 from tb.stream import Bench, StreamDriver, StreamMonitor, at_every_edge, check_bursts, check_words, interrupt
 
 WORDS_TRIED, BURSTS_OF_A_STAGE = 1 << 20, 8  # enough to fill wide_fft's clip count in each of six seeds
-
-
-class LatePin:
-    """Value of a pin some cycles with en ago; it is read once in each of them."""
-
-    def __init__(self, handle: Any, cycles: int) -> None:
-        self.handle, self.cycles = handle, cycles
-        self.clear()
-
-    def clear(self) -> None:
-        self.values: deque[Any] = deque([Zero()] * self.cycles)
-
-    @property
-    def value(self) -> Any:
-        self.values.append(self.handle.value)
-        return self.values.popleft()
-
-
-class Zero(int):
-    """Value of a pin that is 0 and known."""
-
-    is_resolvable = True
 
 
 class WideMonitor(StreamMonitor):
     """StreamMonitor of beats; `starts` holds the cycles of the first beats."""
 
     def __init__(self, dut: Any, name: str, fields: Sequence[str], length: int, paths: int, lead: int = LEAD) -> None:
-        self.paths, self.lead, self.late = paths, lead, [LatePin(getattr(dut, f"{name}_start"), lead)]
+        self.paths, self.lead, self.late = paths, lead, [Late(getattr(dut, f"{name}_start"), lead)]
         super().__init__(dut, name, "start", fields, length)
 
-    def pins(self) -> tuple[Any, Any, Any]:
-        words = [
-            (LanePin(getattr(self.bus, f), path, self.paths), False) for f in self.fields for path in range(self.paths)
-        ]
-        frame_pin = None
+    def reads(self) -> tuple[Read, Read | None, list[Read]]:
+        words = [signed(getattr(self.bus, f), path, self.paths) for f in self.fields for path in range(self.paths)]
+        begins_frame = None
         if self.frame_pin is not None:
-            frame_pin = LatePin(self.frame_pin, self.lead)
-            self.late.append(frame_pin)
-        return self.late[0], frame_pin, words
+            begins_frame = Late(self.frame_pin, self.lead)
+            self.late.append(begins_frame)
+        return self.late[0], begins_frame, words
 
     @property
     def in_reset(self) -> bool:
-        reset = bool(self.entity.rst.value)
+        reset = super().in_reset
         if reset:
             for pin in self.late:
                 pin.clear()
@@ -87,9 +63,10 @@ class WideDriver(StreamDriver):
         """Set the words of each cycle; the start on the pin says when those of the next burst are due."""
         beats: deque[Any] = deque()
         begun: deque[Any] = deque([()] * (self.lead - LEAD))  # bursts whose words come later
+        en, start = unsigned(self.entity.en), unsigned(self.bus.start)
         while True:
             yield
-            if not self.entity.en.value:
+            if not en():
                 continue
             if beats:
                 beat = beats.popleft()
@@ -97,7 +74,7 @@ class WideDriver(StreamDriver):
                     width = len(pin) // self.paths
                     words = beat[index * self.paths : (index + 1) * self.paths]
                     pin.value = sum((word & (1 << width) - 1) << path * width for path, word in enumerate(words))
-            begun.append(self.bursts.popleft() if self.bus.start.value else ())
+            begun.append(self.bursts.popleft() if start() else ())
             beats = deque(begun.popleft()) or beats
 
 

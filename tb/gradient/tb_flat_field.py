@@ -13,6 +13,7 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import DEVIATION, RATIO
 from tactile_depth.gradient.flat_field import CODE, LATENCY, dark_pixels, deviations, flat_codes, ratios, unit_gains
 from tactile_depth.registers.register_map import TABLES
+from tb import pins
 from tb.cases import on_bench
 from tb.nodes import Grid, Nodes, reads_as_a_pause_ends
 from tb.pixels import pack
@@ -90,10 +91,11 @@ class Field:
         cocotb.start_soon(self.count())
 
     async def count(self) -> None:
+        edge, rst, dark = RisingEdge(self.dut.clk), pins.unsigned(self.dut.rst), pins.unsigned(self.dut.dark)
         while True:
-            await RisingEdge(self.dut.clk)
-            if not self.dut.rst.value:
-                self.darkened += int(self.dut.dark.value)
+            await edge
+            if not rst():
+                self.darkened += dark()
 
     async def send(self, frames: int = 1, level: int | None = None, pixels: Any = None, named: Any = None) -> None:
         """Send frames back to back, each with the gains and the dark level at its beginning.

@@ -15,6 +15,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.gradient.polynomial_gradient import LATENCY, coefficients, slope_codes
 from tactile_depth.registers.register_map import TABLES
+from tb import pins
 from tb.cases import on_bench
 from tb.stream import Bench, StreamDriver, StreamMonitor, parameters, parametrize, send_apart
 from tb.table_bus import READ_CLOCKS, TableBus, signed
@@ -83,32 +84,35 @@ class Gradient:
 
     async def follow(self) -> None:
         dut = self.dut
+        rst, en, valid, position = map(pins.unsigned, (dut.rst, dut.en, dut.in_valid, dut.in_position))
+        table_in_use, table_bank = pins.unsigned(dut.table_in_use), pins.unsigned(dut.table_bank)
+        corrections = [pins.signed(dut.correction_gx), pins.signed(dut.correction_gy)]
+        colours = [pins.signed(getattr(dut, f"in_{colour}")) for colour in COLOURS]
         named = 0  # bank of the next frame
         waiting: list[tuple[int, list[Any]]] = []  # cycles with en since each pixel was taken, and the pixel
         begun: list[int] = []  # cycles with en since each first pixel was taken
         while True:
             await RisingEdge(dut.clk)
-            assert int(dut.table_in_use.value) == self.in_use[-1]
-            wanted = int(dut.table_bank.value)
+            assert table_in_use() == self.in_use[-1]
+            wanted = table_bank()
             access = self.bus.step()
             if access and access["write"]:
                 assert [wanted] * len(COLOURS) == self.in_use, "written while a change-over is due"
                 self.banks[1 - wanted][access["index"]] = signed(access["low"], self.word_width)
-            if dut.rst.value:
+            if rst():
                 named, begun, Gradient.in_use = wanted, [], [wanted] * len(COLOURS)
                 waiting.clear()
                 self.frames.clear()
-            elif dut.en.value:
+            elif en():
                 begun = [age + 1 for age in begun if age < len(COLOURS)]
                 waiting = [(age + 1, pixel) for age, pixel in waiting]
                 if waiting and waiting[0][0] == TO_CORRECTION:
-                    corrections = (getattr(dut, f"correction_{axis}").value.to_signed() for axis in ("gx", "gy"))
-                    waiting.pop(0)[1].append(list(corrections))
+                    waiting.pop(0)[1].append([read() for read in corrections])
                 self.correct()
                 for colour in (age - 1 for age in begun):
                     self.in_use[colour] = named
-            if not dut.rst.value and dut.en.value and dut.in_valid.value:
-                marks = int(dut.in_position.value)
+            if not rst() and en() and valid():
+                marks = position()
                 if marks & 3 == 3:
                     named = wanted
                     begun.append(0)
@@ -119,8 +123,7 @@ class Gradient:
                     row, column = row + 1, 0
                 else:
                     column += 1
-                colours = [getattr(dut, f"in_{colour}").value.to_signed() for colour in COLOURS]
-                self.frames[-1][1].append([row, column, colours])
+                self.frames[-1][1].append([row, column, [read() for read in colours]])
                 waiting.append((0, self.frames[-1][1][-1]))
             if access and access["read"]:  # in the cycle of a change-over: of the previous bank
                 index = access["index"]

@@ -2,6 +2,7 @@
 """wide_elimination against its model: codes, latency and clip counts, with gaps, pauses and resets."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import cocotb
@@ -9,6 +10,7 @@ import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.wide_elimination import LATENCY, wide_elimination
+from tb.pins import Read
 from tb.stream import MANY, check_bursts, configuration, parametrize, sample, uniform, with_and_without_en
 from tb.wide import WideDriver, WideMonitor
 
@@ -22,12 +24,12 @@ class Eliminated(WideMonitor):
         super().__init__(dut, "out", ["last", "ahead"], clocks, words)
         self.rows, self.row = rows, 0
 
-    def word(self, handles: Any) -> Any:
+    def word(self, reads: Sequence[Read]) -> Any:
         if len(self.words) % self.length == 0:
             self.row = 0 if self.frame_starts[-1] else self.row + 1
         zero = (0,) * self.paths
-        last = super().word(handles[: self.paths]) if self.row == self.rows - 1 else zero
-        return last + (super().word(handles[self.paths :]) if self.row else zero)
+        last = super().word(reads[: self.paths]) if self.row == self.rows - 1 else zero
+        return last + (super().word(reads[self.paths :]) if self.row else zero)
 
 
 async def check(dut: Any, amplitude: Any, frames: int = 3, **behaviour: Any) -> None:

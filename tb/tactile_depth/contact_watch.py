@@ -13,6 +13,7 @@ from tactile_depth.contact.contact_events import ContactEvents, Settings, record
 from tactile_depth.contact.threshold_comparator import ThresholdComparator
 from tactile_depth.latency import last_pixel_to_first_depth
 from tactile_depth.registers.register_map import MAP, REGISTERS
+from tb.pins import unsigned
 from tb.register_mirror import RegisterMirror
 
 CONTROL = REGISTERS["CONTROL"]
@@ -72,29 +73,33 @@ class ContactWatch:
     def watch_contact(self) -> Iterator[None]:
         """Compare `contact` with the model, which takes the beats and the registers of the previous cycle."""
         dut, model = self.dut, self.comparator
-        contact_pin, rst, valid, ready = dut.contact, dut.rst, dut.m_axis_tvalid, dut.m_axis_tready
+        contact_pin, rst, valid, ready = map(unsigned, (dut.contact, dut.rst, dut.m_axis_tvalid, dut.m_axis_tready))
+        words, hold, threshold, drops = None, False, 0, False  # registers, and what they say
         yield
         clock, was = 1, False
         while True:
             yield
             clock += 1
-            contact = bool(contact_pin.value)
-            if rst.value:
+            contact = bool(contact_pin())
+            if rst():
                 model.reset()
                 self.registers.reset()
                 was = False
                 continue
             self.registers.clock()
-            control = CONTROL.unpack(self.registers.words["CONTROL"])
-            hold, threshold = bool(control["hold_contact"]), self.setting("THRESHOLD")
-            if control["drop_frames"]:  # depth that is dropped counts too: see `check_with_drops`
+            if words != self.registers.words:
+                words = dict(self.registers.words)
+                control = CONTROL.unpack(words["CONTROL"])
+                hold, drops = bool(control["hold_contact"]), bool(control["drop_frames"])
+                threshold = self.setting("THRESHOLD")
+            if drops:  # depth that is dropped counts too: see `check_with_drops`
                 self.drops.append((clock, contact, threshold, hold))
                 continue
             assert contact == model.contact, f"contact is {contact} in clock {clock}"
             if contact and not was:
                 self.raised.append(clock)
             was = contact
-            if not (valid.value and ready.value):
+            if not (valid() and ready()):
                 model.idle(hold)
                 continue
             user = dut.m_axis_tuser.value

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Functions that read a pin as a number, for what is read in every clock.
+
+The objects that cocotb makes of a value take several times as long as the read itself. A function raises ValueError if
+a bit is unknown.
+"""
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+Read = Callable[[], int]
+
+
+def unsigned(handle: Any) -> Read:
+    """Return the function that reads a pin as an unsigned number."""
+    text = handle._handle.get_signal_val_binstr
+    return lambda: int(text(), 2)
+
+
+def signed(handle: Any, lane: int = 0, lanes: int = 1) -> Read:
+    """Return the function that reads one of the words in a pin, the first in the lowest bits, as a signed number."""
+    text, width = handle._handle.get_signal_val_binstr, len(handle) // lanes
+    begin, end, sign = len(handle) - (lane + 1) * width, len(handle) - lane * width, 1 << width - 1
+
+    def read() -> int:
+        return (int(text()[begin:end], 2) ^ sign) - sign
+
+    return read
+
+
+class Late:
+    """Value of a pin some cycles ago, 0 in the first ones; it is read once in each cycle."""
+
+    def __init__(self, handle: Any, cycles: int) -> None:
+        self.read, self.cycles = unsigned(handle), cycles
+        self.clear()
+
+    def clear(self) -> None:
+        self.values = deque([0] * self.cycles)
+
+    def __call__(self) -> int:
+        self.values.append(self.read())
+        return self.values.popleft()
