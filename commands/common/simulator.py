@@ -53,6 +53,14 @@ VERILATOR_MAKEFLAGS = (
     f"VM_PARALLEL_BUILDS=0 PYTHON3={sys.executable}"  # a system may have no `python`
 )
 
+VISIBLE = 'public_flat_rw -module "{module}" -var "{signal}"'
+# What testbenches read or set below the top level: the time of a frame, and its first pixel inside a board.
+INSIDE = [
+    VISIBLE.format(module=module, signal=signal)
+    for module, signals in {"video_unit": ["now"], "tactile_depth": ["s_axis_*"]}.items()
+    for signal in signals
+]
+
 UNKNOWN_PARAMETER = re.compile(r"parameter \S+ not found in \S+")
 PROGRAM = cocotb_tools.config.share_dir / "lib" / "verilator" / "verilator.cpp"  # cocotb's main program
 RUNTIME = "runtime.h"
@@ -62,13 +70,11 @@ RUNTIME_HEADERS = ("verilated.h", "verilated_dpi.h", "verilated_vpi.h")
 class WholeVerilator(Verilator):
     """Verilator whose main program is a part of the model's one C++ file: compiled alone, it is nearly all headers.
 
-    `closed` leaves --public-flat-rw out, which makes every signal visible to Python and is several times slower. A .vlt
-    file names the signals that Python needs instead.
+    It leaves --public-flat-rw out, which makes every signal visible to Python and is several times slower, but where
+    the bins of coverage look inside.
     """
 
-    def __init__(self, closed: bool) -> None:
-        super().__init__()
-        self.left_out = [str(PROGRAM), *["--public-flat-rw"] * closed]
+    left_out = (str(PROGRAM), *["--public-flat-rw"] * (not COVERAGE))
 
     def _build_command(self) -> list[list[str]]:
         return [[word for word in command if word not in self.left_out] for command in super()._build_command()]
@@ -109,19 +115,25 @@ def build(
 ) -> None:
     """Build a testbench, with -Wall; a warning of Verilator is an error.
 
-    With `fast`, Verilator optimises for long runs, and Python sees only what a .vlt file among `files` names;
-    `program` is then a C++ file in place of cocotb's main program.
+    In Verilator Python sees the signals of the top level, and those of `INSIDE`. With `fast`, Verilator optimises for
+    long runs, and leaves the latter out; `program` is then a C++ file in place of cocotb's main program.
     """
     check(simulator)
-    runner: Runner = WholeVerilator(closed=fast) if simulator == "verilator" else get_runner(simulator)
+    runner: Runner = WholeVerilator() if simulator == "verilator" else get_runner(simulator)
     arguments = ["-Wall"]
     if simulator == "verilator":
-        files = [HDL / "verilator.vlt", *sorted(files, key=lambda file: file.suffix != ".vlt")]  # waivers first
+        folder.mkdir(parents=True, exist_ok=True)
+        visible = folder / "visible.vlt"
+        lines = [VISIBLE.format(module=toplevel, signal="*"), *([] if fast else INSIDE)]
+        text = "\n".join(["`verilator_config", *lines, ""])
+        if not visible.exists() or visible.read_text() != text:  # a newer file is a reason to build again
+            visible.write_text(text)
+        waivers_first = sorted(files, key=lambda file: file.suffix != ".vlt")
+        files = [HDL / "verilator.vlt", visible, *waivers_first]
         # The testbench of a core compiles longer than it runs; -O2 saves only 5 % of a long run.
         level = "-O1" if fast else "-O0"
         os.environ["MAKEFLAGS"] = f"{VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL={level}"
         os.environ["VM_SUPPORT_FAST"] = "program"  # Verilator's makefile adds to this list of parts of the C++ file
-        folder.mkdir(parents=True, exist_ok=True)
         (folder / "program.cpp").unlink(missing_ok=True)
         (folder / "program.cpp").symlink_to(program or PROGRAM)
         # Registers and memories are random at power-up, by the seed that `run` passes.

@@ -107,7 +107,7 @@ def build(
 ) -> Path:
     """Return the simulator for a configuration, which is built once for each state of the sources."""
     bench = repository.ROOT / "tb" / BENCH
-    sources = [*repository.sources(), bench.with_suffix(".vlt"), bench.with_suffix(".sv")]
+    sources = [*repository.sources(), bench.with_suffix(".sv")]
     program = repository.ROOT / "tb" / "frame_main.cpp"
     parameters = top_parameters(config, camera=camera)
     text = wrapper.wrapper("bench", parameters)

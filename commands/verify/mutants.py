@@ -25,9 +25,8 @@ dffunmap @register
 expose -evert-dff -sep __ w:{name} @register %u
 opt_clean
 """
-# Python sees only the signals of the wrapper. Warnings in Verilog of Yosys are off.
-PUBLIC = """`verilator_config
-public_flat_rw -module "{core}" -var "*"
+# Warnings in Verilog of Yosys are off.
+AS_IT_IS = """`verilator_config
 lint_off -file "*mutants.v"
 lint_off -file "*wrapper.sv"
 lint_off -rule UNOPTFLAT -file "*mutants.v"
@@ -196,13 +195,13 @@ def run(
     Raises RuntimeError: the netlist without a mutant fails, or the simulator does.
     """
     (folder / "wrapper.sv").write_text(wrapper(core, folder))
-    (folder / "public.vlt").write_text(PUBLIC.format(core=core))
+    (folder / "waivers.vlt").write_text(AS_IT_IS)
     package = [path for path in repository.sources() if path.stem.endswith("_pkg")]
     build = folder / simulator
     simulation.build(
         simulator,
         core,
-        [folder / "public.vlt", *package, folder / "mutants.v", folder / "wrapper.sv"],
+        [folder / "waivers.vlt", *package, folder / "mutants.v", folder / "wrapper.sv"],
         structure.parameters,
         build,
         fast=True,
