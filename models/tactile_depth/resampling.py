@@ -6,9 +6,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import sparse
+
+if TYPE_CHECKING:
+    from scipy import sparse
 
 STRIP = 1024  # columns of a picture converted to floats at a time: 4096 x 4096 pixels would take 400 MB
 SINGLE = 1 << 24  # up to here float32, which takes half the time, holds every integer
@@ -42,6 +45,8 @@ class Resampling:
     @cached_property
     def _sparse(self) -> dict[np.dtype, tuple[sparse.csr_array, sparse.csr_array]]:
         """Sparse weights inside the window, float32 and float64; each grid pixel covers only a few camera pixels."""
+        from scipy import sparse  # imported here: half of the imports of a testbench that resamples nothing
+
         rows, columns = self._window
         return {
             kind: (

@@ -13,7 +13,7 @@ import pytest
 
 import tactile_depth as td
 from commands.common.repository import ROOT
-from tactile_depth.device import mapped_words, simulator, uio
+from tactile_depth.device import line, mapped_words, simulator, uio
 from tests.device.cable import Cable, setup_of
 from tests.device.model_device import Setup
 from tests.device.zynq import Played, Zynq
@@ -30,14 +30,14 @@ def sample() -> td.Sample:
 
 @pytest.fixture(scope="session")
 def pipeline(sample: td.Sample) -> td.Pipeline:
-    """Pipeline that all tests use and none changes."""
-    return td.Pipeline(sample.sensor, reference=sample.reference, grid=GRID)
+    """Pipeline that all tests use and none changes. Its tables are small: 4,096 entries take most of such a test."""
+    return td.Pipeline(sample.sensor, reference=sample.reference, grid=GRID, model="quadratic")
 
 
 @pytest.fixture(scope="session")
 def steady(sample: td.Sample) -> td.Pipeline:
     """Pipeline without light gains: the depth of a picture does not depend on those before it."""
-    return td.Pipeline(sample.sensor, reference=sample.reference, grid=GRID, light_gains=False)
+    return td.Pipeline(sample.sensor, reference=sample.reference, grid=GRID, model="quadratic", light_gains=False)
 
 
 @pytest.fixture(scope="session")
@@ -72,6 +72,12 @@ def simulate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Setup
         monkeypatch.setattr(simulator, "command_of", lambda folder, pins: (command, ROOT))
 
     return simulate
+
+
+@pytest.fixture(autouse=True)
+def no_camera(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a load send its picture at once: few devices of these tests have a camera, whose pictures it waits for."""
+    monkeypatch.setattr(line.Line, "quiet_s", 0.02)
 
 
 @pytest.fixture

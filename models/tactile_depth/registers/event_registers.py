@@ -31,6 +31,8 @@ EVENT_COUNTERS = {
     "record_lost": "RECORDS_LOST",
 }
 """Event to the register that counts it."""
+STICKY_BITS = {event: STATUS.field(bit).mask for event, bit in STICKY_EVENTS.items()}
+INTERRUPT_BITS = {event: INTERRUPT_STATUS.field(bit).mask for event, bit in INTERRUPT_EVENTS.items()}
 EVENTS = tuple(dict.fromkeys((*STICKY_EVENTS, *INTERRUPT_EVENTS, *EVENT_COUNTERS)))
 SATURATIONS = "SATURATIONS"
 COUNTERS = (*dict.fromkeys(EVENT_COUNTERS.values()), SATURATIONS)
@@ -86,10 +88,11 @@ class EventRegisters:
         """
         values = self.values
         self.irq = bool(self._interrupts & interrupt_mask)
-        values["STATUS"] |= STATUS.pack(**{bit: int(event in events) for event, bit in STICKY_EVENTS.items()})
-        values["STATUS"] |= STATUS.pack(saturation=int(saturations > 0))
-        for event, bit in INTERRUPT_EVENTS.items():
-            values["INTERRUPT_STATUS"] |= INTERRUPT_STATUS.pack(**{bit: int(event in events)})
+        for event in events:
+            values["STATUS"] |= STICKY_BITS.get(event, 0)
+            values["INTERRUPT_STATUS"] |= INTERRUPT_BITS.get(event, 0)
+        if saturations:
+            values["STATUS"] |= STATUS.field("saturation").mask
         for name in {EVENT_COUNTERS[event] for event in events if event in EVENT_COUNTERS}:
             values[name] = min(values[name] + 1, WORD)
         values[SATURATIONS] = min(values[SATURATIONS] + saturations, WORD)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from importlib import resources
 from typing import Any
 
@@ -55,11 +56,11 @@ class Field:
     values: Mapping[str, int]
     description: str
 
-    @property
+    @cached_property
     def width(self) -> int:
         return self.high - self.low + 1
 
-    @property
+    @cached_property
     def mask(self) -> int:
         """Mask of the field's bits in the register."""
         return (1 << self.high + 1) - (1 << self.low)
@@ -85,7 +86,7 @@ class Register:
     made_elsewhere: bool
     fields: tuple[Field, ...]
 
-    @property
+    @cached_property
     def writable(self) -> bool:
         """True if a write is answered with OKAY."""
         return any(field.access != "ro" for field in self.fields)
