@@ -29,6 +29,20 @@ def signed(handle: Any, lane: int = 0, lanes: int = 1) -> Read:
     return read
 
 
+def value(handle: Any) -> Callable[[], Any]:
+    """Return the function that reads a pin as cocotb does, bits that are unknown too; equal values are one object."""
+    text, make = handle._handle.get_signal_val_binstr, type(handle.value)
+    values: dict[str, Any] = {}
+
+    def read() -> Any:
+        bits = text()
+        if bits not in values:
+            values[bits] = make(bits)
+        return values[bits]
+
+    return read
+
+
 class Late:
     """Value of a pin some cycles ago, 0 in the first ones; it is read once in each cycle."""
 

@@ -473,27 +473,30 @@ async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any
     dict of pin to list of LogicArray
     """
     chance = random.Random(cocotb.RANDOM_SEED)
-    has_en = hasattr(dut, "en")
+    edge, has_en = RisingEdge(dut.clk), hasattr(dut, "en")
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
-    for pin in stimuli[0]:
-        getattr(dut, pin).value = 0  # a pin that is random at first may write a word
-    for pin in ("rst", "en"):
-        if hasattr(dut, pin):
-            getattr(dut, pin).value = 1
-    await RisingEdge(dut.clk)
-    await RisingEdge(dut.clk)
-    if hasattr(dut, "rst"):
-        dut.rst.value = 0
+    handles = {pin: getattr(dut, pin) for pin in (*stimuli[0], *outputs, *["rst"] * hasattr(dut, "rst"))}
+    reset = {"rst": 1} if "rst" in handles else {}
+    driven = dict.fromkeys(stimuli[0], 0) | reset  # a pin that is random at first may write a word
+    for pin, value in driven.items():
+        handles[pin].value = value
+    if has_en:
+        dut.en.value = 1
+    await edge
+    await edge
     pin_values: Any = {pin: [] for pin in (*stimuli[0], *outputs)}
+    reads = [(values.append, pins.value(handles[pin])) for pin, values in pin_values.items()]
     for clock in stimuli:
-        for pin, value in clock.items():
-            getattr(dut, pin).value = int(value)
+        for pin, value in (dict.fromkeys(reset, 0) | clock).items():
+            if driven[pin] != value:  # a write costs more than a read
+                driven[pin] = int(value)
+                handles[pin].value = driven[pin]
         paused = True
         while paused:
             paused = has_en and chance.random() < pause
             if has_en:
                 dut.en.value = int(not paused)
-            await RisingEdge(dut.clk)
-        for pin, values in pin_values.items():
-            values.append(getattr(dut, pin).value)
+            await edge
+        for append, read in reads:
+            append(read())
     return pin_values

@@ -23,6 +23,7 @@ from tactile_depth.video.frame_guard import Word, frame_guard
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSink, AxisSource, broken, positions, profile
 from tb.camera.slots import camera_words, pack_settings
 from tb.cases import on_bench
+from tb.pins import unsigned
 from tb.settings import RUN
 from tb.stream import CLOCK_NS, MANY, at_every_edge, parametrize, sample
 
@@ -54,11 +55,10 @@ class Bench:
         self.dut.settings.value = pack_settings(camera_settings(camera))
 
     def watch(self) -> Iterator[None]:
-        rst, faults = self.dut.rst, self.dut.faults
+        rst, faults = unsigned(self.dut.rst), unsigned(self.dut.faults)
         while True:
             yield
-            if not rst.value:
-                bits = int(faults.value)
+            if not rst() and (bits := faults()):
                 self.faults += [name for place, name in enumerate(FAULTS) if bits >> place & 1]
 
     async def reset(self, clocks: int) -> None:
@@ -170,12 +170,12 @@ async def settings_change_between_pictures(bench: Bench) -> None:
 @on_bench(Bench, milliseconds=20)
 @parametrize(name=["columns", "rows", "window_x", "window_y"])
 async def settings_in_every_bit(bench: Bench, name: str) -> None:
-    """Set size and place of the window with one bit wrong, for each bit: the faults are the model's, and with the right
-    settings the next picture is right."""
+    """Set size and place of the window with one bit wrong: the faults are the model's, and with the right settings the
+    next picture is right."""
     built, right = bench.camera, camera_settings(bench.camera)
     crop, pairs = built.crop[2:], built.format.is_yuyv
     names = ("columns", "rows", "window_x", "window_y")
-    for bit in range(SETTINGS[name]):
+    for bit in sample(list(range(SETTINGS[name]))):
         taken: list[tuple[Word, Settings]] = []
         for settings in (right | {name: right[name] ^ 1 << bit}, right):
             bench.dut.settings.value = pack_settings(settings)

@@ -7,6 +7,7 @@ import random
 from collections.abc import Iterator
 from typing import Any
 
+from tb.pins import unsigned
 from tb.stream import at_every_edge
 
 CHANNELS = {"aw": ("awaddr",), "w": ("wdata",), "ar": ("araddr",)}
@@ -57,6 +58,9 @@ class AxilSlave:
     def __init__(self, dut: Any, registers: Registers, moves: Iterator[bool], seed: int) -> None:
         self.dut, self.registers, self.moves = dut, registers, moves
         self.random = random.Random(seed)
+        self.reset = unsigned(dut.rst)
+        names = [name for channel, (word,) in CHANNELS.items() for name in (f"{channel}valid", f"{channel}ready", word)]
+        self.reads = {name: unsigned(self.pin(name)) for name in (*names, "bready", "rready")}
         self.clear()
         at_every_edge(dut.clk, self._run())
 
@@ -70,11 +74,12 @@ class AxilSlave:
         self.answer: str | None = None  # channel of the answer that is offered
         for name in ("awready", "wready", "bvalid", "arready", "rvalid"):
             self.pin(name).value = 0
+        self.ready = dict.fromkeys(CHANNELS, 0)  # at the pins
 
     def _run(self) -> Iterator[None]:
         while True:
             yield
-            if self.dut.rst.value:
+            if self.reset():
                 self.clear()
                 continue
             self._take()
@@ -82,22 +87,23 @@ class AxilSlave:
 
     def _take(self) -> None:
         for channel, (word,) in CHANNELS.items():
-            valid, ready = self.pin(f"{channel}valid"), self.pin(f"{channel}ready")
-            if not valid.value:
+            if not self.reads[f"{channel}valid"]():
                 assert channel not in self.held, f"{channel}valid fell before {channel}ready came"
             else:
-                value = int(self.pin(word).value)
+                value = self.reads[word]()
                 assert self.held.get(channel, value) == value, f"{word} changed before {channel}ready came"
                 assert channel not in self.taken, f"{channel}: two accesses at a time"
                 assert self.answer is None, f"{channel}: an access before the answer to the last"
                 self.held[channel] = value
-                if ready.value:
+                if self.ready[channel]:
                     self.taken[channel] = self.held.pop(channel)
-            ready.value = int(next(self.moves))
+            ready = int(next(self.moves))
+            if self.ready[channel] != ready:  # a write costs more than a read
+                self.pin(f"{channel}ready").value = self.ready[channel] = ready
 
     def _answer(self) -> None:
         if self.answer is not None:
-            if not self.pin(f"{self.answer}ready").value:
+            if not self.reads[f"{self.answer}ready"]():
                 return
             self.pin(f"{self.answer}valid").value = 0
             self.answer = None

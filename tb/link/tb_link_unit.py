@@ -19,7 +19,9 @@ from tactile_depth.link import packets as link
 from tactile_depth.link.depth_formats import DepthFormat, exact_shift
 from tactile_depth.link.device import Build, LinkDevice
 from tactile_depth.link.framing import to_line
+from tb.axis import VIDEO
 from tb.link.axil_slave import AxilSlave, Registers
+from tb.pins import unsigned
 from tb.stream import CLOCK_NS, MANY, parameters, parametrize
 
 QUIET_CLOCKS = 300  # without a byte; a byte too many that comes later differs in the next comparison
@@ -27,6 +29,10 @@ LAST_CLOCKS = 2000  # the same behind the last comparison: more than a packet of
 LONGEST_CLOCKS = 60_000
 CLOCKS_A_BYTE = 4  # of a frame in words, to a line that takes a byte in each clock (docs/link.md)
 BROKEN = None  # a byte that could not be received
+READ = (
+    *(f"{name}{half}" for name in ("in_", "out_", "m_axis_t") for half in ("valid", "ready")),
+    *("out_data", *(f"m_axis_t{field}" for field in VIDEO)),
+)
 REFUSED = 0x43  # address, which Registers refuses
 Byte = int | None
 
@@ -43,6 +49,8 @@ class Board:
         self.registers, self.model_registers = (Registers(len(dut.m_axil_araddr)) for _ in range(2))
         build = Build(self.rows, self.columns, self.width, bool(bottom_first))
         self.model = LinkDevice(build, self.model_registers.read, self.model_registers.write)
+        self.reads = {name: unsigned(getattr(dut, name)) for name in READ}
+        self.driven: dict[str, int] = {}  # values at the pins
         self.to_device: deque[Byte] = deque()
         self.beats: deque[tuple[int, int, int]] = deque()
         self.words: deque[tuple[int, int]] = deque()
@@ -55,8 +63,7 @@ class Board:
     async def start(self) -> None:
         dut = self.dut
         dut.rst.value, dut.cold_rst.value = 1, 1
-        for name in ("in_valid", "in_broken", "s_axis_tvalid", "s_event_tvalid", "out_ready", "m_axis_tready"):
-            getattr(dut, name).value = 0
+        self.drive(in_valid=0, in_broken=0, s_axis_tvalid=0, s_event_tvalid=0, out_ready=0, m_axis_tready=0)
         AxilSlave(dut, self.registers, iter(lambda: bool(self.goes()), None), cocotb.RANDOM_SEED)
         Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         for _ in range(4):
@@ -76,39 +83,44 @@ class Board:
             self.line()
             self.pipeline()
 
+    def drive(self, **pins: int) -> None:
+        for name, value in pins.items():
+            if self.driven.get(name) != value:  # a write costs more than a read
+                getattr(self.dut, name).value = self.driven[name] = value
+
+    def moves(self, name: str) -> bool:
+        """Return True if a word passes at the handshake of these pins."""
+        return bool(self.reads[f"{name}valid"]() and self.reads[f"{name}ready"]())
+
     def line(self) -> None:
         """Move a byte each way, and a pixel."""
-        dut = self.dut
-        if dut.in_valid.value and dut.in_ready.value:
+        taken = self.moves("in_")
+        if taken or self.driven["in_broken"]:
             self.to_device.popleft()
-            dut.in_valid.value = 0
-        elif dut.in_broken.value:
-            self.to_device.popleft()
-        offered = bool(dut.in_valid.value and not dut.in_ready.value)
-        dut.in_broken.value = 0
+        offered = self.driven["in_valid"] and not taken
+        pins = {"in_broken": 0, "in_valid": int(offered)}
         if self.to_device and not offered and self.goes():
             byte = self.to_device[0]
-            dut.in_broken.value, dut.in_valid.value = int(byte is None), int(byte is not None)
-            dut.in_data.value = byte or 0
-        if dut.out_valid.value and dut.out_ready.value:
-            self.out.append(int(dut.out_data.value))
+            pins = {"in_broken": int(byte is None), "in_valid": int(byte is not None), "in_data": byte or 0}
+        if self.moves("out_"):
+            self.out.append(self.reads["out_data"]())
             self.out_clocks.append(self.clock)
-        dut.out_ready.value = self.goes()
-        if dut.m_axis_tvalid.value and dut.m_axis_tready.value:
-            self.pixels.append((int(dut.m_axis_tdata.value), int(dut.m_axis_tlast.value), int(dut.m_axis_tuser.value)))
-        dut.m_axis_tready.value = self.goes()
+        pins["out_ready"] = self.goes()
+        if self.moves("m_axis_t"):
+            data, last, user = (self.reads[f"m_axis_t{field}"]() for field in VIDEO)
+            self.pixels.append((data, last, user))
+        self.drive(**pins, m_axis_tready=self.goes())
 
     def pipeline(self) -> None:
         """Give depth and record; what the pipeline gives is never held back."""
-        dut = self.dut
-        dut.s_axis_tvalid.value = dut.s_event_tvalid.value = 0
+        pins = {"s_axis_tvalid": 0, "s_event_tvalid": 0}
         if self.beats and self.goes():
-            data, last, user = self.beats.popleft()
-            dut.s_axis_tdata.value, dut.s_axis_tlast.value, dut.s_axis_tuser.value = data, last, user
-            dut.s_axis_tvalid.value = 1
+            words = zip(VIDEO, self.beats.popleft(), strict=True)
+            pins |= {f"s_axis_t{field}": word for field, word in words} | {"s_axis_tvalid": 1}
         elif self.words and not self.beats and self.goes():
-            dut.s_event_tdata.value, dut.s_event_tlast.value = self.words.popleft()
-            dut.s_event_tvalid.value = 1
+            data, last = self.words.popleft()
+            pins |= {"s_event_tdata": data, "s_event_tlast": last, "s_event_tvalid": 1}
+        self.drive(**pins)
 
     # What happens, in device and model.
 
