@@ -129,7 +129,8 @@ def compare(job: Job, seed: int) -> dict[str, Any]:
     count = max(-(-job.codes // pixels), 4)
     frames = np.stack(list(frames_of(job, count, rng)))
     profiles = [bench.entry("sink", bench.chance(job.stalls)), bench.entry("source", bench.chance(job.gaps))]
-    bench.build(job.simulator, config)
+    clocks = int(3 * (count + 4) * pixels / (1 - job.gaps) / (1 - job.stalls))
+    bench.build(job.simulator, config, clocks)
     began = time.monotonic()
     with files.temporary() as folder:
         played = bench.play(
@@ -138,7 +139,7 @@ def compare(job: Job, seed: int) -> dict[str, Any]:
             calibration,
             np.concatenate([np.array(profiles, np.uint32), bench.frame_entries(frames)]),
             folder,
-            clocks=int(3 * (count + 4) * pixels / (1 - job.gaps) / (1 - job.stalls)),
+            clocks=clocks,
             total_frames=count,
             seed=seed,
         )

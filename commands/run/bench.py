@@ -24,6 +24,7 @@ KINDS = {"pixel": 0, "idle": 1, "sink": 2, "source": 3, "reset": 4, "arm": 5}
 NOTE, USER, LAST = 1 << 27, 1 << 25, 1 << 24
 # Blanking of an OV7670: 784 x 510 cycles for a picture of 640 x 480.
 LINE_BLANKING, FRAME_BLANKING = 144 / 640, 30 / 480
+LONG = 600_000  # clocks from which a run of 96 x 128 saves the 5 s that an optimised build takes longer
 LARGEST_CODE = 2**31 - 1  # no depth exceeds it
 
 
@@ -103,15 +104,19 @@ def frames_left(folder: Path, config: Configuration) -> int:
 
 
 def build(
-    simulator: str, config: Configuration, waves: bool = False, camera: CameraConfiguration | None = None
+    simulator: str, config: Configuration, clocks: int, waves: bool = False, camera: CameraConfiguration | None = None
 ) -> Path:
-    """Return the simulator for a configuration, which is built once for each state of the sources."""
+    """Return the simulator for a configuration, which is built once for each state of the sources.
+
+    It is optimised for runs of up to `LONG` clocks, or for longer ones.
+    """
+    is_long = clocks > LONG and not waves
     bench = repository.ROOT / "tb" / BENCH
     sources = [*repository.sources(), bench.with_suffix(".sv")]
     program = repository.ROOT / "tb" / "frame_main.cpp"
     parameters = top_parameters(config, camera=camera)
     text = wrapper.wrapper("bench", parameters)
-    key = hashlib.sha256(json.dumps([simulator, waves, text, simulation.versions()]).encode())
+    key = hashlib.sha256(json.dumps([simulator, waves, is_long, text, simulation.versions()]).encode())
     for source in (*sources, program, Path(simulation.__file__)):
         key.update(source.read_bytes())
 
@@ -122,7 +127,7 @@ def build(
             [*sources, *(wrapper.write(folder, "bench", parameters | {"Camera": each}) for each in (0, 1))],
             {**wrapper.grid(parameters), "Camera": parameters["Camera"]},
             folder,
-            fast=not waves,
+            fast=is_long,
             program=program,
             waves=waves,
             log=folder / simulation.LOG,
@@ -154,7 +159,7 @@ def play(
     """
     write_roms(folder, calibration, config, zero)
     np.asarray(entries, dtype=">u4").tofile(folder / "entries.bin")
-    built = build(simulator, config, waves, camera)
+    built = build(simulator, config, clocks, waves, camera)
     registers = dict(registers or {})
     level = registers.get("THRESHOLD", LARGEST_CODE)
     wanted = {

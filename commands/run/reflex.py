@@ -177,8 +177,9 @@ def loop(request: Request, setup: Setup, draws: Draws) -> list[Loop]:
     calibration = model.calibration_on(request.size)
     played_entries, clocks = entries(request, sent, pixels)
     configs = [Configuration(columns=request.size, rows=request.size, solver=solver) for solver in COLUMNS]
+    most_clocks = 2 * clocks + 16 * request.size**2
     for config in configs:
-        bench.build(request.simulator, config)
+        bench.build(request.simulator, config, most_clocks)
 
     def play(config: Configuration, folder: Path) -> bench.Played:
         folder.mkdir()
@@ -188,7 +189,7 @@ def loop(request: Request, setup: Setup, draws: Draws) -> list[Loop]:
             calibration,
             played_entries,
             folder,
-            clocks=2 * clocks + 16 * request.size**2,
+            clocks=most_clocks,
             total_frames=len(sent),
             registers={"THRESHOLD": threshold_code(config)},
             seed=request.seed,

@@ -95,7 +95,7 @@ def simulate(
         bench.entry(side, bench.chance(no)) for side, no in (("sink", request.stalls), ("source", request.gaps))
     ]
     first = {} if light is None else dict(zip(GAINS, light[0, 0].tolist(), strict=True))
-    bench.build(request.simulator, config, request.waves, frames.camera)
+    bench.build(request.simulator, config, clocks, request.waves, frames.camera)
     with following("simulating", total, "frame", partial(bench.frames_left, folder, config)):
         return bench.play(
             request.simulator,
@@ -273,7 +273,7 @@ def take_dumps(request: Request, config: Configuration, frames: Frames, work: Pa
     """Move the waveforms that a simulation left to `result`; return their names."""
     if not request.waves:
         return []
-    built = bench.build(request.simulator, config, True, frames.camera)  # Icarus writes there, Verilator into `work`
+    built = bench.build(request.simulator, config, 0, True, frames.camera)  # Icarus writes there, Verilator into `work`
     return [Path(shutil.move(dump, result / dump.name)).name for dump in (*work.glob("*.vcd"), *built.glob("*.fst"))]
 
 
