@@ -112,7 +112,7 @@ def environment(folder: Path, wheel: Any) -> Any:
     complete = folder / "complete"
     if not complete.exists():
         subprocess.run([sys.executable, "-m", "venv", python.parent.parent], check=True)
-        install = [python, "-m", "pip", "install", "--disable-pip-version-check", wheel]
+        install = [python, "-m", "pip", "install", "--disable-pip-version-check", "--no-compile", wheel]
         ended = subprocess.run(install, capture_output=True, text=True, env=without_sources())
         output = ended.stdout + ended.stderr
         if ended.returncode and any(reason in output for reason in UNREACHABLE):

@@ -132,7 +132,7 @@ def build(
         files = [HDL / "verilator.vlt", visible, *waivers_first]
         # The testbench of a core compiles longer than it runs; -O2 saves only 5 % of a long run.
         level = "-O1" if fast else "-O0"
-        os.environ["MAKEFLAGS"] = f"{VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL={level}"
+        os.environ["MAKEFLAGS"] = f"{VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL=-O2"
         os.environ["VM_SUPPORT_FAST"] = "program"  # Verilator's makefile adds to this list of parts of the C++ file
         (folder / "program.cpp").unlink(missing_ok=True)
         (folder / "program.cpp").symlink_to(program or PROGRAM)
@@ -144,8 +144,9 @@ def build(
         files = [file for file in files if file.suffix != ".vlt"]
     if simulator == "verilator":
         flags = f"{zlib.crc32(Path(__file__).read_bytes()):08x}"
-        kind = "-".join([*versions()[1].split(), level[1:], *["waves"] * waves, *["coverage"] * COVERAGE, flags])
+        kind = "-".join([*versions()[1].split(), *["waves"] * waves, *["coverage"] * COVERAGE, flags])
         runtime = ROOT / "build" / "verilator-runtime" / kind
+        headers = runtime / f"{RUNTIME}.gch" / level[1:]
         arguments += _take_runtime(folder, runtime)
     runner.build(
         sources=files,
@@ -157,8 +158,8 @@ def build(
         waves=waves,
         log_file=log,
     )
-    if simulator == "verilator" and not runtime.exists():
-        _keep_runtime(folder, runtime)
+    if simulator == "verilator" and not headers.exists():
+        _keep_runtime(folder, runtime, headers)
     if simulator == "icarus" and log and (unknown := UNKNOWN_PARAMETER.search(log.read_text())):
         raise RuntimeError(f"{unknown.group()}: Icarus builds with its default")
 
@@ -201,16 +202,18 @@ def _take_runtime(folder: Path, runtime: Path) -> list[str]:
     return ["-CFLAGS", f"-include {RUNTIME}"]
 
 
-def _keep_runtime(folder: Path, runtime: Path) -> None:
-    """Keep the objects of Verilator's runtime, and its headers precompiled.
+def _keep_runtime(folder: Path, runtime: Path, headers: Path) -> None:
+    """Keep the objects of Verilator's runtime, and its headers precompiled for this level of optimisation.
 
-    They are the same for every model, and take most of the time of a small build.
+    They are the same for every model, and take most of the time of a small build. The compiler looks for its level
+    among the `headers` of all.
     """
     runtime.parent.mkdir(parents=True, exist_ok=True)
     with files.temporary(runtime.parent) as place:
         kept = place / "runtime"
-        kept.mkdir()
-        (folder / RUNTIME).write_text("".join(f'#include "{name}"\n' for name in RUNTIME_HEADERS))
+        (kept / headers.parent.name).mkdir(parents=True)
+        if not (folder / RUNTIME).is_symlink():
+            (folder / RUNTIME).write_text("".join(f'#include "{name}"\n' for name in RUNTIME_HEADERS))
         precompiled = f"{RUNTIME}.fast.gch"  # a rule of Verilator's makefile, with the flags of the model
         # Some models do without DPI.
         make = ["make", "-s", "-C", str(folder), "-f", "Vtop.mk", precompiled, "verilated_dpi.o"]
@@ -218,9 +221,10 @@ def _keep_runtime(folder: Path, runtime: Path) -> None:
         for compiled in folder.glob("verilated*.o"):
             shutil.copy(compiled, kept)
         shutil.copy(folder / RUNTIME, kept)
-        (folder / precompiled).rename(kept / f"{RUNTIME}.gch")
         with contextlib.suppress(OSError):  # another build was first
             kept.rename(runtime)
+        (folder / precompiled).rename(place / "headers")
+        (place / "headers").rename(headers)
 
 
 def versions() -> list[str]:
