@@ -175,13 +175,20 @@ def test_a_core_is_checked_alone() -> None:
 
 
 CHECKS = lint.core_checks(RUN.cores) if RUN.cores else lint.checks()
+# Larger grids of structures that are checked at the smallest: `make lint` and `make regress` check them too.
+LARGER = {
+    s.name for s in lint.structures() if s.config and s.config.columns > lint.GRIDS[0] and not s.config.flat_field
+}
+
+
+def marks(check: lint.Check) -> list[pytest.MarkDecorator]:
+    """Return the marks of the item of a check: the longest begin first."""
+    is_long = check.tool == "mypy" or check.label == "yosys cores"
+    return [pytest.mark.long] * is_long + [pytest.mark.regress] * (check.name in LARGER)
 
 
 @pytest.mark.lint
-@pytest.mark.parametrize(
-    "check",
-    [pytest.param(check, marks=[pytest.mark.long] * (check.tool == "mypy"), id=check.label) for check in CHECKS],
-)
+@pytest.mark.parametrize("check", [pytest.param(check, marks=marks(check), id=check.label) for check in CHECKS])
 def test_nothing_is_found(check: lint.Check, record_property: Callable[[str, object], None]) -> None:
     record_property("check", check.label)
     if text := check.run():
