@@ -7,7 +7,7 @@ import json
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -95,7 +95,13 @@ class Cost:
 
     def luts_of(self, device: Device) -> int:
         """Return the number of LUTs of a device, within the error that docs/hardware.md states."""
-        return luts(self.parameters, device)
+        if device not in self._luts:  # it takes as long as all the rest of a cost
+            self._luts[device] = luts(self.parameters, device)
+        return self._luts[device]
+
+    @cached_property
+    def _luts(self) -> dict[Device, int]:
+        return {}
 
     @cached_property
     def power_mw(self) -> float:
@@ -127,6 +133,7 @@ class Cost:
         return {core: (tiles[core], bits[core]) for core in CORES if core in tiles or core in bits}
 
 
+@lru_cache(maxsize=4096)  # a search asks for the same ones again and again
 def cost(config: Configuration) -> Cost:
     """Count the multipliers and memories in the RTL of a configuration."""
     parameters = top_parameters(config)
