@@ -277,7 +277,7 @@ def run(tmp_path: Any, *arguments: Any, rtl: bool = True) -> Any:
 def test_rtl_and_model_saturate_where_the_certificate_says(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], words: Any, depth_range: int
 ) -> None:
-    document = run(tmp_path, *words.split(), "SIM=icarus", *([f"DEPTH_RANGE={depth_range}"] if depth_range else []))
+    document = run(tmp_path, *words.split(), *([f"DEPTH_RANGE={depth_range}"] if depth_range else []))
     assert document["rtl"]
     assert document["faults"] == []
     assert "no depth within the range saturates a node" in capsys.readouterr().out
