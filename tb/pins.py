@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Functions that read a pin as a number, for what is read in every clock.
+"""Functions that read a pin as a number, and write it where it changes, for what happens in every clock.
 
 The objects that cocotb makes of a value take several times as long as the read itself. A function raises ValueError if
 a bit is unknown.
@@ -41,6 +41,31 @@ def value(handle: Any) -> Callable[[], Any]:
         return values[bits]
 
     return read
+
+
+def by_name(dut: Any) -> Callable[[str], int]:
+    """Return the function that reads a pin of a device by its name, as an unsigned number; it finds each pin once."""
+    reads: dict[str, Read] = {}
+
+    def read(name: str) -> int:
+        if name not in reads:
+            reads[name] = unsigned(getattr(dut, name))
+        return reads[name]()
+
+    return read
+
+
+class Driver:
+    """Writer of pins by their names, for those that nobody else writes; a pin is written where its value changes."""
+
+    def __init__(self, dut: Any) -> None:
+        self.dut = dut
+        self.driven: dict[str, int] = {}  # values at the pins
+
+    def __call__(self, **pins: int) -> None:
+        for name, value in pins.items():
+            if self.driven.get(name) != value:  # a write costs more than a read
+                getattr(self.dut, name).value = self.driven[name] = int(value)
 
 
 class Late:
