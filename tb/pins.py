@@ -7,6 +7,7 @@ a bit is unknown.
 
 from collections import deque
 from collections.abc import Callable
+from functools import cache, partial
 from typing import Any
 
 Read = Callable[[], int]
@@ -45,27 +46,21 @@ def value(handle: Any) -> Callable[[], Any]:
 
 def by_name(dut: Any) -> Callable[[str], int]:
     """Return the function that reads a pin of a device by its name, as an unsigned number; it finds each pin once."""
-    reads: dict[str, Read] = {}
-
-    def read(name: str) -> int:
-        if name not in reads:
-            reads[name] = unsigned(getattr(dut, name))
-        return reads[name]()
-
-    return read
+    text = cache(lambda name: getattr(dut, name)._handle.get_signal_val_binstr)
+    return lambda name: int(text(name)(), 2)
 
 
 class Driver:
     """Writer of pins by their names, for those that nobody else writes; a pin is written where its value changes."""
 
     def __init__(self, dut: Any) -> None:
-        self.dut = dut
+        self.pin = cache(partial(getattr, dut))
         self.driven: dict[str, int] = {}  # values at the pins
 
     def __call__(self, **pins: int) -> None:
         for name, value in pins.items():
             if self.driven.get(name) != value:  # a write costs more than a read
-                getattr(self.dut, name).value = self.driven[name] = int(value)
+                self.pin(name).value = self.driven[name] = int(value)
 
 
 class Late:
