@@ -71,10 +71,11 @@ class Bench:
 
     async def check(self) -> None:
         """Wait for the pixels, and compare them with the model."""
+        edge = RisingEdge(self.dut.clk)
         for _ in range(LONGEST):
             if len(self.monitor.words) >= len(self.device.pixels):
                 break
-            await RisingEdge(self.dut.clk)
+            await edge
         await ClockCycles(self.dut.clk, 5)
         assert self.monitor.words == self.device.pixels
 
