@@ -67,6 +67,7 @@ class AxisSource(BusDriver):  # type: ignore[misc]
         valid, ready, edge = self.bus.valid, unsigned(self.bus.ready), RisingEdge(self.clock)
         self.aborted = False
         offered = None  # a pin is written where it changes: each write costs as much as a read
+        before: Any = repeat(None, len(self.pins))
         for word in transaction:
             while word is None or not next(self.offers):
                 if offered != 0:
@@ -78,8 +79,10 @@ class AxisSource(BusDriver):  # type: ignore[misc]
                     break
             if word is None:
                 continue
-            for pin, value in zip(self.pins, word, strict=True):
-                pin.value = int(value)
+            for pin, value, last in zip(self.pins, word, before, strict=True):
+                if value != last:
+                    pin.value = int(value)
+            before = word
             if offered != 1:
                 valid.value = offered = 1
             await edge

@@ -12,6 +12,7 @@ from cocotb.triggers import FallingEdge, RisingEdge
 from tactile_depth.common.td_node_map import entries_per_node, table_entries
 from tactile_depth.configuration import Configuration, gain_fraction
 from tactile_depth.fixed_point import Format
+from tb.pins import Driver, by_name
 from tb.stream import parameters, places
 from tb.table_bus import READ_CLOCKS, TO_TABLE, TableBus
 
@@ -75,6 +76,7 @@ class Nodes:
         self, dut: Any, config: Configuration, select: int, channels: int = 1, side: int = 1, signed: bool = False
     ) -> None:
         self.dut, self.config = dut, config
+        self.drive, self.pin, self.edge = Driver(dut), by_name(dut), RisingEdge(dut.clk)
         self.width = config.depth.width
         self.channels, self.side = channels, side  # side: nodes that the capture writes at once
         self.per_node = entries_per_node(channels)
@@ -83,10 +85,9 @@ class Nodes:
         self.bank = 0  # value of table_bank
         self.due = False  # True: the next frame changes the bank
         self.reads_captured = hasattr(dut, "capture_read")
-        for pin in ("table_bank", "capture_write"):
-            getattr(dut, pin).value = 0
+        self.drive(table_bank=0, capture_write=0)
         if self.reads_captured:
-            dut.capture_read.value = 0
+            self.drive(capture_read=0)
 
     def at_power_up(self) -> Any:
         return first_words(*self.config.reference_nodes, self.channels, self.width)
@@ -120,11 +121,11 @@ class Nodes:
         """Select the other bank from the next frame on, or in reset."""
         self.due = False
         self.bank ^= 1
-        self.dut.table_bank.value = self.bank
+        self.drive(table_bank=self.bank)
 
     async def changed(self) -> None:
-        while self.dut.table_in_use.value != self.bank:
-            await RisingEdge(self.dut.clk)
+        while self.pin("table_in_use") != self.bank:
+            await self.edge
 
     async def capture(self, words: np.ndarray) -> None:
         """Write all nodes of the free bank as reference_capture writes them, and read each a few cycles later."""
@@ -134,16 +135,13 @@ class Nodes:
         written = [sum((word & mask) << self.width * c for c, word in enumerate(node)) for node in nodes]
         for clock in range(len(written) + 3):
             writes, reads = clock < len(written), 0 <= clock - 2 < len(written)
-            self.dut.capture_write.value = int(writes)
-            self.dut.capture_write_node.value = clock if writes else 0
-            getattr(self.dut, self.capture_pin).value = written[clock] if writes else 0
+            self.drive(capture_write=writes, capture_write_node=clock if writes else 0)
+            self.drive(**{self.capture_pin: written[clock] if writes else 0})
             if self.reads_captured:
-                self.dut.capture_read.value = int(reads)
-                self.dut.capture_read_node.value = clock - 2 if reads else 0
-            await RisingEdge(self.dut.clk)
+                self.drive(capture_read=reads, capture_read_node=clock - 2 if reads else 0)
+            await self.edge
             if self.reads_captured and clock >= 3:
-                got = int(getattr(self.dut, self.read_pin).value)
-                assert got == written[clock - 3], f"node {clock - 3} as it is read"
+                assert self.pin(self.read_pin) == written[clock - 3], f"node {clock - 3} as it is read"
         self.banks[self.bank ^ 1] = words.copy()
 
     async def write(self, words: Any) -> None:
@@ -161,7 +159,7 @@ class Nodes:
         """Rewrite the free bank repeatedly, commit it when it is complete, and read entries meanwhile."""
         size = self.per_node * self.banks[0][..., 0].size
         while going_on():
-            if self.due or self.dut.table_in_use.value != self.bank:
+            if self.due or self.pin("table_in_use") != self.bank:
                 await self.read(chance.randrange(size))
                 continue
             await chance.choice((self.write, self.capture))(self.random(chance))
@@ -179,10 +177,10 @@ class Nodes:
         """Read and compare an entry of the free bank; a change-over may come in the same cycle."""
         await self.bus.ask(index, (index ^ 5) % (self.per_node * self.banks[0][..., 0].size))
         for _ in range(TO_TABLE + 1):
-            await RisingEdge(self.dut.clk)
-        free = 1 - int(self.dut.table_in_use.value)  # as it was after the edge of the read
+            await self.edge
+        free = 1 - self.pin("table_in_use")  # as it was after the edge of the read
         for _ in range(READ_CLOCKS - TO_TABLE - 1):
-            await RisingEdge(self.dut.clk)
+            await self.edge
         node, channel = divmod(index, self.per_node)
         want = self.banks[free].reshape(-1, self.channels)[node, channel] if channel < self.channels else 0
         self.bus.check(index, want)
@@ -215,10 +213,11 @@ async def reads_as_a_pause_ends(device: Any, nodes: Nodes) -> None:
 async def watch_active(dut: Any, latency: int) -> None:
     """Check in every cycle that `active` is high while a word is inside, which takes `latency` cycles with en."""
     inside = 0  # a bit for each cycle, the latest lowest
+    read, edge = by_name(dut), RisingEdge(dut.clk)
     while True:
-        await RisingEdge(dut.clk)
-        assert bool(dut.active.value) == bool(inside), f"active is {dut.active.value}"
-        if dut.rst.value:
+        await edge
+        assert read("active") == bool(inside), f"active is {read('active')}"
+        if read("rst"):
             inside = 0
-        elif dut.en.value:
-            inside = (inside << 1 | int(dut.in_valid.value)) & (1 << latency) - 1
+        elif read("en"):
+            inside = (inside << 1 | read("in_valid")) & (1 << latency) - 1

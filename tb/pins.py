@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Functions that read a pin as a number, for what is read in every clock.
+"""Functions that read a pin as a number, and write it where it changes, for what happens in every clock.
 
 The objects that cocotb makes of a value take several times as long as the read itself. A function raises ValueError if
 a bit is unknown.
@@ -7,6 +7,7 @@ a bit is unknown.
 
 from collections import deque
 from collections.abc import Callable
+from functools import cache, partial
 from typing import Any
 
 Read = Callable[[], int]
@@ -41,6 +42,25 @@ def value(handle: Any) -> Callable[[], Any]:
         return values[bits]
 
     return read
+
+
+def by_name(dut: Any) -> Callable[[str], int]:
+    """Return the function that reads a pin of a device by its name, as an unsigned number; it finds each pin once."""
+    text = cache(lambda name: getattr(dut, name)._handle.get_signal_val_binstr)
+    return lambda name: int(text(name)(), 2)
+
+
+class Driver:
+    """Writer of pins by their names, for those that nobody else writes; a pin is written where its value changes."""
+
+    def __init__(self, dut: Any) -> None:
+        self.pin = cache(partial(getattr, dut))
+        self.driven: dict[str, int] = {}  # values at the pins
+
+    def __call__(self, **pins: int) -> None:
+        for name, value in pins.items():
+            if self.driven.get(name) != value:  # a write costs more than a read
+                self.pin(name).value = self.driven[name] = int(value)
 
 
 class Late:

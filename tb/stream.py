@@ -163,13 +163,16 @@ class StreamDriver(BusDriver):
     async def _driver_send(self, transaction: Any, sync: bool = True) -> None:
         qualifier, en, edge = getattr(self.bus, self.qualifier), pins.unsigned(self.entity.en), RisingEdge(self.clock)
         driven = [getattr(self.bus, field) for field in self.fields]
+        before: Any = itertools.repeat(None, len(driven))
         for index, word in enumerate(transaction):
             if index < 2:  # later ones are as the second
                 qualifier.value = int(index == 0 or self.qualifier == "valid")
                 if self.frame_pin is not None:
                     self.frame_pin.value = int(index == 0 and self.frame_start)
-            for pin, value in zip(driven, word, strict=True):
-                pin.value = int(value)
+            for pin, value, last in zip(driven, word, before, strict=True):
+                if value != last:  # a write costs more than a read
+                    pin.value = int(value)
+            before = word
             await edge
             while not en():
                 await edge
@@ -308,6 +311,10 @@ async def send_apart(bench: Any, driver: Any, words: Any, gap: float, frame: int
 
     A frame begins every `frame` words; 0: no frame begins.
     """
+    if not gap and not frame:
+        driver.frame_start = False
+        await driver.send(words)
+        return
     for index, word in enumerate(words):
         while bench.random.random() < gap:
             await bench.clocks(1)

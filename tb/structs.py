@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache, lru_cache
 from typing import Any
 
@@ -64,10 +64,18 @@ def _unpacked(name: str, word: int) -> dict[str, int]:
 
 def of(handle: Any, name: str) -> dict[str, int | None]:
     """Return the members of a signal, unsigned; None where a bit is unknown."""
-    value = handle.value
-    try:
-        return {**unpack(name, int(value))}
-    except ValueError:
-        bits = str(value)[::-1]
-    words = {member: bits[low : low + width][::-1] for member, (low, width) in members(name).items()}
+    return reader(handle, name)()
+
+
+def reader(handle: Any, name: str) -> Callable[[], dict[str, int | None]]:
+    """Return the function that reads a signal as `of` does, for what is read in every clock."""
+    bits = handle._handle.get_signal_val_binstr
+    return lambda: dict(_shown(name, bits()))
+
+
+@lru_cache(maxsize=1024)
+def _shown(name: str, bits: str) -> dict[str, int | None]:
+    """Return the members of a vector of which bits may be unknown."""
+    places = {member: (len(bits) - low - width, len(bits) - low) for member, (low, width) in members(name).items()}
+    words = {member: bits[begin:end] for member, (begin, end) in places.items()}
     return {member: int(word, 2) if set(word) <= {"0", "1"} else None for member, word in words.items()}

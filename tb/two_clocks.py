@@ -8,6 +8,8 @@ import cocotb
 from cocotb.triggers import RisingEdge, Timer
 from cocotb.utils import get_sim_time
 
+from tb.pins import value
+
 # Periods of source and sink in picoseconds: equal, in ratios of small integers, close to each other, and far apart.
 RATIOS = {
     "equal": (10_000, 10_000),
@@ -35,8 +37,8 @@ async def run_clock(pin: Any, period_ps: int, seed: int, jitter: float = JITTER)
 
 async def watch(clock: Any, pins: Any, events: Any, side: str) -> None:
     """Append (time in ps, side, values of the pins by name, before the edge) to `events` at each edge of a clock."""
-    edge = RisingEdge(clock)
+    edge, reads = RisingEdge(clock), {pin._name: value(pin) for pin in pins}
     while True:
         await edge
-        values = {pin._name: pin.value for pin in pins}
+        values = {name: read() for name, read in reads.items()}
         events.append((round(get_sim_time("ps")), side, values))

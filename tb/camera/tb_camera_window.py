@@ -16,16 +16,18 @@ from tactile_depth.camera.camera_window import FAULTS, LATENCY, Settings, camera
 from tactile_depth.video.frame_guard import Word
 from tb.axis import BREAKS, SILENT, AxisSource, broken, positions, profile, spoiled, video
 from tb.cases import on_bench
+from tb.pins import by_name
 from tb.stream import CLOCK_NS, MANY, REGRESS, parameters, parametrize
 
 KINDS = [kind for kind in BREAKS if kind not in SILENT]
 STALLS = {"none": ("none", "none"), "gaps": ("random", "none"), "both": ("random", "random")}
+SETTINGS = ("columns", "rows", "window_x", "window_y")
 LONG = 30  # columns or rows of the largest pictures
 
 
 class Bench:
     def __init__(self, dut: Any, stalls: str = "none") -> None:
-        self.dut = dut
+        self.dut, self.read = dut, by_name(dut)
         offers, enabled = STALLS[stalls]
         names = ("WindowColumns", "WindowRows", "WordsPerPixel", "PixelPairs", "CountWidth")
         self.width, self.height, self.words, pairs, count_width = parameters(dut, *names)
@@ -45,8 +47,7 @@ class Bench:
     def use(self, settings: Settings) -> None:
         """Set the size and the window of the next picture."""
         self.settings = settings
-        names = ("columns", "rows", "window_x", "window_y")
-        for name, value in zip(names, settings, strict=True):
+        for name, value in zip(SETTINGS, settings, strict=True):
             getattr(self.dut, name).value = value
 
     def any_settings(self) -> Settings:
@@ -70,39 +71,42 @@ class Bench:
         await self.reset(3)
 
     async def enable(self) -> None:
+        driven, edge = None, RisingEdge(self.dut.clk)
         while True:
-            self.dut.en.value = int(next(self.enabled))
-            await RisingEdge(self.dut.clk)
+            enabled = int(next(self.enabled))
+            if enabled != driven:  # a write costs more than a read
+                self.dut.en.value = driven = enabled
+            await edge
 
     async def watch(self) -> None:
-        dut, clock, before = self.dut, 0, None
+        read, edge, clock, before = self.read, RisingEdge(self.dut.clk), 0, None
         while True:
-            await RisingEdge(dut.clk)
-            settings = Settings(*(int(getattr(dut, pin).value) for pin in ("columns", "rows", "window_x", "window_y")))
-            if not dut.rst.value:
-                faults = [name for name in FAULTS if getattr(dut, name).value]
-                assert dut.en.value or not faults, f"{faults} while en is low: would count more than once"
+            await edge
+            settings = Settings(*map(read, SETTINGS))
+            if not read("rst"):
+                faults = [name for name in FAULTS if read(name)]
+                assert read("en") or not faults, f"{faults} while en is low: would count more than once"
                 assert len(faults) < 2, f"{faults} at once"
                 self.faults += faults
-                if dut.en.value:
+                if read("en"):
                     clock += 1
                     self.step(clock, settings if before is None else before)
                 else:
-                    assert not dut.s_ready.value
+                    assert not read("s_ready")
             before = settings
 
     def step(self, clock: int, settings: Settings) -> None:
-        dut = self.dut
-        assert not (dut.out_valid.value and dut.out_abort.value)
-        if dut.out_abort.value:
+        read = self.read
+        valid, abort = read("out_valid"), read("out_abort")
+        assert not (valid and abort)
+        if abort:
             self.out.append(None)
-        if dut.out_valid.value:
-            marks = [int(getattr(dut, f"out_{name}").value) for name in ("odd_row", "odd_column", "inside")]
-            names = ("row_start", "frame_start") if marks[2] else ()
-            starts = [int(getattr(dut, f"out_{name}").value) for name in names]
-            self.out.append((clock - LATENCY, int(dut.out_data.value), *marks, *starts))
-        if dut.s_valid.value and dut.s_ready.value:
-            self.taken.append((Word(int(dut.s_data.value), int(dut.s_last.value), int(dut.s_user.value)), settings))
+        if valid:
+            marks = [read(f"out_{name}") for name in ("odd_row", "odd_column", "inside")]
+            starts = [read(f"out_{name}") for name in ("row_start", "frame_start")] if marks[2] else []
+            self.out.append((clock - LATENCY, read("out_data"), *marks, *starts))
+        if read("s_valid") and read("s_ready"):
+            self.taken.append((Word(read("s_data"), read("s_last"), read("s_user")), settings))
             self.clocks.append(clock)
 
     async def reset(self, clocks: int) -> None:

@@ -14,6 +14,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 from tactile_depth.camera.dvp_receive import IDLE, Beat, DvpReceive, Pins, camera_pins
 from tactile_depth.common.td_async_fifo import AsyncFifo
 from tb.axis import AxisMonitor, AxisSink, profile
+from tb.pins import Driver
 from tb.stream import REGRESS, parameters, parametrize, sample
 from tb.two_clocks import RATIOS, run_clock, watch
 
@@ -28,7 +29,7 @@ class Bench:
     """Both clocks, the sink, and a record of the pins; `check` compares the record with the model."""
 
     def __init__(self, dut: Any) -> None:
-        self.dut = dut
+        self.dut, self.drive = dut, Driver(dut)
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.events: list[Any] = []
         self.lost: list[int] = []
@@ -37,7 +38,8 @@ class Bench:
         """Start the clocks, empty the queue, and reset."""
         dut = self.dut
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
-        dut.rst.value, dut.vsync.value, dut.href.value, dut.data.value = 1, 0, 0, 0
+        dut.rst.value = 1
+        self.drive(vsync=0, href=0, data=0)
         for seed, (clock, period) in enumerate(zip((dut.pclk, dut.clk), RATIOS[ratio], strict=True)):
             cocotb.start_soon(run_clock(clock, period, seed))
         (fifo_log2,) = parameters(dut, "FifoLog2")
@@ -67,9 +69,9 @@ class Bench:
         """Drive the pins of the camera, one entry in each cycle of pclk."""
         edge = RisingEdge(self.dut.pclk)
         for vsync, href, data in pins:
-            self.dut.vsync.value, self.dut.href.value, self.dut.data.value = int(vsync), int(href), data
+            self.drive(vsync=vsync, href=href, data=data)
             await edge
-        self.dut.vsync.value = self.dut.href.value = 0
+        self.drive(vsync=0, href=0)
 
     async def end(self) -> None:
         """Wait until the queue is empty, and check every edge."""

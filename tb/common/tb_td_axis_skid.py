@@ -11,6 +11,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.common.td_axis_skid import AxisSkid
 from tb.axis import PROFILES, AxisMonitor, AxisSink, AxisSource, profile
+from tb.pins import by_name
 from tb.stream import CLOCK_NS, REGRESS, parameters, parametrize, sample
 
 WORDS = 600 if REGRESS else 200
@@ -19,18 +20,18 @@ FIELDS = ("data",)
 
 async def follow(dut: Any) -> None:
     """Compare ready, valid and data with the model, which is fed from the pins."""
-    model, edge = AxisSkid(), RisingEdge(dut.clk)
+    model, read, edge = AxisSkid(), by_name(dut), RisingEdge(dut.clk)
     await edge  # of the first reset: before it everything is unknown
     while True:
         await edge
-        assert bool(dut.s_ready.value) == model.ready, "s_ready"
-        assert bool(dut.m_valid.value) == model.valid, "m_valid"
+        assert read("s_ready") == model.ready, "s_ready"
+        assert read("m_valid") == model.valid, "m_valid"
         if model.valid:
-            assert int(dut.m_data.value) == model.words[0], "m_data"
-        if dut.rst.value:
+            assert read("m_data") == model.words[0], "m_data"
+        if read("rst"):
             model.reset()
         else:
-            model.clock(int(dut.s_data.value) if dut.s_valid.value else None, bool(dut.m_ready.value))
+            model.clock(read("s_data") if read("s_valid") else None, bool(read("m_ready")))
 
 
 async def reset(dut: Any, clocks: int = 3) -> None:

@@ -11,6 +11,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.common.td_banked_table import BankedTable
+from tb.pins import Driver, by_name
 from tb.stream import CLOCK_NS, parameters, parametrize
 
 CLOCKS = 6000
@@ -23,6 +24,7 @@ class Bench:
 
     def __init__(self, dut: Any, pause: float) -> None:
         self.dut, self.pause = dut, pause
+        self.drive, self.pin, self.edge = Driver(dut), by_name(dut), RisingEdge(dut.clk)
         self.width, self.depth = parameters(dut, "Width", "Depth")
         self.chance = random.Random(cocotb.RANDOM_SEED)
         self.named = 0  # bank of the next frame
@@ -34,35 +36,31 @@ class Bench:
     async def start(self) -> None:
         """Start and reset. On Verilator pins are random at first, and may write a word (test_power_up)."""
         pins = ("en", "frame_start", "change", "read", "free_write", "free_read", "table_bank")
-        for pin in pins:
-            getattr(self.dut, pin).value = 0
-        self.dut.rst.value = 1
+        self.drive(**dict.fromkeys(pins, 0), rst=1)
         Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
-        await RisingEdge(self.dut.clk)
+        await self.edge
         if Bench.banks is None:
             Bench.banks = BankedTable.of(np.array([int(line, 16) for line in Path("table.hex").read_text().split()]))
             if cocotb.SIM_NAME == "Verilator":
                 await self.rewrite()
         self.banks.wanted = 0
         self.banks.begin_frame()
-        self.dut.table_bank.value = 0
-        await RisingEdge(self.dut.clk)
-        self.dut.rst.value = 0
+        self.drive(table_bank=0)
+        await self.edge
+        self.drive(rst=0)
 
     async def rewrite(self) -> None:
         """Write the words of both banks anew; in reset table_bank counts at once."""
         for bank in range(2):
-            self.dut.table_bank.value = bank
-            await RisingEdge(self.dut.clk)
-            self.dut.free_write.value = 1
-            for address, word in enumerate(self.banks.words[1 - bank]):
-                self.dut.free_write_address.value = address
-                self.dut.free_write_word.value = int(word)
-                await RisingEdge(self.dut.clk)
-            self.dut.free_write.value = 0
+            self.drive(table_bank=bank)
+            await self.edge
+            for address, word in enumerate(self.banks.words[1 - bank].tolist()):
+                self.drive(free_write=1, free_write_address=address, free_write_word=word)
+                await self.edge
+            self.drive(free_write=0)
 
     async def clock(self, reset: bool = False) -> None:
-        chance, dut, banks = self.chance, self.dut, self.banks
+        chance, banks = self.chance, self.banks
         en = chance.random() >= self.pause
         if banks.wanted == banks.in_use and chance.random() < 0.1:  # also while a frame that has begun is on its way
             banks.wanted ^= 1
@@ -73,14 +71,11 @@ class Bench:
         write = settled and chance.random() < 0.5
         read = not reset and chance.random() < 0.5 and not (write and write_address == free_address)
         written = chance.getrandbits(self.width)
-        for pin, value in {
-            **{"rst": reset, "en": en, "table_bank": banks.wanted, "frame_start": start, "change": change},
-            **{"read": chance.random() < 0.8 or change, "read_address": address},
-            **{"free_write": write, "free_write_address": write_address, "free_write_word": written},
-            **{"free_read": read, "free_read_address": free_address},
-        }.items():
-            getattr(dut, pin).value = int(value)
-        await RisingEdge(dut.clk)
+        read_frame = chance.random() < 0.8 or change
+        self.drive(rst=reset, en=en, table_bank=banks.wanted, frame_start=start, change=change)
+        self.drive(read=read_frame, read_address=address, free_read=read, free_read_address=free_address)
+        self.drive(free_write=write, free_write_address=write_address, free_write_word=written)
+        await self.edge
         self.check()
         self.free_word = None
         if reset:
@@ -95,19 +90,18 @@ class Bench:
                 self.begun += 1
             if start:
                 self.named, self.begun = banks.wanted, 0
-            self.word = int(banks.words[banks.in_use][address]) if int(dut.read.value) else None
+            self.word = int(banks.words[banks.in_use][address]) if read_frame else None
         if read:  # in the cycle of a change: of the previous bank
             self.free_word = int(banks.free[free_address])
         if write:
             banks.write(write_address, written)
 
     def check(self) -> None:
-        dut = self.dut
-        assert int(dut.table_in_use.value) == self.banks.in_use, "table_in_use"
+        assert self.pin("table_in_use") == self.banks.in_use, "table_in_use"
         if self.word is not None:
-            assert int(dut.read_word.value) == self.word, "read_word"
+            assert self.pin("read_word") == self.word, "read_word"
         if self.free_word is not None:
-            assert int(dut.free_word.value) == self.free_word, "free_word"
+            assert self.pin("free_word") == self.free_word, "free_word"
 
 
 @cocotb.test()

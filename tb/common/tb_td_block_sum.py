@@ -11,6 +11,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.common.td_block_sum import CYCLES_TO_SUM, block_sum
+from tb.pins import Driver, by_name
 from tb.stream import CLOCK_NS, MANY, parameters, parametrize
 
 NAMES = ("Rows", "Columns", "BlockLog2", "ColumnLog2", "Channels", "Width", "Signed", "SumWidth")
@@ -21,6 +22,7 @@ class Device:
 
     def __init__(self, dut: Any, gap: float = 0.0) -> None:
         self.dut, self.gap = dut, gap
+        self.pins, self.read, self.clk_edge = Driver(dut), by_name(dut), RisingEdge(dut.clk)
         self.rows, self.columns, self.log2, self.column_log2, *more = parameters(dut, *NAMES)
         self.channels, self.width, self.signed, self.sum_width = more
         self.blocks = (self.rows >> self.log2, self.columns >> self.column_log2)
@@ -41,31 +43,31 @@ class Device:
         self.dut.rst.value = 0
 
     def drive(self, valid: bool, data: int, start: int = 0, first: int = 0, last: int = 0) -> None:
-        self.dut.in_valid.value, self.dut.in_data.value = int(valid), data
-        self.dut.in_frame_start.value, self.dut.in_first_frame.value, self.dut.in_last_frame.value = start, first, last
+        self.pins(in_valid=valid, in_data=data, in_frame_start=start, in_first_frame=first, in_last_frame=last)
 
-    def packed(self, words: Any, width: int) -> int:
-        return sum((int(word) & (1 << width) - 1) << width * channel for channel, word in enumerate(words))
+    def packed(self, words: list[int], width: int) -> int:
+        return sum((word & (1 << width) - 1) << width * channel for channel, word in enumerate(words))
 
     async def edge(self) -> None:
         """Run one cycle of the memory and of the checks."""
-        dut = self.dut
-        await RisingEdge(dut.clk)
+        read = self.read
+        await self.clk_edge
         self.clock += 1
         expected = self.due.pop(self.clock, None)
-        assert bool(dut.write_en.value) == (expected is not None), f"write_en in clock {self.clock}"
-        assert bool(dut.write_complete.value) == (expected is not None and expected[2]), "write_complete"
-        read = bool(dut.read_en.value)
-        if read:
-            address = int(dut.read_block.value)
+        assert read("write_en") == (expected is not None), f"write_en in clock {self.clock}"
+        assert read("write_complete") == (expected is not None and expected[2]), "write_complete"
+        reads = read("read_en")
+        if reads:
+            address = read("read_block")
             assert address in self.memory, f"block {address} is read before it was written"
         if expected is not None:
             self.writes += 1
             block, word, _ = expected
-            assert (int(dut.write_block.value), int(dut.write_sums.value)) == (block, word), f"in clock {self.clock}"
-            assert not read or address != block, f"block {block} is read while it is written"
+            assert (read("write_block"), read("write_sums")) == (block, word), f"in clock {self.clock}"
+            assert not reads or address != block, f"block {block} is read while it is written"
             self.memory[block] = word
-        dut.read_sums.value = self.memory[address] if read else self.chance.getrandbits(self.channels * self.sum_width)
+        word = self.memory[address] if reads else self.chance.getrandbits(self.channels * self.sum_width)
+        self.pins(read_sums=word)
 
     async def idle(self, clocks: int = 1) -> None:
         for _ in range(clocks):
@@ -91,7 +93,7 @@ class Device:
         before = np.zeros_like(self.sums) if first else self.sums
         rows, columns = self.blocks
         size, wide = 1 << self.log2, 1 << self.column_log2
-        for place, word in enumerate(words.reshape(-1, self.channels)[:count]):
+        for place, word in enumerate(words.reshape(-1, self.channels)[:count].tolist()):
             while self.chance.random() < self.gap:
                 await self.idle()
             marks = (int(first), int(last)) if place == 0 else (self.chance.getrandbits(1), self.chance.getrandbits(1))
@@ -101,7 +103,7 @@ class Device:
             if column % wide == wide - 1 and row < rows * size:
                 so_far = words[row // size * size : row + 1, column - wide + 1 : column + 1].sum(axis=(0, 1))
                 at = row // size, column // wide
-                total = self.packed(before[at] + so_far, self.sum_width)
+                total = self.packed((before[at] + so_far).tolist(), self.sum_width)
                 complete = last and row % size == size - 1
                 self.due[self.clock + CYCLES_TO_SUM] = at[0] * columns + at[1], total, complete
         self.sums = before + totals

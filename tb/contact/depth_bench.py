@@ -12,6 +12,7 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
+from tb.pins import Driver, by_name
 from tb.stream import CLOCK_NS, depth_position, parameters
 
 WORD_LOW, WORD_HIGH = -(1 << 31), (1 << 31) - 1
@@ -30,7 +31,7 @@ class DepthBench:
         self.pixels = self.rows * self.columns
         self.beats = self.pixels // self.lanes
         self.low, self.high = -(1 << self.width - 1), (1 << self.width - 1) - 1
-        self.driven: dict[str, int] = {}  # values at the pins
+        self.drive, self.read = Driver(dut), by_name(dut)
         self.now = 0
 
     async def start(self) -> None:
@@ -40,11 +41,6 @@ class DepthBench:
         await RisingEdge(self.dut.clk)
         await RisingEdge(self.dut.clk)
         self.dut.rst.value = 0
-
-    def drive(self, **pins: int) -> None:
-        for name, value in pins.items():
-            if self.driven.get(name) != value:  # a write costs more time than a cycle
-                getattr(self.dut, name).value = self.driven[name] = value
 
     async def edge(
         self, valid: bool, depths: list[int], position: tuple[Any, Any, Any], settings: Any = None, time: Any = None

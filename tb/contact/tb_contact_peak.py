@@ -46,7 +46,7 @@ class Bench(DepthBench):
             self.thresholds = Thresholds(*(self.random.randint(self.low, self.high) for _ in range(2)))
         if valid:
             self.drive(on_threshold=self.thresholds.on, off_threshold=self.thresholds.off)
-        self.drive(touching=int(self.changes.pop(self.now, self.driven.get("touching", 0))))
+        self.drive(touching=int(self.changes.pop(self.now, self.drive.driven.get("touching", 0))))
         await RisingEdge(self.dut.clk)
         self.check()
         if valid:

@@ -12,6 +12,7 @@ from cocotb.triggers import RisingEdge
 from tactile_depth.contact.depth_gate import DepthGate, Word
 from tb.axis import PROFILES, AxisMonitor, profile
 from tb.cases import on_bench
+from tb.pins import Driver, by_name
 from tb.stream import CLOCK_NS, depth_position, parameters, parametrize
 
 ROWS, COLUMNS = 3, 5
@@ -32,7 +33,8 @@ class Bench:
 
     def __init__(self, dut: Any, accepts: str = "none") -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
-        self.dut = dut
+        self.dut, self.drive, self.read = dut, Driver(dut), by_name(dut)
+        self.edge = RisingEdge(dut.clk)
         self.random = random.Random(cocotb.RANDOM_SEED)
         (self.width,) = parameters(dut, "Width")
         self.accepts, self.drop_frames = profile(accepts), False
@@ -54,37 +56,35 @@ class Bench:
 
     async def start(self) -> None:
         Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
-        self.dut.in_valid.value, self.dut.m_ready.value, self.dut.drop_frames.value = 0, 0, 0
-        self.dut.rst.value = 1
+        self.drive(in_valid=0, m_ready=0, drop_frames=0, rst=1)
         for _ in range(2):
-            await RisingEdge(self.dut.clk)
-        self.dut.rst.value = 0
+            await self.edge
+        self.drive(rst=0)
         await self.clock()
 
     async def reset(self) -> None:
-        self.dut.rst.value, self.dut.in_valid.value = 1, 0
-        await RisingEdge(self.dut.clk)
-        self.dut.rst.value = 0
+        self.drive(rst=1, in_valid=0)
+        await self.edge
+        self.drive(rst=0)
         self.model.reset()
         self.forget()
         await self.clock()
 
     async def clock(self, word: Any = None) -> Any:
         """Run one cycle, with a word or without; return whether the word moved. Marks without a word have no effect."""
-        dut, ready, coin = self.dut, next(self.accepts), self.random.getrandbits
-        dut.in_valid.value, dut.m_ready.value = int(word is not None), int(ready)
-        dut.drop_frames.value = int(self.drop_frames)
+        read, ready, coin = self.read, next(self.accepts), self.random.getrandbits
+        self.drive(in_valid=word is not None, m_ready=ready, drop_frames=self.drop_frames)
         data, *marks = word or (coin(self.width), coin(1), coin(1), coin(1))
-        dut.in_data.value, dut.in_position.value = int(data), depth_position(*marks)
-        await RisingEdge(dut.clk)
+        self.drive(in_data=data, in_position=depth_position(*marks))
+        await self.edge
         model = self.model
-        assert bool(dut.en.value) == model.en, "en"
-        assert bool(dut.event_dropped.value) == model.dropped(word), "event_dropped"
-        assert bool(dut.m_valid.value) == bool(model.sending), "m_valid"
+        assert read("en") == model.en, "en"
+        assert read("event_dropped") == model.dropped(word), "event_dropped"
+        assert read("m_valid") == bool(model.sending), "m_valid"
         if model.sending:
             assert self.pins("m") == model.sending[0], "a word offered"
         tap = model.tap(ready)
-        assert bool(dut.tap_valid.value) == (tap is not None), "tap_valid"
+        assert read("tap_valid") == (tap is not None), "tap_valid"
         if tap is not None:
             assert self.pins("tap") == tap, "a word tapped"
             self.tapped.append(tap)
@@ -102,7 +102,7 @@ class Bench:
         return moves
 
     def pins(self, name: str) -> Any:
-        return word_of(*(int(getattr(self.dut, f"{name}_{field}").value) for field in FIELDS))
+        return word_of(*(self.read(f"{name}_{field}") for field in FIELDS))
 
     async def frame(self, rows: int = ROWS, columns: int = COLUMNS, words: Any = None, each: Any = None) -> None:
         """Send a frame, or its first words; call `each` before every cycle."""

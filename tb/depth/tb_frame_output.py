@@ -11,6 +11,7 @@ from cocotb.triggers import RisingEdge
 
 from tactile_depth.depth.frame_output import Clock, frame_output
 from tb.cases import on_bench
+from tb.pins import Driver, by_name
 from tb.stream import CLOCK_NS, depth_position, parameters, parametrize
 
 
@@ -20,19 +21,19 @@ class Bench:
     def __init__(self, dut: Any, pause: float = 0.0) -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.pause = dut, pause
+        self.drive, self.read = Driver(dut), by_name(dut)
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.width, self.rows, self.columns = parameters(dut, "Width", "Rows", "Columns")
 
     async def start(self) -> None:
         ClockOf(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
-        self.dut.en.value = 1
+        self.drive(en=1)
         await self.reset()
 
     async def reset(self) -> None:
-        dut = self.dut
-        dut.in_start.value, dut.in_frame_start.value, dut.in_due.value, dut.rst.value = 0, 0, 0, 1
-        await RisingEdge(dut.clk)
-        dut.rst.value = 0
+        self.drive(in_start=0, in_frame_start=0, in_due=0, rst=1)
+        await RisingEdge(self.dut.clk)
+        self.drive(rst=0)
         self.left = 0  # words of the frame, the current one included
         self.inputs: list[Any] = []
         self.beats: list[Any] = []
@@ -44,29 +45,28 @@ class Bench:
         self, start: bool = False, frame_start: bool = False, due: bool = False, bad: bool | None = None
     ) -> None:
         """Run one cycle. in_bad has its value with in_due only, and is random elsewhere."""
-        dut, coin = self.dut, self.random.random
+        read, coin, edge = self.read, self.random.random, RisingEdge(self.dut.clk)
         bad = coin() < 0.5 if bad is None else bad
         word = Clock(start, frame_start, self.random.getrandbits(self.width), due, bad)
-        dut.in_start.value, dut.in_frame_start.value, dut.in_data.value = int(start), int(frame_start), word.data
-        dut.in_due.value, dut.in_bad.value = int(due), int(bad)
+        self.drive(in_start=start, in_frame_start=frame_start, in_data=word.data, in_due=due, in_bad=bad)
         en = False
         while not en:
             en = coin() >= self.pause
-            dut.en.value = int(en)
-            await RisingEdge(dut.clk)
+            self.drive(en=en)
+            await edge
         now = len(self.inputs)
         self.inputs.append(word)
-        position = int(dut.out_position.value)
+        position = read("out_position")
         self.left = self.rows * self.columns if due else max(self.left - 1, 0)
         row_end, frame_end = bool(self.left) and self.left % self.columns == 1 % self.columns, self.left == 1
         assert position == depth_position(due, row_end, frame_end), f"position {position:03b}, {self.left} words left"
-        if dut.out_valid.value:
-            self.beats.append((int(dut.out_data.value), position >> 1 & 1, position >> 2))
+        if read("out_valid"):
+            self.beats.append((read("out_data"), position >> 1 & 1, position >> 2))
             self.clocks.append(now)
-            assert dut.active.value
+            assert read("active")
         if position & 1:
             self.ends.append(now)
-        if dut.out_of_step.value:
+        if read("out_of_step"):
             self.out_of_step.append(now)
 
     async def frame(self, bad: bool = False, rows: int | None = None, due: bool = True, begins: bool = True) -> None:

@@ -15,6 +15,7 @@ from tb.cases import on_bench
 from tb.common.capture_bench import request, request_after
 from tb.depth_frames import DepthDriver, depth_words, packed, random_depths
 from tb.nodes import Grid
+from tb.pins import by_name
 from tb.stream import REGRESS, Bench, parameters, parametrize, sample
 
 WORDS = 2048  # that a test sends, about
@@ -65,31 +66,31 @@ class Capture:
 
     async def run(self) -> None:
         """Check each cycle against the rules in the header of the core."""
-        dut = self.dut
+        read, edge = by_name(self.dut), RisingEdge(self.dut.clk)
         for clock in itertools.count():
-            await RisingEdge(dut.clk)
-            if dut.rst.value:
-                assert not dut.map_write.value, "a write in reset"
+            await edge
+            if read("rst"):
+                assert not read("map_write"), "a write in reset"
                 self.stop()
                 self.busy, self.place = False, 0
                 self.under_way = deque([None] * self.levels)
                 continue
             done = clock == self.due
-            assert bool(dut.done.value) == done, f"done is {dut.done.value}, {self.due and self.due - clock} clocks off"
-            assert bool(dut.busy.value) == self.busy
+            assert read("done") == done, f"done is {read('done')}, {self.due and self.due - clock} clocks off"
+            assert read("busy") == self.busy
             write = self.writes.pop(clock, None)
-            assert bool(dut.map_write.value) == (write is not None), f"map_write is {dut.map_write.value}"
+            assert read("map_write") == (write is not None), f"map_write is {read('map_write')}"
             if write is not None:
-                assert (int(dut.map_write_node.value), int(dut.map_write_zero.value)) == write
+                assert (read("map_write_node"), read("map_write_zero")) == write
             if done:
                 self.stop()
                 self.busy = False
                 self.captures += 1
-            self.under_way.append(self.frame if dut.en.value and dut.in_valid.value else None)
+            self.under_way.append(self.frame if read("en") and read("in_valid") else None)
             frame = self.under_way.popleft()
             if frame is not None:
                 self.take(clock, frame)
-            if dut.request.value:
+            if read("request"):
                 self.stop()
                 self.busy, self.taken = True, []
 

@@ -19,6 +19,7 @@ from tactile_depth.registers.register_map import TABLES
 from tb.cases import on_bench
 from tb.depth_frames import DepthDriver, depth_words, packed, random_depths
 from tb.nodes import Grid, Nodes
+from tb.pins import by_name
 from tb.stream import Bench, depth_position, parameters, parametrize, places, sample
 
 WORDS = 2048  # that a test sends, at least
@@ -81,29 +82,29 @@ class Zero:
     async def watch(self) -> None:
         """Check each cycle: a beat leaves `latency` enabled cycles after it entered, and its clips are counted as it
         leaves."""
-        dut = self.dut
+        read, edge = by_name(self.dut), RisingEdge(self.dut.clk)
         while True:
-            await RisingEdge(dut.clk)
-            if dut.rst.value:
+            await edge
+            if read("rst"):
                 continue
             active = self.begun or any(index is not None and self.sent[index][2] for index in self.inside)
-            assert bool(dut.active.value) == active, f"active is {dut.active.value}"
-            assert int(dut.saturations.value) == self.clipped, f"saturations is {dut.saturations.value}"
+            assert read("active") == active, f"active is {read('active')}"
+            assert read("saturations") == self.clipped, f"saturations is {read('saturations')}"
             self.counted += self.clipped
             self.clipped = 0
-            if not dut.en.value:
+            if not read("en"):
                 continue
             leaves = self.inside.pop()
-            assert bool(dut.out_valid.value) == (leaves is not None), f"out_valid is {dut.out_valid.value}"
+            assert read("out_valid") == (leaves is not None), f"out_valid is {read('out_valid')}"
             if leaves is not None:
-                position, got = int(dut.out_position.value), int(dut.out_data.value)
+                position, got = read("out_position"), read("out_data")
                 assert position == depth_position(*self.sent[leaves][:3]), f"beat {leaves}: position {position:03b}"
                 assert got == self.expected[leaves][0], f"beat {leaves}: {got:#x}, not {self.expected[leaves][0]:#x}"
             comes = None
-            if dut.in_valid.value:
+            if read("in_valid"):
                 comes, self.taken = self.taken, self.taken + 1
                 *marks, data = self.sent[comes]
-                pins = int(dut.in_position.value), int(dut.in_data.value)
+                pins = read("in_position"), read("in_data")
                 assert pins == (depth_position(*marks), data), "the driver sent other words than the test gave it"
                 self.begun = not marks[2]
             self.inside.appendleft(comes)

@@ -15,6 +15,7 @@ from tactile_depth.common.td_banked_table import BankedTable
 from tactile_depth.gradient.gradient_lookup import LATENCY, gradient_codes, gradient_lookup
 from tactile_depth.registers.register_map import TABLES
 from tb.cases import on_bench
+from tb.pins import by_name
 from tb.pixels import pack, unpack
 from tb.stream import Bench, StreamDriver, StreamMonitor, configuration, parameters, parametrize, send_apart, uniform
 from tb.table_bus import READ_CLOCKS, TableBus, signed
@@ -74,29 +75,29 @@ class Lookup:
         self.tables.clear()
 
     async def follow(self) -> None:
-        dut, table = self.dut, self.banks.words[0]
+        read, edge, table = by_name(self.dut), RisingEdge(self.dut.clk), self.banks.words[0]
         named = 0  # bank of the next frame
         changes = False  # the first pixel of a frame waits before the table
         while True:
-            await RisingEdge(dut.clk)
-            assert int(dut.table_in_use.value) == self.banks.in_use
+            await edge
+            assert read("table_in_use") == self.banks.in_use
             access = self.bus.step()
-            if changes and dut.en.value and not dut.rst.value:
+            if changes and read("en") and not read("rst"):
                 self.banks.in_use, changes = named, False
             if access and access["read"]:  # in the cycle of a change-over: of the previous bank
                 self.to_read = self.banks.free[access["index"]].tolist()
-            self.banks.wanted = int(dut.table_bank.value)
+            self.banks.wanted = read("table_bank")
             if access and access["write"]:
                 self.banks.write(access["index"], tuple(signed(access[word], self.width) for word in ("low", "high")))
-            if dut.rst.value:
+            if read("rst"):
                 table, changes = self.banks.begin_frame(), False
                 self.expected.clear()
-            elif dut.en.value and dut.in_valid.value:
-                if int(dut.in_position.value) & FIRST == FIRST:
+            elif read("en") and read("in_valid"):
+                if read("in_position") & FIRST == FIRST:
                     named, changes = self.banks.wanted, True
                     table = self.banks.words[named]
                     self.tables.add(named)
-                pixel = unpack(int(dut.in_pixel.value))
+                pixel = unpack(read("in_pixel"))
                 self.expected.append(gradient_lookup(pixel, table, self.bits).copy())
 
     # Software.

@@ -14,6 +14,7 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.fixed_point import Format
 from tactile_depth.gradient.light_gains import LATENCY, RATES, Light
 from tb.cases import on_bench
+from tb.pins import by_name
 from tb.stream import (
     MANY,
     Bench,
@@ -59,32 +60,37 @@ class Gains:
 
     async def run(self) -> None:
         """Follow the pins: the gains of each frame, and those that stand after each cycle."""
-        dut, light = self.dut, self.light
-        gains = np.full(3, light.unity)
+        light, read, edge = self.light, by_name(self.dut), RisingEdge(self.dut.clk)
+        gains, word = np.full(3, light.unity), self.word([light.unity] * 3)
         bad, ratios = False, list[list[int]]()
         while True:
-            await RisingEdge(dut.clk)
-            width = light.gain_width
-            stand = [int(dut.gains.value) >> width * c & (1 << width) - 1 for c in range(3)]
-            assert stand == gains.tolist(), f"gains {stand}, expected {gains.tolist()}"
-            if dut.en.value:
-                bad |= bool(dut.in_bad.value)
-                if dut.in_valid.value:
-                    place = int(dut.in_position.value)
+            await edge
+            assert read("gains") == word, f"gains {read('gains'):#x}, expected {word:#x}: {gains.tolist()}"
+            before = gains
+            if read("en"):
+                bad |= bool(read("in_bad"))
+                if read("in_valid"):
+                    place = read("in_position")
                     if place & 3 == 3:
                         self.used.append(gains)
                         ratios = []
-                    ratios.append([int(getattr(dut, f"in_{colour}").value) for colour in RATIOS[:3]])
+                    ratios.append([read(f"in_{colour}") for colour in RATIOS[:3]])
                     if place & 12 == 12:
-                        if dut.follow.value and not bad:
+                        if read("follow") and not bad:
                             deviations = light.deviations(np.array(ratios).reshape(self.shape), self.used[-1])
-                            gains = light.followed(deviations, gains, self.used[-1], int(dut.rate.value))
+                            gains = light.followed(deviations, gains, self.used[-1], read("rate"))
                         bad = False
-            write = int(dut.write.value)
-            written = light.limited(np.array(int(dut.write_gain.value)))
-            gains = np.where([write >> c & 1 for c in range(3)], written, gains)
-            if dut.rst.value:
+            if write := read("write"):
+                written = light.limited(np.array(read("write_gain")))
+                gains = np.where([write >> c & 1 for c in range(3)], written, gains)
+            if read("rst"):
                 gains, bad = np.full(3, light.unity), False
+            if gains is not before:
+                word = self.word(gains.tolist())
+
+    def word(self, gains: list[int]) -> int:
+        """Return the gains of the colours as the pin shows them."""
+        return sum(gain << self.light.gain_width * c for c, gain in enumerate(gains))
 
     # Pictures, int64 (rows, columns, 3).
 

@@ -14,6 +14,7 @@ from tactile_depth.configuration import DARKEST_LOG2
 from tactile_depth.gradient.reference_capture import reference_capture, reference_capture_clocks
 from tb.cases import on_bench
 from tb.common.capture_bench import request, request_after
+from tb.pins import by_name
 from tb.pixels import pack
 from tb.stream import REGRESS, Bench, StreamDriver, configuration, parameters, parametrize, raster, sample, send_apart
 
@@ -26,7 +27,7 @@ class Capture:
     """Device, its memory, and the content that is expected when the capture is done."""
 
     def __init__(self, dut: Any, gap: float = 0.0, pause: float = 0.0) -> None:
-        self.dut, self.gap = dut, gap
+        self.dut, self.gap, self.read = dut, gap, by_name(dut)
         self.config = configuration()
         (self.largest,) = parameters(dut, "MaxLog2")
         self.clocks = reference_capture_clocks(self.config)
@@ -55,18 +56,18 @@ class Capture:
 
     async def run(self) -> None:
         """Check each cycle against the rules in the header of the core."""
-        dut = self.dut
+        read, edge = self.read, RisingEdge(self.dut.clk)
         for clock in itertools.count():
-            await RisingEdge(dut.clk)
-            if dut.rst.value:
+            await edge
+            if read("rst"):
                 self.busy = self.inside = False
                 self.due = None
                 self.sums = []
                 continue
             self.serve()
             done = clock == self.due
-            assert bool(dut.done.value) == done, f"done is {dut.done.value}, {self.due and self.due - clock} clocks off"
-            assert bool(dut.busy.value) == self.busy
+            assert read("done") == done, f"done is {read('done')}, {self.due and self.due - clock} clocks off"
+            assert read("busy") == self.busy
             if done:
                 self.captures += 1
                 self.busy = False
@@ -74,31 +75,31 @@ class Capture:
                 width = self.config.gain_width
                 got = [[word >> width * c & (1 << width) - 1 for c in range(3)] for word in self.memory]
                 np.testing.assert_array_equal(got, self.gains.reshape(-1, 3), "gains")
-            if dut.en.value and dut.in_valid.value:
-                place = int(dut.in_position.value)
+            if read("en") and read("in_valid"):
+                place = read("in_position")
                 if place & 3 == 3:
                     self.inside = self.busy and self.due is None
                     if self.inside:
                         self.sums += self.row_sums(self.frame[0], not self.taken or self.taken[-1][1])
-                        self.taken.append((*self.frame, int(dut.log2_frames.value)))
+                        self.taken.append((*self.frame, read("log2_frames")))
                 if place & 12 == 12 and self.inside:
                     captured = reference_capture(*zip(*self.taken, strict=True), self.largest, self.config)  # type: ignore[arg-type, call-arg]
                     if captured:
                         self.due, self.gains, self.divided = clock + self.clocks, captured[1], 0
                         if self.flipped is not None:
                             self.gains = self.gains_behind_flips(self.taken[-1][0])
-            if dut.request.value:
+            if read("request"):
                 self.busy = True
                 self.due = None
                 self.inside = False
                 self.taken, self.sums, self.passing = [], [], SUM_CLOCKS
 
     def serve(self) -> None:
-        dut = self.dut
-        read, write = bool(dut.map_read.value), bool(dut.map_write.value)
-        if write:
-            node = int(dut.map_write_node.value)
-            assert not (read and int(dut.map_read_node.value) == node), f"node {node} is read while it is written"
+        pin = self.read
+        reads, writes = pin("map_read"), pin("map_write")
+        if writes:
+            node, gains = pin("map_write_node"), pin("map_write_gains")
+            assert not (reads and pin("map_read_node") == node), f"node {node} is read while it is written"
             assert self.busy, "a write after done"
             if self.passing:
                 pass
@@ -108,18 +109,18 @@ class Capture:
                 before = [0 if first else self.memory[node] >> width * c for c in range(3)]
                 sums = [held + more & (1 << width) - 1 for held, more in zip(before, added, strict=True)]
                 word = sum(word << width * c for c, word in enumerate(sums))
-                assert (node, int(dut.map_write_gains.value)) == (wanted, word), "a sum"
+                assert (node, gains) == (wanted, word), "a sum"
             else:
                 assert self.due is not None, "a write that is not expected"
                 assert node == self.divided, f"gain of node {node}, not {self.divided}"
                 self.divided += 1
         self.passing = max(0, self.passing - 1)
-        if read:
-            word = self.memory[int(dut.map_read_node.value)]
+        if reads:
+            word = self.memory[pin("map_read_node")]
             assert word is not None, "a node is read before it was written"
-            dut.map_read_gains.value = word
-        if write:
-            self.memory[node] = int(dut.map_write_gains.value)
+            self.dut.map_read_gains.value = word
+        if writes:
+            self.memory[node] = gains
 
     def pixels(self) -> Any:
         """Return pixels, uint8 (rows, columns, 3): random, black, white, nearly black, or with gains about to

@@ -102,9 +102,9 @@ class Bench:
 
     async def until_left(self, count: int, quiet: int = 8) -> None:
         """Wait until so many words have left; after that none may come for some cycles."""
-        left, idle = 0, 0
+        left, idle, edge = 0, 0, RisingEdge(self.dut.clk)
         while len(self.left.words) < count:
-            await RisingEdge(self.dut.clk)
+            await edge
             idle = 0 if len(self.left.words) > left else idle + 1
             left = len(self.left.words)
             assert idle < STALLED, f"no byte has left for {idle} cycles: {left} bytes left, {count} expected"

@@ -20,6 +20,7 @@ from tactile_depth.link.depth_formats import DepthFormat, sent_shape, to_bytes, 
 from tactile_depth.link.packets import LARGEST_SHIFT, Depth, Trailer
 from tb.axis import PROFILES, profile
 from tb.cases import on_bench
+from tb.pins import Driver, by_name
 from tb.stream import CLOCK_NS, MANY, parameters, parametrize
 
 FORMATS = (DepthFormat.WORDS, DepthFormat.SHORT, DepthFormat.AVERAGED)
@@ -33,7 +34,8 @@ class Bench:
 
     def __init__(self, dut: Any, accepts: str = "none") -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
-        self.dut, self.ready, self.always_ready = dut, profile(accepts), accepts == "none"
+        self.dut, self.drive, self.read = dut, Driver(dut), by_name(dut)
+        self.edge, self.ready, self.always_ready = RisingEdge(dut.clk), profile(accepts), accepts == "none"
         self.chance = random.Random(cocotb.RANDOM_SEED)
         names = "Rows", "Columns", "DataWidth", "BottomFirst", "Values"
         self.rows, self.columns, self.width, self.bottom_first, self.values = parameters(dut, *names)
@@ -43,20 +45,16 @@ class Bench:
         self.many = MANY if self.codes.size < 64 else 0  # frames of a large grid take long
 
     async def start(self) -> None:
-        dut = self.dut
-        Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
-        for pin in ("frame_valid", "format", "shift", "depth_ready", "value_data", "record_data", "cold_rst", "resets"):
-            getattr(dut, pin).value = 0
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        self.drive(frame_valid=0, format=0, shift=0, depth_ready=0, value_data=0, record_data=0, cold_rst=0, resets=0)
         await self.reset(cold=True)
 
     async def reset(self, cold: bool = False, offered: bool = False) -> None:
         """Reset for a clock, with or without a frame that waits in it."""
-        dut = self.dut
-        dut.rst.value, dut.cold_rst.value, dut.frame_valid.value = 1, int(cold), int(offered)
-        dut.format.value, dut.depth_ready.value = 1, self.chance.randrange(2)
-        await RisingEdge(dut.clk)
+        self.drive(rst=1, cold_rst=cold, frame_valid=offered, format=1, depth_ready=self.chance.randrange(2))
+        await self.edge
         self.resets = self.chance.getrandbits(16)
-        dut.rst.value, dut.cold_rst.value, dut.frame_valid.value, dut.resets.value = 0, 0, 0, self.resets
+        self.drive(rst=0, cold_rst=0, frame_valid=0, resets=self.resets)
         self.packets: list[bytes] = []
         self.packet = b""
         self.reading, self.silent = False, 0
@@ -74,7 +72,7 @@ class Bench:
         kinds = [np.clip(halves, low, high), numbers.integers(low, high + 1, shape), numbers.choice([low, high], shape)]
         self.codes = np.choose(numbers.integers(0, 3, shape), kinds).astype(np.int32)
         self.words = tuple(self.chance.getrandbits(32) for _ in range(WORDS))
-        self.dut.frame_valid.value, self.dut.format.value, self.dut.shift.value = 1, int(depth_format), shift
+        self.drive(frame_valid=1, format=int(depth_format), shift=shift)
         return self.expected(depth_format, 0 if depth_format == DepthFormat.WORDS else shift)
 
     def expected(self, depth_format: DepthFormat, shift: int) -> list[bytes]:
@@ -93,13 +91,12 @@ class Bench:
 
     async def clock(self) -> None:
         """Run a clock: take a byte, answer reads."""
-        dut = self.dut
-        ready = int(next(self.ready))
-        dut.depth_ready.value = ready
-        await RisingEdge(dut.clk)
-        valid = bool(dut.depth_valid.value)
+        read, ready = self.read, int(next(self.ready))
+        self.drive(depth_ready=ready)
+        await self.edge
+        valid = bool(read("depth_valid"))
         if valid:
-            byte = int(dut.depth_data.value), bool(dut.depth_last.value)
+            byte = read("depth_data"), bool(read("depth_last"))
             assert self.held in (None, byte), "a byte changed before it was taken"
             self.held = None if ready else byte
             if ready:
@@ -108,35 +105,35 @@ class Bench:
                     self.packets, self.packet = [*self.packets, self.packet], b""
         else:
             assert self.held is None, "valid fell before ready came"
-        self.silent = 0 if valid or not dut.sending.value else self.silent + 1
+        self.silent = 0 if valid or not read("sending") else self.silent + 1
         self.waits += self.silent > 0
         assert self.silent <= LONGEST_SILENCE, f"a byte waits for more than {LONGEST_SILENCE} clocks"
         self.store()
 
     def store(self) -> None:
         """Do as depth_store does in the clock that ends: a value stands until the next one that is read."""
-        dut = self.dut
-        take, done, read = (bool(pin.value) for pin in (dut.frame_take, dut.frame_done, dut.value_read))
+        take, done, reads = (bool(self.read(pin)) for pin in ("frame_take", "frame_done", "value_read"))
         if self.pending is not None:
-            dut.value_data.value, self.pending = self.pending % (1 << self.width), None
+            self.drive(value_data=self.pending % (1 << self.width))
+            self.pending = None
         if self.reading:
-            dut.record_data.value = self.words[int(dut.record_word.value) % WORDS]
-        if read:
+            self.drive(record_data=self.words[self.read("record_word") % WORDS])
+        if reads:
             self.reads += 1
             assert self.reading, "no frame is taken"
             assert not done, "the frame is given back"
-            self.pending = int(self.codes.flat[int(dut.value_address.value)])
+            self.pending = int(self.codes.flat[self.read("value_address")])
         if take:
-            assert dut.frame_valid.value, "no frame waits"
+            assert self.read("frame_valid"), "no frame waits"
             assert not self.reading, "a frame is taken"
-            dut.frame_valid.value = 0
-            dut.format.value, dut.shift.value = self.chance.randrange(4), self.chance.randrange(LARGEST_SHIFT + 1)
+            shift = self.chance.randrange(LARGEST_SHIFT + 1)
+            self.drive(frame_valid=0, format=self.chance.randrange(4), shift=shift)
         assert not done or self.reading
         self.reading = take or (self.reading and not done)
 
     def moves(self) -> bool:
         """Return True if a frame is taken or sent."""
-        return any(bool(pin.value) for pin in (self.dut.frame_take, self.dut.sending, self.dut.depth_valid))
+        return any(map(self.read, ("frame_take", "sending", "depth_valid")))
 
     async def clocks(self, count: int) -> None:
         for _ in range(count):
@@ -144,14 +141,13 @@ class Bench:
 
     async def play(self, depth_format: DepthFormat, shift: int) -> None:
         """Send a frame, and compare its packets, and what the core says of it."""
-        dut = self.dut
         want = self.offer(depth_format, shift)
         await self.clock()
-        assert bool(dut.frame_take.value), "a frame waits"
+        assert self.read("frame_take"), "a frame waits"
         self.packets, self.reads, self.waits = [], 0, 0
         await self.clock()
-        while bool(dut.sending.value):
-            assert int(dut.sent.value) == self.sent
+        while self.read("sending"):
+            assert self.read("sent") == self.sent
             await self.clock()
         await self.clock()
         assert not self.packet
@@ -178,9 +174,8 @@ async def frames(bench: Bench) -> None:
 @on_bench(Bench, milliseconds=20)
 async def not_taken(bench: Bench) -> None:
     """Let a frame wait with format 0: it is not taken until there is another format."""
-    dut = bench.dut
     bench.offer(DepthFormat.SHORT, 2)
-    dut.format.value = 0
+    bench.drive(format=0)
     bench.sent -= 1
     for _ in range(5):
         await bench.clock()

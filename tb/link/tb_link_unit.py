@@ -21,7 +21,7 @@ from tactile_depth.link.device import Build, LinkDevice
 from tactile_depth.link.framing import to_line
 from tb.axis import VIDEO
 from tb.link.axil_slave import AxilSlave, Registers
-from tb.pins import unsigned
+from tb.pins import Driver, unsigned
 from tb.stream import CLOCK_NS, MANY, parameters, parametrize
 
 QUIET_CLOCKS = 300  # without a byte; a byte too many that comes later differs in the next comparison
@@ -50,7 +50,7 @@ class Board:
         build = Build(self.rows, self.columns, self.width, bool(bottom_first))
         self.model = LinkDevice(build, self.model_registers.read, self.model_registers.write)
         self.reads = {name: unsigned(getattr(dut, name)) for name in READ}
-        self.driven: dict[str, int] = {}  # values at the pins
+        self.drive = Driver(dut)
         self.to_device: deque[Byte] = deque()
         self.beats: deque[tuple[int, int, int]] = deque()
         self.words: deque[tuple[int, int]] = deque()
@@ -83,11 +83,6 @@ class Board:
             self.line()
             self.pipeline()
 
-    def drive(self, **pins: int) -> None:
-        for name, value in pins.items():
-            if self.driven.get(name) != value:  # a write costs more than a read
-                getattr(self.dut, name).value = self.driven[name] = value
-
     def moves(self, name: str) -> bool:
         """Return True if a word passes at the handshake of these pins."""
         return bool(self.reads[f"{name}valid"]() and self.reads[f"{name}ready"]())
@@ -95,9 +90,9 @@ class Board:
     def line(self) -> None:
         """Move a byte each way, and a pixel."""
         taken = self.moves("in_")
-        if taken or self.driven["in_broken"]:
+        if taken or self.drive.driven["in_broken"]:
             self.to_device.popleft()
-        offered = self.driven["in_valid"] and not taken
+        offered = self.drive.driven["in_valid"] and not taken
         pins = {"in_broken": 0, "in_valid": int(offered)}
         if self.to_device and not offered and self.goes():
             byte = self.to_device[0]

@@ -12,6 +12,7 @@ from tactile_depth.link.framing import LONGEST_BODY
 from tactile_depth.link.packets import SELECT, TO_DEVICE, Ask, Kind, Picture, Read, Select, Write, unpack
 from tb.axis import profile
 from tb.cases import on_bench
+from tb.pins import Driver, by_name
 from tb.stream import CLOCK_NS, parametrize
 
 LENGTHS = {  # of kind and fields: about the limits, and near each power of two
@@ -57,6 +58,7 @@ class Bench:
 
     def __init__(self, dut: Any, offers: str, accepts: str, resets: float) -> None:
         self.dut, self.resets = dut, resets
+        self.drive, self.read = Driver(dut), by_name(dut)
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.offers, self.request, self.picture = profile(offers), profile(accepts, 1), profile(accepts, 2)
         self.pulse: Event = ()  # due in this clock
@@ -66,9 +68,7 @@ class Bench:
     async def start(self) -> None:
         """Start the clock and reset."""
         dut = self.dut
-        dut.rst.value = 1
-        for pin in (*SOURCE, "request_ready", "picture_ready"):
-            getattr(dut, pin).value = 0
+        self.drive(rst=1, **dict.fromkeys((*SOURCE, "request_ready", "picture_ready"), 0))
         Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         self.edge = RisingEdge(dut.clk)
         await ClockCycles(dut.clk, 3)
@@ -78,23 +78,21 @@ class Bench:
 
         `event` is what its packet causes, `place` that of the byte in the packet.
         """
-        dut, reset = self.dut, self.random.random() < self.resets
+        read, reset = self.read, self.random.random() < self.resets
         ready = {"request": int(next(self.request)), "picture": int(next(self.picture))}
-        dut.rst.value, dut.in_valid.value = int(reset), int(word is not None)
-        for pin, value in zip(SOURCE[1:], word or [self.random.randint(0, 1) for _ in SOURCE[1:]], strict=True):
-            getattr(dut, pin).value = value
-        for name, value in ready.items():
-            getattr(dut, f"{name}_ready").value = value
+        offered = word or [self.random.randint(0, 1) for _ in SOURCE[1:]]
+        self.drive(rst=reset, **dict(zip(SOURCE, (word is not None, *offered), strict=True)))
+        self.drive(**{f"{name}_ready": value for name, value in ready.items()})
         await self.edge
         self.check_pulses()
         kind = event[0] if event else ""
         for name in ready:
-            valid = int(getattr(dut, f"{name}_valid").value)
+            valid = read(f"{name}_valid")
             assert valid == int(word is not None and kind == name and place > 0), f"{name}_valid at byte {place}"
             if valid and word is not None:
-                assert int(getattr(dut, f"{name}_data").value) == word[0], f"{name}_data at byte {place}"
-                assert int(getattr(dut, f"{name}_last").value) == word[1], f"{name}_last at byte {place}"
-                assert name == "picture" or int(dut.request_write.value) == event[1]
+                assert read(f"{name}_data") == word[0], f"{name}_data at byte {place}"
+                assert read(f"{name}_last") == word[1], f"{name}_last at byte {place}"
+                assert name == "picture" or read("request_write") == event[1]
         judged, self.judged = self.judged, word is not None and place == 0 and not self.judged and not reset
         if word is None:
             self.pulse = ()
@@ -103,19 +101,19 @@ class Bench:
         last = bool(word[1])
         selects = event[0] == "select" if event else False
         drops = place == 0 and not (kind in ("select", *ready) or (kind == "bad" and event[1]))
-        assert int(dut.in_ready.value) == taken, f"in_ready at byte {place}"
-        assert not taken or int(dut.in_drop.value) == int(drops), f"in_drop at byte {place}"
+        assert read("in_ready") == taken, f"in_ready at byte {place}"
+        assert not taken or read("in_drop") == drops, f"in_drop at byte {place}"
         due = taken and (drops or (last and (selects or kind == "bad")))
         self.pulse = event if due and not reset else ()
         return bool(taken), reset
 
     def check_pulses(self) -> None:
         """Compare the pulses with the one that is due."""
-        dut, due = self.dut, self.pulse[0] if self.pulse else ""
+        due = self.pulse[0] if self.pulse else ""
         for name in ("bad", "ask", "select"):
-            assert int(getattr(dut, name).value) == int(name == due), f"{name}: due is {due or 'nothing'}"
+            assert self.read(name) == (name == due), f"{name}: due is {due or 'nothing'}"
         if due == "select":
-            assert (int(dut.select_format.value), int(dut.select_shift.value)) == self.pulse[1:]
+            assert (self.read("select_format"), self.read("select_shift")) == self.pulse[1:]
 
     async def send(self, body: bytes) -> None:
         """Send a packet up to the byte with which the rest is dropped, or to a reset."""
@@ -130,7 +128,7 @@ class Bench:
                 taken, reset = await self.clock(word, event, place)
                 if reset:
                     return
-            if int(self.dut.in_drop.value):
+            if self.read("in_drop"):
                 break
         self.seen.add(event[0] if event else "unknown")
 

@@ -15,6 +15,7 @@ from tactile_depth.link.framing import to_line
 from tactile_depth.link.packets import MOST_PIXELS, Picture
 from tb.axis import AxisMonitor, AxisSink, AxisSource, profile
 from tb.cases import on_bench
+from tb.pins import Driver, unsigned
 from tb.stream import CLOCK_NS, MANY, parameters, parametrize
 
 LONGEST = 5_000  # clocks until all pixels have left
@@ -70,10 +71,11 @@ class Bench:
 
     async def check(self) -> None:
         """Wait for the pixels, and compare them with the model."""
+        edge = RisingEdge(self.dut.clk)
         for _ in range(LONGEST):
             if len(self.monitor.words) >= len(self.device.pixels):
                 break
-            await RisingEdge(self.dut.clk)
+            await edge
         await ClockCycles(self.dut.clk, 5)
         assert self.monitor.words == self.device.pixels
 
@@ -134,7 +136,7 @@ async def each_bit_of_a_header_counts(bench: Bench) -> None:
 @on_bench(Bench, milliseconds=0.6)
 async def a_byte_counts_while_it_is_valid(bench: Bench) -> None:
     """Send pictures with other bytes on the pins between theirs, and what would go on if those had begun a picture."""
-    dut, edge = bench.dut, RisingEdge(bench.dut.clk)
+    drive, ready, edge = Driver(bench.dut), unsigned(bench.dut.picture_ready), RisingEdge(bench.dut.clk)
     for number in range(8):
         other = bench.packet(number << 4 * number, 0, 2)
         behind = [replace(other, column=256), replace(other, row=bench.rows)]
@@ -142,15 +144,14 @@ async def a_byte_counts_while_it_is_valid(bench: Bench) -> None:
             bench.device.receive(to_line(packet.pack()))
             body = packet.pack()[1:]
             for place, byte in enumerate(body):
-                dut.picture_data.value = bench.random.choice([0, bench.random.getrandbits(8)])
-                dut.picture_last.value = bench.random.getrandbits(1)
+                other_byte = bench.random.choice([0, bench.random.getrandbits(8)])
+                drive(picture_data=other_byte, picture_last=bench.random.getrandbits(1))
                 await edge
-                dut.picture_data.value, dut.picture_last.value = byte, int(place == len(body) - 1)
-                dut.picture_valid.value = 1
+                drive(picture_data=byte, picture_last=place == len(body) - 1, picture_valid=1)
                 await edge
-                while not dut.picture_ready.value:
+                while not ready():
                     await edge
-                dut.picture_valid.value = 0
+                drive(picture_valid=0)
     await bench.check()
 
 

@@ -79,10 +79,11 @@ class Bench:
 
     async def check(self) -> None:
         """Wait for the replies, and compare them and the accesses with the model."""
+        edge = RisingEdge(self.dut.clk)
         for _ in range(LONGEST):
             if len(self.monitor.words) >= len(self.expected):
                 break
-            await RisingEdge(self.dut.clk)
+            await edge
         await ClockCycles(self.dut.clk, 5)
         assert self.monitor.words == self.expected
         assert self.slave.registers.log == self.model_registers.log

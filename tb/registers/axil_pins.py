@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 from typing import Any
 
 import cocotb
@@ -11,6 +11,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.registers.axil_port import AxilPort, Pins
+from tb.pins import by_name
 from tb.stream import CLOCK_NS
 
 INPUTS = tuple(
@@ -19,19 +20,14 @@ INPUTS = tuple(
 )
 
 
-def pin(dut: Any, name: str) -> int:
-    """Return the value of a pin of the port."""
-    return int(getattr(dut, f"s_axil_{name}").value)
-
-
-def pins(dut: Any) -> Pins:
-    """Return the inputs that the client drives in this cycle."""
+def pins(read: Callable[[str], int]) -> Pins:
+    """Return the inputs that the client drives in this cycle, by a function that reads a pin."""
     return Pins(
-        pin(dut, "awaddr") if pin(dut, "awvalid") else None,
-        (pin(dut, "wdata"), pin(dut, "wstrb")) if pin(dut, "wvalid") else None,
-        bool(pin(dut, "bready")),
-        pin(dut, "araddr") if pin(dut, "arvalid") else None,
-        bool(pin(dut, "rready")),
+        read("s_axil_awaddr") if read("s_axil_awvalid") else None,
+        (read("s_axil_wdata"), read("s_axil_wstrb")) if read("s_axil_wvalid") else None,
+        bool(read("s_axil_bready")),
+        read("s_axil_araddr") if read("s_axil_arvalid") else None,
+        bool(read("s_axil_rready")),
     )
 
 
@@ -66,9 +62,10 @@ class PortChecker:
 
     def __init__(self, dut: Any) -> None:
         self.dut, self.port, self.clocks = dut, AxilPort(), 0
+        self.pin = by_name(dut)
 
     def expect(self, name: str, value: Any) -> None:
-        got = int(getattr(self.dut, name).value)
+        got = self.pin(name)
         assert got == value, f"clock {self.clocks}: {name} is {got:#x}, expected {value:#x}"
 
     def begin(self) -> None:

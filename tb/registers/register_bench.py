@@ -17,10 +17,12 @@ from cocotb.triggers import RisingEdge
 
 from tactile_depth.registers.axil_port import strobed_bits
 from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, WORD, Register
+from tb.pins import Driver, by_name
 from tb.stream import CLOCK_NS, REGRESS
 
 RANDOM_CLOCKS = 10_000 if REGRESS else 2_000
 WHOLE = 0xF  # every byte is strobed
+BUS = ("write", "write_offset", "write_ones", "write_mask", "read_offset", "rst")
 
 
 class RegisterBench:
@@ -37,6 +39,9 @@ class RegisterBench:
 
     def __init__(self, dut: Any) -> None:
         self.dut, self.clocks = dut, 0
+        self.drive, self.pin, self.edge = Driver(dut), by_name(dut), RisingEdge(dut.clk)
+        self.driven = [name for name in (*BUS, *self.idle) if hasattr(dut, name)]
+        self.can_refuse = hasattr(dut, "write_refused")
         self.offset = {register.name: register.offset for register in self.registers}
         self.name_at = {offset: name for name, offset in self.offset.items()}
         self.random = random.Random(cocotb.RANDOM_SEED)
@@ -68,16 +73,13 @@ class RegisterBench:
 
     async def start(self) -> None:
         """Hold the reset for two clocks, with all inputs idle."""
-        for name in ("write", "write_offset", "write_ones", "write_mask", "read_offset", "rst", *self.idle):
-            if hasattr(self.dut, name):
-                getattr(self.dut, name).value = self.idle.get(name, 0)
-        self.dut.rst.value = 1
+        self.drive(**{name: self.idle.get(name, 0) for name in self.driven} | {"rst": 1})
         for _ in range(2):
-            await RisingEdge(self.dut.clk)
+            await self.edge
         self.reset()
 
     def expect(self, name: str, expected: int) -> None:
-        got = int(getattr(self.dut, name).value)
+        got = self.pin(name)
         assert got == expected, f"clock {self.clocks}: {name} is {got:#x}, expected {expected:#x}"
 
     async def clock(
@@ -94,7 +96,7 @@ class RegisterBench:
         inputs : int
             Inputs that are not idle.
         """
-        dut = self.dut
+        assert inputs.keys() <= self.idle.keys(), f"not an input in idle: {inputs}"
         self.inputs = {**self.idle, **inputs}
         # Without a write address and data are random.
         offset, data, strobe = write or (self.random.choice(tuple(self.name_at)), self.random.getrandbits(32), WHOLE)
@@ -106,16 +108,14 @@ class RegisterBench:
         taken = write is not None and not rst
         allowed = taken and not refused
         read_offset = self.offset[read_at] if isinstance(read_at, str) else read_at
-        driven = {"write": taken, "write_offset": offset, "write_ones": ones, "write_mask": mask, "rst": rst}
-        for pin, value in (driven | {"read_offset": read_offset} | self.inputs).items():
-            if hasattr(dut, pin):
-                getattr(dut, pin).value = int(value)
+        values = dict(zip(BUS, (taken, offset, ones, mask, read_offset, rst), strict=True)) | self.inputs
+        self.drive(**{pin: values[pin] for pin in self.driven})
         self.read_name = self.name_at.get(read_offset, "")
         self.rst, self.allowed = rst, (name, ones, mask) if allowed else None
-        await RisingEdge(dut.clk)
+        await self.edge
         word = self.word(self.read_name)
         self.expect("read_data", word)
-        if hasattr(dut, "write_refused"):
+        if self.can_refuse:
             self.expect("write_refused", refused)
         for pin, value in self.outputs().items():
             self.expect(pin, value)

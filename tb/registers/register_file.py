@@ -15,7 +15,7 @@ from tactile_depth.registers.axil_registers import RECORD, AxilRegisters, Build,
 from tactile_depth.registers.event_registers import EVENTS, LEVELS
 from tactile_depth.registers.register_map import MAP, REGISTERS, WORD
 from tactile_depth.registers.table_banks import CAPTURES
-from tb import axil, structs
+from tb import axil, pins, structs
 from tb.axil import OFFSET
 from tb.registers import axil_pins
 from tb.registers.axil_pins import PortChecker
@@ -55,15 +55,14 @@ class Checker(PortChecker):
         self.low: int | None = None  # the lower word on the table bus: the strobed bytes of the last word taken
         self.asked = ""  # the port to a table that was read last
         self.responses: dict[str, list[Response]] = {"read": [], "write": []}
+        self.table_command = structs.reader(dut.table_command, "table_command_t")
+        self.light_command = structs.reader(dut.light_command, "light_command_t")
 
     def tasks(self) -> list[Coroutine[Any, Any, None]]:
         return [*super().tasks(), self.tables.run()]
 
     def begin(self) -> None:
         self.model.banks.bank = self.pin("table_bank")  # value of the test before: it survives a reset
-
-    def pin(self, name: str) -> int:
-        return int(getattr(self.dut, name).value)
 
     def status(self, flag: str) -> frozenset[str]:
         """Return the tables whose capture has a flag of its status up."""
@@ -97,7 +96,7 @@ class Checker(PortChecker):
 
     def step(self) -> None:
         """Compare the outputs of one cycle."""
-        model, port, offered = self.model, self.port, axil_pins.pins(self.dut)
+        model, port, offered = self.model, self.port, axil_pins.pins(self.pin)
         resets, starts = bool(self.pin("rst")), bool(self.pin("frame_start"))
         outputs = axil_pins.expected(port, resets) | self.settings()
         outputs["table_bank"] = model.banks.wanted(starts and not resets)
@@ -125,12 +124,12 @@ class Checker(PortChecker):
                 self.responses["write"].append(response(refused))
 
         command |= {"write": len(model.table_writes) - written, "read": int(reads_table and not resets)}
-        got = structs.of(self.dut.table_command, "table_command_t")
+        got = self.table_command()
         low = got.pop("low")
         assert got == command, f"clock {self.clocks}: table_command is {got}, expected {command}"
         if self.low is not None:
             assert low == self.low, f"clock {self.clocks}: table_command.low is {low}, expected {self.low}"
-        got = structs.of(self.dut.light_command, "light_command_t")
+        got = self.light_command()
         gain, colours = got.pop("gain"), model.gains_written[gains_before:]
         light["write"] = sum(1 << colour for colour, _ in colours)
         assert got == light, f"clock {self.clocks}: light_command is {got}, expected {light}"
@@ -182,16 +181,20 @@ class Tables:
         self.random = random.Random(lag)
 
     async def run(self) -> None:
-        dut, late, due = self.dut, 0, []
+        dut, late, due, edge = self.dut, 0, [], RisingEdge(self.dut.clk)
+        read_light = structs.reader(dut.light_command, "light_command_t")
+        read_command = structs.reader(dut.table_command, "table_command_t")
+        table_bank, table_in_use = pins.value(dut.table_bank), pins.value(dut.table_in_use)
+        reset = pins.unsigned(dut.rst)
         gains = [0, 0, 0]
         while True:
-            await RisingEdge(dut.clk)
-            light = structs.of(dut.light_command, "light_command_t")
+            await edge
+            light = read_light()
             if light["write"]:
                 assert light["gain"] is not None
                 gains = [light["gain"] if light["write"] >> c & 1 else gain for c, gain in enumerate(gains)]
                 dut.light_gains.value = sum(gain << LIGHT_GAIN.width * c for c, gain in enumerate(gains))
-            command = structs.of(dut.table_command, "table_command_t")
+            command = read_command()
             if command["read"]:
                 assert command["select"] is not None
                 assert command["index"] is not None
@@ -199,9 +202,9 @@ class Tables:
                 dut.table_answer.value = self.random.getrandbits(64)
             if due and (words := due.pop(0)) is not None:
                 dut.table_answer.value = structs.pack("table_answer_t", dict(zip(("high", "low"), words, strict=True)))
-            wanted, used = dut.table_bank.value, dut.table_in_use.value
+            wanted, used = table_bank(), table_in_use()
             late = late + 1 if wanted != used else 0
-            if dut.rst.value or late > self.lag:
+            if reset() or late > self.lag:
                 dut.table_in_use.value = int(wanted)
                 late = 0
 

@@ -13,7 +13,7 @@ from tactile_depth.registers.axil_port import Response, offset_of, response, str
 from tactile_depth.registers.register_map import ADDRESS_WIDTH
 from tb.axil import present, read, take, write, write_beats
 from tb.cases import on_bench
-from tb.registers.axil_pins import INPUTS, PortChecker, expected, pin, pins, reset
+from tb.registers.axil_pins import INPUTS, PortChecker, expected, pins, reset
 from tb.stream import REGRESS, parametrize
 
 WORDS = ("read_data", "late_data")
@@ -40,8 +40,8 @@ class Checker(PortChecker):
 
     def step(self) -> None:
         """Compare the outputs of one cycle."""
-        dut, port = self.dut, self.port
-        offered, resets = pins(dut), bool(dut.rst.value)
+        port = self.port
+        offered, resets = pins(self.pin), bool(self.pin("rst"))
         for name, value in expected(port, resets).items():
             self.expect(name, value)
         write_now = port.write()
@@ -64,8 +64,8 @@ class Checker(PortChecker):
         if resets:
             port.reset()
             return
-        flags = {name: bool(getattr(dut, name).value) for name in FLAGS}
-        answers = {name: int(getattr(dut, name).value) for name in WORDS}
+        flags = {name: bool(self.pin(name)) for name in FLAGS}
+        answers = {name: self.pin(name) for name in WORDS}
         port.clock(
             offered,
             flags["write_refused"],
@@ -148,11 +148,11 @@ async def responses_wait(checker: Checker, dut: Any) -> None:
     following = cocotb.start_soon(present(dut, "ar", araddr=0))
     dut.read_data.value, dut.read_refused.value = 78, 1
     assert await write(dut, 0x18, 10) == Response.OKAY  # writes go on
-    assert pin(dut, "rdata") == 77
+    assert checker.pin("s_axil_rdata") == 77
     assert await take(dut, "r", stall=10) == Response.OKAY
     await following
     await ClockCycles(dut.clk, 2)
-    assert pin(dut, "rdata") == 78
+    assert checker.pin("s_axil_rdata") == 78
     assert await take(dut, "r", stall=3) == Response.SLVERR
 
 
@@ -177,8 +177,8 @@ async def reset_inside_transactions(checker: Checker, dut: Any) -> None:
             await reset(dut)
             await RisingEdge(dut.clk)
             for name in ("awready", "wready", "arready"):
-                assert pin(dut, name), f"{name} is low after reset"
-            assert pin(dut, "bvalid") == pin(dut, "rvalid") == 0
+                assert checker.pin(f"s_axil_{name}"), f"{name} is low after reset"
+            assert checker.pin("s_axil_bvalid") == checker.pin("s_axil_rvalid") == 0
             checker.writes.clear()
             assert await write(dut, 0x20, 0x77) == Response.OKAY
             assert [done[:2] for done in checker.writes] == [(0x20, 0x77)]
@@ -194,14 +194,14 @@ async def offered_in_reset(checker: Checker, dut: Any) -> None:
     ]
     for _ in range(3):
         await RisingEdge(dut.clk)
-        assert not any(pin(dut, f"{channel}ready") for channel in ("aw", "w", "ar"))
+        assert not any(checker.pin(f"s_axil_{channel}ready") for channel in ("aw", "w", "ar"))
     dut.rst.value = 0
     assert await take(dut, "b") == await take(dut, "r") == Response.OKAY
     for task in tasks:
         await task
     assert [done[:2] for done in checker.writes] == [(0x18, 0x55)]
     await ClockCycles(dut.clk, 4)
-    assert pin(dut, "bvalid") == pin(dut, "rvalid") == 0
+    assert checker.pin("s_axil_bvalid") == checker.pin("s_axil_rvalid") == 0
 
 
 @on_bench(Checker)
@@ -213,7 +213,7 @@ async def random_traffic(checker: Checker, dut: Any, pressure: float) -> None:
     for _ in range(RANDOM_CLOCKS):
         settle(dut, rng)
         for channel, wire in valid.items():
-            if not wire.value or pin(dut, f"{channel}ready") or dut.rst.value:
+            if not wire.value or checker.pin(f"s_axil_{channel}ready") or dut.rst.value:
                 wire.value = rng.random() < 0.6
                 for name in {"aw": ("awaddr",), "w": ("wdata", "wstrb"), "ar": ("araddr",)}[channel]:
                     handle = getattr(dut, f"s_axil_{name}")

@@ -30,6 +30,7 @@ class Bench(RegisterBench):
         super().__init__(dut)
         sizes = {code: int(getattr(dut, PARAMETERS[name]).value) for name, code in TABLES.items()}
         self.model = TableAccess(sizes)
+        self.table_command = structs.reader(dut.table_command, "table_command_t")
         self.written: list[tuple[int, int, int, int]] = []
         self.asked = ""  # the register that was read in the previous cycle
         self.had_entry: bool | None = None  # word of the register that was read last
@@ -49,7 +50,7 @@ class Bench(RegisterBench):
         command = {"write": int(writes), "read": int(bool(self.asked) and has_entry and not self.rst)}
         command |= {"select": select, "index": model.values[INDEX], "high": model.values[HIGH]}
         outputs = {"read_late": int(self.read_name in PORTS)}
-        got = structs.of(self.dut.table_command, "table_command_t")
+        got = self.table_command()
         low = got.pop("low")
         assert got == command, f"clock {self.clocks}: table_command is {got}, expected {command}"
         assert low == self.ones

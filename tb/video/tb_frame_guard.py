@@ -16,6 +16,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 from tactile_depth.video.frame_guard import FAULTS, frame_guard
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSource, broken, faults_of, positions, profile, spoiled, video
 from tb.cases import on_bench
+from tb.pins import by_name, unsigned
 from tb.stream import CLOCK_NS, REGRESS, parameters, parametrize, raster
 
 TIMEOUT = 5
@@ -26,42 +27,43 @@ class Collector:
     """Collect frames as (pixels, bad) and faults by name; check the position of every flag."""
 
     def __init__(self, dut: Any) -> None:
-        self.dut = dut
+        self.dut, self.read = dut, by_name(dut)
         self.rows, self.columns = parameters(dut, "Rows", "Columns")
+        self.positions = raster(self.rows, self.columns)
         self.frames: list[Any] = []
         self.faults: list[Any] = []
         self.open: list[Any] = []
         cocotb.start_soon(self.run())
 
     async def run(self) -> None:
-        dut, edge = self.dut, RisingEdge(self.dut.clk)
+        read, edge = self.read, RisingEdge(self.dut.clk)
         while True:
             await edge
-            if dut.rst.value:
+            if read("rst"):
                 continue
-            faults = [name for bit, name in enumerate(FAULTS) if int(dut.faults.value) >> bit & 1]
-            assert dut.en.value or not faults, f"{faults} while en is low: would count more than once"
+            bits = read("faults")
+            faults = [name for bit, name in enumerate(FAULTS) if bits >> bit & 1]
+            assert read("en") or not faults, f"{faults} while en is low: would count more than once"
             self.faults += faults
-            if dut.en.value:
+            if read("en"):
                 self.step()
 
     def step(self) -> None:
-        dut, place = self.dut, len(self.open)
-        if not dut.out_valid.value:
-            assert not dut.out_frame_end.value
-            assert not dut.out_frame_start.value
+        read, place = self.read, len(self.open)
+        if not read("out_valid"):
+            assert not read("out_frame_end")
+            assert not read("out_frame_start")
             return
-        self.open.append(int(dut.out_data.value))
-        position = raster(self.rows, self.columns)[place]
-        assert int(dut.out_position.value) == position, f"out_position at pixel {place}"
+        self.open.append(read("out_data"))
+        assert read("out_position") == self.positions[place], f"out_position at pixel {place}"
         flags = {
             "out_frame_start": place == 0,
             "out_frame_end": place == self.rows * self.columns - 1,
         }
         for name, want in flags.items():
-            assert bool(getattr(dut, name).value) == want, f"{name} at pixel {place}"
+            assert read(name) == want, f"{name} at pixel {place}"
         if flags["out_frame_end"]:
-            self.frames.append((tuple(self.open), bool(dut.out_bad.value)))
+            self.frames.append((tuple(self.open), bool(read("out_bad"))))
             self.open = []
 
 
@@ -84,9 +86,12 @@ class Bench:
         await self.reset(3, timeout)
 
     async def enable(self) -> None:
+        driven, edge = None, RisingEdge(self.dut.clk)
         while True:
-            self.dut.en.value = int(next(self.enabled))
-            await RisingEdge(self.dut.clk)
+            enabled = int(next(self.enabled))
+            if enabled != driven:  # a write costs more than a read
+                self.dut.en.value = driven = enabled
+            await edge
 
     async def reset(self, clocks: int, timeout: int | None = None) -> None:
         self.source.abort()
@@ -108,10 +113,10 @@ class Bench:
 
     async def check(self, what: Any) -> Any:
         """Wait for the end of the filler, compare with the model, and clear the records. The source must be idle."""
-        moved = 0
+        moved, en, edge = 0, unsigned(self.dut.en), RisingEdge(self.dut.clk)
         while moved < self.rows * self.columns + 2:
-            await RisingEdge(self.dut.clk)
-            moved += bool(self.dut.en.value)
+            await edge
+            moved += en()
         want = frame_guard(self.monitor.words, self.rows, self.columns, self.timeout)
         got = self.collector
         assert got.faults == want.faults, f"{what}: faults {got.faults}, expected {want.faults}"
