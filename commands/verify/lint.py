@@ -84,14 +84,15 @@ def modules(files: Iterable[Path]) -> list[str]:
 def structures() -> list[Structure]:
     """Return the top with both solvers and boundaries, at the smallest, the default and the largest square grid.
 
-    Three more have colours relative to a reference, and one of these a zero offset.
+    Three more have colours relative to a reference, and one of these a zero offset and light gains.
     """
     flat = [
         Structure(TOP, Configuration(flat_field=True, **choices))
         for choices in (
             {"columns": 16, "gradient_model": "quadratic"},
             {"solver": "tridiagonal"},
-            {"solver": "tridiagonal", "lanes": 4, "gradient_model": "cubic", "zero_offset": True},
+            {"columns": 16, "solver": "tridiagonal", "lanes": 4, "gradient_model": "cubic", "zero_offset": True}
+            | {"light_gains": True},
         )
     ]
     return flat + [
@@ -214,6 +215,14 @@ def core_checks(cores: Sequence[str]) -> list[Check]:
     ]
 
 
+def outermost() -> list[str]:
+    """Return the cores that no other core uses. With the small designs they contain every core."""
+    inside = {
+        path.stem for name, core in repository.cores().items() for path in repository.sources(name) if path != core.hdl
+    }
+    return [name for name in repository.cores() if name not in inside]
+
+
 def board_sources() -> list[Path]:
     """Return the source files of all boards."""
     return [path for sources in repository.BOARDS.values() for path in sources]
@@ -237,6 +246,7 @@ def checks() -> list[Check]:
     python = [sys.executable, "-m"]
     return [
         *core_checks(list(repository.cores())),
+        Check("yosys", "outermost", partial(yosys_cores, outermost())),
         *(Check("verilator", top.name, partial(verilator, top, files)) for top in designs),
         *(Check("verilator", top.name, partial(verilator, top, with_boards)) for top in tops),
         *(Check("icarus", top.name, partial(icarus, top, files)) for top in designs),

@@ -132,7 +132,7 @@ def test_every_tool_looks_at_every_core_and_at_the_whole() -> None:
         assert set(lint.modules(repository.sources())) == cores
         assert "cores" in names[tool]
     assert designs <= names["slang"]
-    assert len(names["yosys"] & designs) == 5  # both solvers, both boundaries, and the quadratic model
+    assert len(names["yosys"] & designs) == 6  # both solvers, both boundaries, the quadratic model, and lanes
     assert {(s.config.solver, s.config.neumann) for s in lint.structures() if s.name in names["yosys"]} == {  # type: ignore[union-attr]
         (solver, neumann) for solver in ("spectral", "tridiagonal") for neumann in (False, True)
     }
@@ -175,7 +175,8 @@ def test_a_core_is_checked_alone() -> None:
 
 
 CHECKS = lint.core_checks(RUN.cores) if RUN.cores else lint.checks()
-# Larger grids of structures that are checked at the smallest: `make lint` and `make regress` check them too.
+# Checks of what others check in another form, for `make lint` and `make regress`: larger grids of a structure, and
+# cores by themselves in Yosys, which sees them inside the outermost ones.
 LARGER = {
     s.name for s in lint.structures() if s.config and s.config.columns > lint.GRIDS[0] and not s.config.flat_field
 }
@@ -183,8 +184,8 @@ LARGER = {
 
 def marks(check: lint.Check) -> list[pytest.MarkDecorator]:
     """Return the marks of the item of a check: the longest begin first."""
-    is_long = check.tool == "mypy" or check.label == "yosys cores"
-    return [pytest.mark.long] * is_long + [pytest.mark.regress] * (check.name in LARGER)
+    is_late = check.name in LARGER or (check.label == "yosys cores" and not RUN.cores)
+    return [pytest.mark.long] * (check.tool == "mypy") + [pytest.mark.regress] * is_late
 
 
 @pytest.mark.lint
