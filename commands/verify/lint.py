@@ -91,8 +91,10 @@ def structures() -> list[Structure]:
         for choices in (
             {"columns": 16, "gradient_model": "quadratic"},
             {"solver": "tridiagonal"},
-            {"columns": 16, "solver": "tridiagonal", "lanes": 4, "gradient_model": "cubic", "zero_offset": True}
-            | {"light_gains": True},
+            {
+                **{"columns": 16, "solver": "tridiagonal", "lanes": 4, "gradient_model": "cubic"},
+                **{"zero_offset": True, "light_gains": True},
+            },
         )
     ]
     return flat + [
