@@ -480,29 +480,22 @@ async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any
     dict of pin to list of LogicArray
     """
     chance = random.Random(cocotb.RANDOM_SEED)
-    edge, has_en = RisingEdge(dut.clk), hasattr(dut, "en")
+    edge, write = RisingEdge(dut.clk), pins.Driver(dut)
+    has_rst, has_en = hasattr(dut, "rst"), hasattr(dut, "en")
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
-    handles = {pin: getattr(dut, pin) for pin in (*stimuli[0], *outputs, *["rst"] * hasattr(dut, "rst"))}
-    reset = {"rst": 1} if "rst" in handles else {}
-    driven = dict.fromkeys(stimuli[0], 0) | reset  # a pin that is random at first may write a word
-    for pin, value in driven.items():
-        handles[pin].value = value
-    if has_en:
-        dut.en.value = 1
+    write(**dict.fromkeys(stimuli[0], 0))  # a pin that is random at first may write a word
+    write(**{"rst": 1} if has_rst else {}, **{"en": 1} if has_en else {})
     await edge
     await edge
+    write(**{"rst": 0} if has_rst else {})
     pin_values: Any = {pin: [] for pin in (*stimuli[0], *outputs)}
-    reads = [(values.append, pins.value(handles[pin])) for pin, values in pin_values.items()]
+    reads = [(values.append, pins.value(getattr(dut, pin))) for pin, values in pin_values.items()]
     for clock in stimuli:
-        for pin, value in (dict.fromkeys(reset, 0) | clock).items():
-            if driven[pin] != value:  # a write costs more than a read
-                driven[pin] = int(value)
-                handles[pin].value = driven[pin]
+        write(**clock)
         paused = True
         while paused:
             paused = has_en and chance.random() < pause
-            if has_en:
-                dut.en.value = int(not paused)
+            write(**{"en": not paused} if has_en else {})
             await edge
         for append, read in reads:
             append(read())
