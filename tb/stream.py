@@ -214,9 +214,8 @@ class StreamMonitor(BusMonitor):
             frame_start = begins_frame is not None and bool(begins_frame())
             try:
                 present = is_present()
-            except ValueError:
-                problem = f"{self.qualifier} is unknown: is it reset, and is every driver made before Bench.start?"
-                raise AssertionError(problem) from None
+            except ValueError as error:
+                raise AssertionError(f"{self.qualifier}: no reset, or a driver made behind Bench.start?") from error
             if present:
                 assert left == 0, f"burst cut short at clock {clock}"
                 self.starts.append(clock)
@@ -241,8 +240,7 @@ class StreamMonitor(BusMonitor):
     def reads(self) -> tuple[Read, Read | None, list[Read]]:
         """Return the functions that read the qualifier, the start of a frame, and each field."""
         begins_frame = None if self.frame_pin is None else pins.unsigned(self.frame_pin)
-        kinds = [pins.unsigned if field in self.unsigned else pins.signed for field in self.fields]
-        fields = [kind(getattr(self.bus, field)) for kind, field in zip(kinds, self.fields, strict=True)]
+        fields = [(pins.unsigned if f in self.unsigned else pins.signed)(getattr(self.bus, f)) for f in self.fields]
         return pins.unsigned(getattr(self.bus, self.qualifier)), begins_frame, fields
 
     def forget(self) -> None:
@@ -279,12 +277,12 @@ class Bench:
         at_every_edge(self.dut.clk, self._run())
 
     def _run(self) -> Iterator[None]:
-        driven, en, rst = self.dut.en, pins.unsigned(self.dut.en), pins.unsigned(self.dut.rst)
+        en, rst = pins.unsigned(self.dut.en), pins.unsigned(self.dut.rst)
         saturations = pins.unsigned(self.dut.saturations) if hasattr(self.dut, "saturations") else None
         while True:
             moves = int(self.random.random() >= self.pause) if self.in_reset is None else self.in_reset
             if moves != en():  # a write costs more than a read
-                driven.value = moves
+                self.dut.en.value = moves
             yield
             self.clock += en()
             if saturations is not None and not rst():
@@ -480,14 +478,13 @@ async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any
     dict of pin to list of LogicArray
     """
     chance = random.Random(cocotb.RANDOM_SEED)
-    edge, write = RisingEdge(dut.clk), pins.Driver(dut)
-    has_rst, has_en = hasattr(dut, "rst"), hasattr(dut, "en")
+    edge, write, has_en = RisingEdge(dut.clk), pins.Driver(dut), hasattr(dut, "en")
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     write(**dict.fromkeys(stimuli[0], 0))  # a pin that is random at first may write a word
-    write(**{"rst": 1} if has_rst else {}, **{"en": 1} if has_en else {})
+    write(**{pin: 1 for pin in ("rst", "en") if hasattr(dut, pin)})
     await edge
     await edge
-    write(**{"rst": 0} if has_rst else {})
+    write(**{"rst": 0} if hasattr(dut, "rst") else {})
     pin_values: Any = {pin: [] for pin in (*stimuli[0], *outputs)}
     reads = [(values.append, pins.value(getattr(dut, pin))) for pin, values in pin_values.items()]
     for clock in stimuli:

@@ -55,11 +55,7 @@ VERILATOR_MAKEFLAGS = (
 
 VISIBLE = 'public_flat_rw -module "{module}" -var "{signal}"'
 # What testbenches read or set below the top level: the time of a frame, and its first pixel inside a board.
-INSIDE = [
-    VISIBLE.format(module=module, signal=signal)
-    for module, signals in {"video_unit": ["now"], "tactile_depth": ["s_axis_*"]}.items()
-    for signal in signals
-]
+INSIDE = [VISIBLE.format(module=m, signal=s) for m, s in (("video_unit", "now"), ("tactile_depth", "s_axis_*"))]
 
 UNKNOWN_PARAMETER = re.compile(r"parameter \S+ not found in \S+")
 PROGRAM = cocotb_tools.config.share_dir / "lib" / "verilator" / "verilator.cpp"  # cocotb's main program

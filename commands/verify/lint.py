@@ -218,7 +218,7 @@ def core_checks(cores: Sequence[str]) -> list[Check]:
 
 
 def outermost() -> list[str]:
-    """Return the cores that no other core uses. With the small designs they contain every core."""
+    """Return the cores that no other core uses: the files of all others belong to them."""
     inside = {
         path.stem for name, core in repository.cores().items() for path in repository.sources(name) if path != core.hdl
     }

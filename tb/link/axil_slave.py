@@ -7,7 +7,7 @@ import random
 from collections.abc import Iterator
 from typing import Any
 
-from tb.pins import unsigned
+from tb.pins import by_name
 from tb.stream import at_every_edge
 
 CHANNELS = {"aw": ("awaddr",), "w": ("wdata",), "ar": ("araddr",)}
@@ -58,9 +58,7 @@ class AxilSlave:
     def __init__(self, dut: Any, registers: Registers, moves: Iterator[bool], seed: int) -> None:
         self.dut, self.registers, self.moves = dut, registers, moves
         self.random = random.Random(seed)
-        self.reset = unsigned(dut.rst)
-        names = [name for channel, (word,) in CHANNELS.items() for name in (f"{channel}valid", f"{channel}ready", word)]
-        self.reads = {name: unsigned(self.pin(name)) for name in (*names, "bready", "rready")}
+        self.read = by_name(dut)
         self.clear()
         at_every_edge(dut.clk, self._run())
 
@@ -79,7 +77,7 @@ class AxilSlave:
     def _run(self) -> Iterator[None]:
         while True:
             yield
-            if self.reset():
+            if self.read("rst"):
                 self.clear()
                 continue
             self._take()
@@ -87,10 +85,10 @@ class AxilSlave:
 
     def _take(self) -> None:
         for channel, (word,) in CHANNELS.items():
-            if not self.reads[f"{channel}valid"]():
+            if not self.read(f"m_axil_{channel}valid"):
                 assert channel not in self.held, f"{channel}valid fell before {channel}ready came"
             else:
-                value = self.reads[word]()
+                value = self.read(f"m_axil_{word}")
                 assert self.held.get(channel, value) == value, f"{word} changed before {channel}ready came"
                 assert channel not in self.taken, f"{channel}: two accesses at a time"
                 assert self.answer is None, f"{channel}: an access before the answer to the last"
@@ -103,7 +101,7 @@ class AxilSlave:
 
     def _answer(self) -> None:
         if self.answer is not None:
-            if not self.reads[f"{self.answer}ready"]():
+            if not self.read(f"m_axil_{self.answer}ready"):
                 return
             self.pin(f"{self.answer}valid").value = 0
             self.answer = None
