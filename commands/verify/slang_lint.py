@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pyslang import DiagnosticSeverity, driver
+from pyslang.ast import Compilation, InstanceSymbol
 
 
 @dataclass(frozen=True)
@@ -98,8 +99,13 @@ WAIVERS = (
 NOT_IN_A_STRUCTURE = ("unused-def", *(f"unused-package-{kind}" for kind in ("parameter", "subroutine", "typedef")))
 
 
-def findings(tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str, str] | None = None) -> list[Finding]:
-    """Return all findings of slang, waived or not."""
+def compiled(
+    tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str, str] | None = None
+) -> tuple[driver.Driver, Compilation, bool]:
+    """Return slang's driver, what it compiled from the files, and whether it could read them.
+
+    Raises ValueError if slang does not take the arguments.
+    """
     engine_driver = driver.Driver()
     engine_driver.addStandardArgs()
     arguments = [
@@ -116,7 +122,24 @@ def findings(tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str
     if not (taken and engine_driver.processOptions()):
         raise ValueError(f"slang does not take: {' '.join(arguments)}")
     parsed = engine_driver.parseAllSources()
-    compilation = engine_driver.createCompilation()
+    return engine_driver, engine_driver.createCompilation(), parsed
+
+
+def instantiated(tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str, str]) -> set[str]:
+    """Return the names of the modules that tops with parameters consist of, the tops too."""
+    names = set()
+
+    def visit(symbol: object) -> None:
+        if isinstance(symbol, InstanceSymbol):
+            names.add(symbol.definition.name)
+
+    compiled(tops, files, parameters)[1].getRoot().visit(visit)
+    return names
+
+
+def findings(tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str, str] | None = None) -> list[Finding]:
+    """Return all findings of slang, waived or not."""
+    engine_driver, compilation, parsed = compiled(tops, files, parameters)
     diagnostics = [*compilation.getAllDiagnostics()]
     engine_driver.diagEngine.clearClients()  # they would print waived findings
     if parsed and not any(diagnostic.isError() for diagnostic in diagnostics):

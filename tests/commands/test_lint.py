@@ -10,7 +10,7 @@ import pytest
 
 from commands.common import repository, simulator
 from commands.verify import items, lint
-from commands.verify.slang_lint import WAIVERS, findings, waiver
+from commands.verify.slang_lint import WAIVERS, findings, instantiated, waiver
 from tb.settings import RUN
 
 HEADER = """\
@@ -136,6 +136,16 @@ def test_every_tool_looks_at_every_core_and_at_the_whole() -> None:
     assert {(s.config.solver, s.config.neumann) for s in lint.structures() if s.name in names["yosys"]} == {  # type: ignore[union-attr]
         (solver, neumann) for solver in ("spectral", "tridiagonal") for neumann in (False, True)
     }
+
+
+def test_yosys_sees_every_core_in_make_test() -> None:
+    """Look inside what Yosys checks in `make test`, the outermost cores at their defaults and the small designs."""
+    files, names = repository.sources(), {check.name for check in lint.checks() if check.tool == "yosys"}
+    seen = instantiated(lint.outermost(), files, {})
+    for structure in lint.structures():
+        if structure.name in names:
+            seen |= instantiated([structure.top], files, structure.parameters)
+    assert set(repository.cores()) - seen == set()
 
 
 @pytest.mark.parametrize("first", [True, False])

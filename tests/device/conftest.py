@@ -21,6 +21,7 @@ from tests.device.zynq import Played, Zynq
 GRID = (12, 16)
 Plug = Callable[..., Cable]
 BuildZynq = Callable[..., Zynq]
+QUIET_S = line.Line.quiet_s
 
 
 @pytest.fixture(scope="session")
@@ -47,11 +48,13 @@ def pictures(sample: td.Sample) -> list[np.ndarray]:
 
 
 @pytest.fixture
-def plug(tmp_path: Path) -> Iterator[Plug]:
+def plug(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Plug]:
     """Return a function that plugs a device which fits a pipeline into a serial port of its own."""
     cables: list[Cable] = []
 
     def plug(pipeline: td.Pipeline | None, **wanted: object) -> Cable:
+        if "camera" in wanted:  # a load waits for its pictures
+            monkeypatch.setattr(line.Line, "quiet_s", QUIET_S)
         setup = None if pipeline is None else setup_of(pipeline, **wanted)
         cables.append(Cable(tmp_path / f"port{len(cables)}", setup))
         return cables[-1]
@@ -76,7 +79,7 @@ def simulate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Setup
 
 @pytest.fixture(autouse=True)
 def no_camera(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let a load send its picture at once: few devices of these tests have a camera, whose pictures it waits for."""
+    """Let a load send its picture at once: few devices of these tests have a camera; see `plug`."""
     monkeypatch.setattr(line.Line, "quiet_s", 0.02)
 
 
