@@ -7,6 +7,7 @@ what cocotb reads are the only other variables.
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 from collections.abc import Mapping
@@ -14,6 +15,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 VARIABLE = "RUN_SETTINGS"
+gc.set_threshold(100_000)  # tests and testbenches make many objects and few circles: looking for them took 5 % of the time
 
 
 @dataclass(frozen=True)

@@ -5,13 +5,13 @@ REFUSED of each core's test states the rules.
 """
 
 import subprocess
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
 from commands.common import repository, simulator
+from commands.verify.slang_lint import findings, waiver
 from tactile_depth.tactile_depth import config_value, default_parameters
 from tb.settings import RUN
 from tb.structures import Refused
@@ -32,14 +32,14 @@ def parameters(core: str, change: str) -> list[str]:
 
 def output_of(tool: str, core: str, change: str) -> str:
     """Return the message with which a tool refuses to elaborate a core, "" if it accepts."""
-    known = core if core in repository.cores() else None
-    sources, changed = [str(path) for path in repository.sources(known)], parameters(core, change)
+    sources, changed = repository.sources(core if core in repository.cores() else None), parameters(core, change)
+    if tool == "slang":
+        values = dict(word.split("=") for word in changed)
+        return "\n".join(str(each) for each in findings([core], sources, values) if waiver(each) is None)
     if tool == "icarus":
         command = ["iverilog", "-g2012", "-t", "null", "-s", core, *(f"-P{core}.{word}" for word in changed)]
-    elif tool == "verilator":
-        command = ["verilator", "--lint-only", "--top-module", core, *(f"-G{word}" for word in changed)]
     else:
-        command = [sys.executable, "-m", "commands.verify.slang_lint", core, *(f"-G{word}" for word in changed)]
+        command = [simulator.VERILATOR, "--lint-only", "--top-module", core, *(f"-G{word}" for word in changed)]
     result = subprocess.run([*command, *sources], capture_output=True, text=True, check=False, cwd=repository.ROOT)
     return (result.stdout + result.stderr) if result.returncode else ""
 

@@ -111,6 +111,13 @@ def sources(top: str | None = None, without: Iterable[str] = ()) -> list[Path]:
     return [files[name] for name in sorted(needed, key=lambda name: (name not in packages, name))]
 
 
+@cache
+def outermost() -> Sequence[str]:
+    """Return the cores that no other core uses: together they contain all others."""
+    inside = {path.stem for name, core in cores().items() for path in sources(name) if path != core.hdl}
+    return [name for name in cores() if name not in inside]
+
+
 def stated(core: str, name: str) -> Any:
     """Return what the test of a core states under a name (tb/structures.py), None if it states nothing."""
     file = ROOT / "tests" / cores()[core].block / f"test_{core}.py"

@@ -117,7 +117,7 @@ def verilator(structure: Structure, files: Sequence[Path]) -> str:
     parameters = [f"-G{name}={value}" for name, value in structure.parameters.items()]
     top = ["--top-module", structure.top]
     return output_of(
-        ["verilator", "--lint-only", "-Wall", "--quiet", *top, *parameters, repository.HDL / "verilator.vlt", *files]
+        [simulation.VERILATOR, "--lint-only", "-Wall", "--quiet", *top, *parameters, repository.HDL / "verilator.vlt", *files]
     )
 
 
@@ -217,14 +217,6 @@ def core_checks(cores: Sequence[str]) -> list[Check]:
     ]
 
 
-def outermost() -> list[str]:
-    """Return the cores that no other core uses: the files of all others belong to them."""
-    inside = {
-        path.stem for name, core in repository.cores().items() for path in repository.sources(name) if path != core.hdl
-    }
-    return [name for name in repository.cores() if name not in inside]
-
-
 def board_sources() -> list[Path]:
     """Return the source files of all boards."""
     return [path for sources in repository.BOARDS.values() for path in sources]
@@ -248,7 +240,7 @@ def checks() -> list[Check]:
     python = [sys.executable, "-m"]
     return [
         *core_checks(list(repository.cores())),
-        Check("yosys", "outermost", partial(yosys_cores, outermost())),
+        Check("yosys", "outermost", partial(yosys_cores, repository.outermost())),
         *(Check("verilator", top.name, partial(verilator, top, files)) for top in designs),
         *(Check("verilator", top.name, partial(verilator, top, with_boards)) for top in tops),
         *(Check("icarus", top.name, partial(icarus, top, files)) for top in designs),

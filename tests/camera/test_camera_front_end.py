@@ -76,7 +76,7 @@ def test_verilator_has_no_warning_at_any_ratio(form: str, ratio: Fraction) -> No
     parameters = [f"-G{name}={value}" for name, value in camera_front_end_parameters(camera).items()]
     top = ["--top-module", "camera_front_end"]
     sources = [repository.HDL / "verilator.vlt", *repository.sources("camera_front_end")]
-    command = ["verilator", "--lint-only", "-Wall", "--quiet", *top, *parameters, *map(str, sources)]
+    command = [simulator.VERILATOR, "--lint-only", "-Wall", "--quiet", *top, *parameters, *map(str, sources)]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stdout + result.stderr
 

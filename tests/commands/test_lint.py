@@ -141,7 +141,7 @@ def test_every_tool_looks_at_every_core_and_at_the_whole() -> None:
 def test_yosys_sees_every_core_in_make_test() -> None:
     """Look inside what Yosys checks in `make test`, the outermost cores at their defaults and the small designs."""
     files, names = repository.sources(), {check.name for check in lint.checks() if check.tool == "yosys"}
-    seen = instantiated(lint.outermost(), files, {})
+    seen = instantiated(repository.outermost(), files, {})
     for structure in lint.structures():
         if structure.name in names:
             seen |= instantiated([structure.top], files, structure.parameters)
@@ -155,7 +155,7 @@ def test_a_time_scale_of_the_user_gives_no_warning(tmp_path: Path, first: bool) 
     instance = ".clk(1'b0), .write_en(1'b0), .write_address('0), .write_data('0), .read_en(1'b0), .read_address('0)"
     other.write_text(f"`timescale 1ns/1ps\nmodule other;\n  td_ram u_ram ({instance}, .read_data());\nendmodule\n")
     files = [other, *repository.sources("td_ram")] if first else [*repository.sources("td_ram"), other]
-    command = ["verilator", "--lint-only", "-Wall", "-Wno-PINCONNECTEMPTY", "--top-module", "other"]
+    command = [simulator.VERILATOR, "--lint-only", "-Wall", "-Wno-PINCONNECTEMPTY", "--top-module", "other"]
     ended = subprocess.run(
         [*command, str(repository.HDL / "verilator.vlt"), *map(str, files)], capture_output=True, text=True, check=False
     )
