@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 VARIABLE = "RUN_SETTINGS"
-gc.set_threshold(100_000)  # tests and testbenches make many objects and few circles: looking for them took 5 % of the time
+gc.set_threshold(100_000)  # objects: to look for circles of them, of which tests make few, took 5 % of their time
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,8 @@ class Structure:
     parameters : mapping
         Of the core.
     on : tuple of str
-        Simulators in `make test CORE=`; the whole suite plays the first that has no `device`, and all that have one.
+        Simulators in `make test CORE=`; the whole suite plays the first that has no `device`, and all that have one,
+        and a core inside another on Icarus only.
         Icarus builds in 0.1 s what takes Verilator 5 s.
     late : tuple of str
         More simulators in `make regress`; by default Icarus, unless it is in `on`.

@@ -66,7 +66,8 @@ def chosen_structures(simulator: str, structures: Sequence[Structure], inside: b
     first = [structure for structure in structures if simulator in structure.on]
     late = [structure for structure in structures if simulator in structure.late and simulator not in structure.on]
     if not RUN.cores:
-        elsewhere = first if inside and simulator == "verilator" else [s for s in first[1:] if not s.device]
+        other = inside and simulator == "verilator" and "icarus" in SIMULATORS
+        elsewhere = first if other else [structure for structure in first[1:] if not structure.device]
         late = [*elsewhere, *late]
         first = [structure for structure in first if structure not in late]
     return [*((structure, ()) for structure in first), *((structure, pytest.mark.regress) for structure in late)]

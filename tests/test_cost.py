@@ -24,15 +24,23 @@ FITTED, CHECKED = 0.035, 0.06  # largest difference of LUTs of logic
 
 CASES = [
     {"columns": 16, "bits_per_channel": 2},
-    {"columns": 32, "data_width": 30, "coefficient_width": 20, "neumann": True},
+    pytest.param(
+        {"columns": 32, "data_width": 30, "coefficient_width": 20, "neumann": True}, marks=pytest.mark.regress
+    ),
     {"columns": 16, "rows": 24, "solver": "tridiagonal", "bits_per_channel": 2, "data_width": 20},
-    {"columns": 64, "rows": 24, "solver": "tridiagonal", "neumann": True, "coefficient_width": 14},
+    pytest.param(
+        {"columns": 64, "rows": 24, "solver": "tridiagonal", "neumann": True, "coefficient_width": 14},
+        marks=pytest.mark.regress,
+    ),
     {"columns": 32, "rows": 24, "solver": "tridiagonal", "neumann": True, "zero_offset": True},
     {"columns": 16, "rows": 24, "solver": "tridiagonal", "flat_field": True, "gradient_model": "quadratic"},
     {"columns": 512, "rows": 48, "solver": "tridiagonal", "bits_per_channel": 2},  # words three to a memory row
     {"columns": 16, "rows": 9, "solver": "tridiagonal", "lanes": 2, "bits_per_channel": 2},
     {"columns": 64, "rows": 21, "solver": "tridiagonal", "lanes": 8, "zero_offset": True, "neumann": True},
-    {"columns": 64, "rows": 9, "solver": "tridiagonal", "lanes": 32, "bits_per_channel": 2},
+    pytest.param(
+        {"columns": 64, "rows": 9, "solver": "tridiagonal", "lanes": 32, "bits_per_channel": 2},
+        marks=pytest.mark.regress,
+    ),
 ]
 
 INSTANCES = {  # in the units and solvers

@@ -106,9 +106,14 @@ def sources(top: str | None = None, without: Iterable[str] = ()) -> list[Path]:
         while waiting:
             name = waiting.pop()
             needed.add(name)
-            instances = re.findall(r"^ +(\w+) (?:#\(|u_\w+ \()", files[name].read_text(), re.MULTILINE)
-            waiting += [used for used in instances if used in files and used not in needed | {*without}]
+            waiting += [used for used in _instances(files[name]) if used in files and used not in needed | {*without}]
     return [files[name] for name in sorted(needed, key=lambda name: (name not in packages, name))]
+
+
+@cache
+def _instances(file: Path) -> list[str]:
+    """Return the names of what may be modules that a file instantiates."""
+    return re.findall(r"^ +(\w+) (?:#\(|u_\w+ \()", file.read_text(), re.MULTILINE)
 
 
 @cache

@@ -75,8 +75,9 @@ class WholeVerilator(Verilator):
     left_out = (str(PROGRAM), *["--public-flat-rw"] * (not COVERAGE))
 
     def _build_command(self) -> list[list[str]]:
-        (_, *verilate), *others = super()._build_command()
-        return [[word for word in command if word not in self.left_out] for command in ([VERILATOR, *verilate], *others)]
+        commands = [[word for word in command if word not in self.left_out] for command in super()._build_command()]
+        commands[0][0] = VERILATOR
+        return commands
 
 
 def check(simulator: str) -> None:

@@ -311,7 +311,7 @@ def written() -> dict[Path, str]:
 
 def python_layer(folder: Path) -> None:
     """Write the package `tactile_depth_registers` into a folder, with its library."""
-    PythonExporter().export(  # type: ignore[no-untyped-call]
+    PythonExporter().export(
         compiled(inst_name=LAYER_NAME).top,
         str(folder),
         skip_test_case_generation=True,

@@ -89,7 +89,7 @@ def cluster(address: str) -> Iterator[Any]:
         raise InputError(f"DASK_SCHEDULER={address}: Dask is not installed: run `make setup`") from error
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # its messages repeat those of this command
     try:
-        client = dask.Client(address, timeout=CONNECT_S)  # type: ignore[no-untyped-call]
+        client = dask.Client(address, timeout=CONNECT_S)
     except (OSError, ValueError) as error:
         raise InputError(f"DASK_SCHEDULER={address}: no scheduler answers there: start one, or leave it out") from error
     with client:
@@ -111,7 +111,7 @@ def on_cluster(client: Any, rows: list[Choices]) -> Generator[Row]:
         with files.temporary() as folder:
             client.upload_file(str(_packed(folder)))
         futures = client.map(measure, rows, pure=False)
-        for _, row in as_completed(futures, with_results=True):  # type: ignore[no-untyped-call]
+        for _, row in as_completed(futures, with_results=True):
             if row["models"] != VERSION:
                 raise InputError("DASK_SCHEDULER: a worker keeps another version of the models: restart the workers")
             yield row

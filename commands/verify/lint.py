@@ -115,10 +115,8 @@ def output_of(command: Sequence[str | Path]) -> str:
 
 def verilator(structure: Structure, files: Sequence[Path]) -> str:
     parameters = [f"-G{name}={value}" for name, value in structure.parameters.items()]
-    top = ["--top-module", structure.top]
-    return output_of(
-        [simulation.VERILATOR, "--lint-only", "-Wall", "--quiet", *top, *parameters, repository.HDL / "verilator.vlt", *files]
-    )
+    options = ["--lint-only", "-Wall", "--quiet", "--top-module", structure.top, *parameters]
+    return output_of([simulation.VERILATOR, *options, repository.HDL / "verilator.vlt", *files])
 
 
 def icarus(structure: Structure, files: Sequence[Path]) -> str:
@@ -238,6 +236,7 @@ def checks() -> list[Check]:
     tops, designs = [Structure(name) for name in modules(boards)], structures()
     small = [structure for structure in designs if structure.config and structure.config.columns == GRIDS[0]]
     python = [sys.executable, "-m"]
+    packages = ["--no-error-summary", "-p", "tactile_depth", "-p", "commands", "-p", "formal"]
     return [
         *core_checks(list(repository.cores())),
         Check("yosys", "outermost", partial(yosys_cores, repository.outermost())),
@@ -252,7 +251,8 @@ def checks() -> list[Check]:
         Check("verible", "columns", partial(columns, others)),
         Check("ruff", "check", partial(output_of, [*python, "ruff", "check", "--quiet", "."])),
         Check("ruff", "format", partial(output_of, [*python, "ruff", "format", "--quiet", "--diff", "."])),
-        Check("mypy", "models", partial(output_of, [*python, "mypy", "--no-error-summary"])),
+        Check("mypy", "product", partial(output_of, [*python, "mypy", *packages])),
+        Check("mypy", "tests", partial(output_of, [*python, "mypy", "--no-error-summary"])),
     ]
 
 

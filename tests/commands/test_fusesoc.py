@@ -127,6 +127,7 @@ def test_a_project_that_depends_on_this_one_is_simulated(tmp_path: Path) -> None
     assert passed(tmp_path) == 1
 
 
+@pytest.mark.regress
 def test_the_target_sim_runs_the_testbench_of_the_whole(tmp_path: Path, core: Any) -> None:
     assert core["targets"]["sim"]["flow_options"]["cocotb_module"] == repository.testbench("tactile_depth")
     choices = {"columns": 16, "rows": 8, "solver": "tridiagonal"}

@@ -185,8 +185,8 @@ def test_a_core_is_checked_alone() -> None:
 
 
 CHECKS = lint.core_checks(RUN.cores) if RUN.cores else lint.checks()
-# Checks of what others check in another form, for `make lint` and `make regress`: larger grids of a structure, and
-# cores by themselves in Yosys, which sees them inside the outermost ones.
+# For `make lint` and `make regress` alone: larger grids of a structure, cores by themselves in Yosys, which sees them
+# inside the outermost ones, and types in testbenches and tests.
 LARGER = {
     s.name for s in lint.structures() if s.config and s.config.columns > lint.GRIDS[0] and not s.config.flat_field
 }
@@ -194,7 +194,7 @@ LARGER = {
 
 def marks(check: lint.Check) -> list[pytest.MarkDecorator]:
     """Return the marks of the item of a check: the longest begin first."""
-    is_late = check.name in LARGER or (check.label == "yosys cores" and not RUN.cores)
+    is_late = check.name in LARGER or (check.label == "yosys cores" and not RUN.cores) or check.label == "mypy tests"
     return [pytest.mark.long] * (check.tool == "mypy") + [pytest.mark.regress] * is_late
 
 

@@ -108,6 +108,7 @@ def test_pins_that_are_right(monkeypatch: pytest.MonkeyPatch) -> None:
     assert result == [reflex.Decision(2, 45, 36, 30, 5, 1)]
 
 
+@pytest.mark.regress
 def test_the_loop_on_the_rtl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Run the command on a small grid: command times are cycles of the pin, and latencies do not depend on the camera's
     rate."""

@@ -42,6 +42,7 @@ def test_memories_and_cores_are_those_of_the_rtl(tmp_path: Path, lanes: int, sol
     assert not cores & {"u_poisson", "u_poisson.u_solver"}
 
 
+@pytest.mark.regress
 def test_the_front_end_of_a_camera_is_a_row_of_its_own(tmp_path: Path) -> None:
     """One multiplier for each channel's gain; the weights are not worth one. The memory is a line of totals."""
     camera = CameraConfiguration((24, 48), (8, 16), "raw8")
