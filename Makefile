@@ -63,7 +63,7 @@ help:
 # Stream frames through the RTL, check every code against the model, print a table, draw pictures.
 sim: $(STAMP)
 
-# Run the whole suite on both simulators. CORE=a,b SIM=icarus: only lint and tests of these cores.
+# Run the whole suite. CORE=a,b: all tests of these cores, on both simulators, and their lint. SIM=icarus: on one.
 test: $(HARDWARE)
 
 # Test what differs from BASE=<commit>, by default origin/main, and run the whole once: 2 minutes.

@@ -236,7 +236,7 @@ def checks() -> list[Check]:
     tops, designs = [Structure(name) for name in modules(boards)], structures()
     small = [structure for structure in designs if structure.config and structure.config.columns == GRIDS[0]]
     python = [sys.executable, "-m"]
-    packages = ["--no-error-summary", "-p", "tactile_depth", "-p", "commands", "-p", "formal"]
+    product = ["--package=tactile_depth", "--package=commands", "--package=formal", f"--cache-dir={FOLDER / 'mypy'}"]
     return [
         *core_checks(list(repository.cores())),
         Check("yosys", "outermost", partial(yosys_cores, repository.outermost())),
@@ -251,7 +251,7 @@ def checks() -> list[Check]:
         Check("verible", "columns", partial(columns, others)),
         Check("ruff", "check", partial(output_of, [*python, "ruff", "check", "--quiet", "."])),
         Check("ruff", "format", partial(output_of, [*python, "ruff", "format", "--quiet", "--diff", "."])),
-        Check("mypy", "product", partial(output_of, [*python, "mypy", *packages])),
+        Check("mypy", "product", partial(output_of, [*python, "mypy", "--no-error-summary", *product])),
         Check("mypy", "tests", partial(output_of, [*python, "mypy", "--no-error-summary"])),
     ]
 
