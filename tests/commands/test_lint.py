@@ -11,6 +11,7 @@ import pytest
 from commands.common import repository, simulator
 from commands.verify import items, lint
 from commands.verify.slang_lint import WAIVERS, findings, instantiated, waiver
+from tactile_depth.configuration import Configuration
 from tb.settings import RUN
 
 HEADER = """\
@@ -146,6 +147,14 @@ def test_yosys_sees_every_core_in_make_test() -> None:
         if structure.name in names:
             seen |= instantiated([structure.top], files, structure.parameters)
     assert set(repository.cores()) - seen == set()
+
+
+@pytest.mark.parametrize("lanes", [2, 4, 8])
+@pytest.mark.parametrize("columns", [16, 64])
+def test_verilator_has_no_warning_with_any_lanes(lanes: int, columns: int) -> None:
+    """A warning ends a run of make sim."""
+    config = Configuration(columns=columns, solver="tridiagonal", lanes=lanes)
+    assert not lint.verilator(lint.Structure(lint.TOP, config), repository.sources())
 
 
 @pytest.mark.parametrize("first", [True, False])
