@@ -175,8 +175,8 @@ def host(options: list[str], tmp_path: Path) -> Iterator[Host]:
 @pytest.mark.parametrize(
     ("options", "packets"),
     [
-        pytest.param([], 500, id="bytes-500"),
-        pytest.param(["--pins"], 100, id="pins-100"),
+        pytest.param([], 1000, id="bytes-1000"),
+        pytest.param(["--pins"], 200, id="pins-200"),
         pytest.param([], 10_000, id="bytes-10000", marks=pytest.mark.regress),
         pytest.param(["--pins"], 1000, id="pins-1000", marks=pytest.mark.regress),
     ],
