@@ -13,6 +13,7 @@ from commands.verify import items, lint
 from commands.verify.slang_lint import WAIVERS, findings, instantiated, waiver
 from tactile_depth.configuration import Configuration
 from tb.settings import RUN
+from tests.conftest import chosen_structures
 
 HEADER = """\
 // SPDX-License-Identifier: Apache-2.0
@@ -146,6 +147,17 @@ def test_yosys_sees_every_core_in_make_test() -> None:
     for structure in lint.structures():
         if structure.name in names:
             seen |= instantiated([structure.top], files, structure.parameters)
+    assert set(repository.cores()) - seen == set()
+
+
+def test_verilator_plays_every_core_in_make_test() -> None:
+    """A core that another one contains plays alone on Icarus; look inside the builds that play on Verilator."""
+    seen: set[str] = set()
+    for core in ("tactile_depth", *repository.outermost()):
+        for structure, late in chosen_structures("verilator", repository.stated(core, "STRUCTURES"), inside=False):
+            if not late:
+                parameters = {name: str(value) for name, value in structure.parameters.items()}
+                seen |= instantiated([core], repository.sources(), parameters)
     assert set(repository.cores()) - seen == set()
 
 
