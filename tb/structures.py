@@ -85,7 +85,7 @@ class Mutants:
     Attributes
     ----------
     protocol : str
-        formal/protocols/protocol_<protocol>.sv; by default protocol_<name>.sv, if there is one.
+        protocol_<protocol>.sv in formal/; by default protocol_<name>.sv, if there is one.
     rows_are, columns_are : str
         Parameters of the core that the protocol calls Rows and Columns.
     simulators : tuple of str

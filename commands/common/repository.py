@@ -73,7 +73,7 @@ def cores() -> Mapping[str, Core]:
 
 
 def units() -> list[str]:
-    """Return the units of the tops, tested through them: `<folder>_unit` in each folder of hdl/ that has one."""
+    """Return the units of the tops and of the boards: `<folder>_unit` in each folder of hdl/ that has one."""
     return [core.name for core in cores().values() if core.name == f"{core.block}_unit"]
 
 
@@ -88,7 +88,7 @@ def chosen(names: str) -> list[str]:
 
 def tested(names: Sequence[str]) -> list[str]:
     """Return the cores whose testbenches test the cores with these names: a unit without one through its top."""
-    without = [unit for unit in units() if cores()[unit].test is None]
+    without = [unit for unit in units() if stated(unit, "STRUCTURES") is None]
     tops = dict.fromkeys(without, "tactile_depth") | {"camera_unit": "tactile_sensor"}
     return list(dict.fromkeys(tops.get(name, name) for name in names))
 

@@ -7,11 +7,10 @@ models/tactile_depth/cameras.json, which `tactile_depth.cost.camera_cost` reads.
 
 import json
 import sys
-import tempfile
-from pathlib import Path
 
 from commands.hardware import synth
 from commands.hardware.targets import TARGETS
+from tactile_depth import files
 from tactile_depth.built_in import synthetic
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import Configuration
@@ -26,8 +25,8 @@ def main() -> None:
         device = target.device
         for pixel_format in sys.argv[1:]:
             camera = CameraConfiguration(PICTURE, (CONFIG.rows, CONFIG.columns), pixel_format)
-            with tempfile.TemporaryDirectory() as folder:
-                unit, _ = synth.camera_unit(CONFIG, synthetic(CONFIG.bits_per_channel), camera, target, Path(folder))
+            with files.temporary() as folder:
+                unit, _ = synth.camera_unit(CONFIG, synthetic(CONFIG.bits_per_channel), camera, target, folder)
             counts = [int(unit.counts[name]) for name in (device.multiplier, device.block, "LUT")]
             known.setdefault(device.name, {})[pixel_format] = counts
             CAMERAS.write_text(json.dumps(known, indent=1, sort_keys=True) + "\n")

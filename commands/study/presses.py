@@ -9,7 +9,6 @@ model. The folder is that of `make calibrate`. RTL=0: model only. Exit status: 1
 from __future__ import annotations
 
 import sys
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -22,6 +21,7 @@ from commands.common import markdown, variables
 from commands.common import simulator as simulation
 from commands.run import bench
 from commands.run.calibrate import data_folder
+from tactile_depth import files
 from tactile_depth.calibration_file import PIXEL_PITCHES_MM
 from tactile_depth.configuration import LIGHT_GAIN
 from tactile_depth.fitting import DRAWN_OUT, errors_by_number, fit_presses
@@ -90,13 +90,13 @@ def codes_differ(simulator: str, pipeline: td.Pipeline, picture: np.ndarray, res
             bench.frame_entries(picture[None]),
         ]
     )
-    with tempfile.TemporaryDirectory() as folder:
+    with files.temporary() as folder:
         played = bench.play(
             simulator,
             config,
             pipeline.sensor,
             entries,
-            Path(folder),
+            folder,
             clocks=20 * picture.shape[0] * picture.shape[1],
             total_frames=1,
             registers=dict(zip(GAINS, gains.tolist(), strict=True)),

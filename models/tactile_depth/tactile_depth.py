@@ -78,8 +78,8 @@ CONSTANTS = {
     "ZeroLog2": (LARGEST_LOG2, "base-2 logarithm of the most frames in a capture of the zero offset"),
 }
 """Numbers that both the models and the RTL use, and that no configuration changes, with their meaning."""
-DERIVED = ("Size", "InWidth", "Width", "StoreDrop")
-"""Parameters of a solver that hdl/poisson/poisson_unit.sv derives from fields."""
+DERIVED = ("InWidth", "Width", "StoreDrop")
+"""Parameters that hdl/poisson derives from fields."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ def tactile_depth(
         Gains in use; by default those of the calibration's reference.
     dark_level : int
         Value of the register.
-    zero offset : int64 array (node rows, node columns)
+    zero : int64 array (node rows, node columns)
         Zero offset in use, for a configuration with `zero_offset`; by default nothing is subtracted.
     tables : Tables
         `slope_tables` of the same calibration, configuration and gains, for many calls; by default computed here.
@@ -282,8 +282,7 @@ def _own_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[
     """Return the fields that a configuration uses."""
     tridiagonal = config.solver == "tridiagonal"
     solver = wide_solver if config.lanes > 1 else tridiagonal_solver if tridiagonal else spectral_solver
-    parameters = {"Size": config.columns, **solver.solver_parameters(config)}
-    del parameters["Columns"]
+    parameters = solver.solver_parameters(config)
     return {
         "Columns": config.columns,
         "Rows": config.rows,

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make coverage`: merging of Verilator's counts, waivers, gates, bins."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -109,6 +110,12 @@ def test_waivers_are_read_from_a_file(tmp_path: Path) -> None:
     with pytest.raises(TypeError, match="reason"):
         load_waivers(file)
     assert all(waiver.reason for waiver in load_waivers(WAIVERS))
+
+
+def test_a_waiver_is_of_a_line_that_exists() -> None:
+    lines = [(path.name, line) for path in repository.sources() for line in path.read_text().splitlines()]
+    for waiver in load_waivers(WAIVERS):
+        assert any(re.fullmatch(waiver.file, name) and re.search(waiver.source, line) for name, line in lines), waiver
 
 
 @pytest.mark.parametrize("kind", GATES)

@@ -30,6 +30,13 @@ def test_every_core_but_the_units_is_mutated() -> None:
     assert set(mutate.cores()) == repository.cores().keys() - set(repository.units())
 
 
+def test_a_unit_is_tested_by_its_own_testbench_or_by_that_of_its_top() -> None:
+    tested = {unit: repository.tested([unit])[0] for unit in repository.units()}
+    assert tested.pop("camera_unit") == "tactile_sensor"
+    assert tested.pop("link_unit") == "link_unit"
+    assert set(tested.values()) == {"tactile_depth"}
+
+
 def test_mutants_are_killed_or_proven_equivalent(outcome: Any) -> None:
     result = outcome()
     assert result.mutants == 40

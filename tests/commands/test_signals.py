@@ -13,6 +13,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import psutil
 import pytest
 
 from commands.common import signals, variables
@@ -48,11 +49,10 @@ def started(command: Any, folder: Path) -> Any:
 def members(session: Any) -> Any:
     """Return the command lines of the living processes of a session."""
     lines = {}
-    for entry in Path("/proc").glob("[0-9]*"):
-        with contextlib.suppress(OSError):
-            fields = (entry / "stat").read_text().rpartition(")")[2].split()
-            if fields[0] != "Z" and int(fields[3]) == session:
-                lines[int(entry.name)] = (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode()
+    for process in psutil.process_iter():
+        with contextlib.suppress(OSError, psutil.NoSuchProcess):  # it has ended
+            if os.getsid(process.pid) == session and process.status() != psutil.STATUS_ZOMBIE:
+                lines[process.pid] = " ".join(process.cmdline())
     return lines
 
 

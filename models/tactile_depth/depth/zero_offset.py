@@ -18,17 +18,6 @@ from tactile_depth.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.configuration import Configuration
 
 
-def zero_offset_parameters(config: Configuration) -> dict[str, int]:
-    """Parameters of hdl/depth/zero_offset.sv."""
-    return {
-        "Rows": config.rows,
-        "Columns": config.columns,
-        "BlockLog2": config.reference_block_log2,
-        "Width": config.depth.width,
-        "Lanes": config.lanes,
-    }
-
-
 def no_zero(config: Configuration) -> np.ndarray:
     """Return the zero offset at power-up of a build without an initial one: int64 zeros (node rows, node columns)."""
     return np.zeros(config.reference_nodes, np.int64)

@@ -8,11 +8,11 @@ import os
 import select
 import subprocess
 import sys
-import tempfile
 import threading
 from pathlib import Path
 
 import tactile_depth
+from tactile_depth import files
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.transport import Pace
 from tactile_depth.pipeline import Pipeline
@@ -67,13 +67,14 @@ class Simulator:
         self.name = "the simulator"
         self.silence = "it may be built of other sources than this package"
         self.pace = PACES[pins]
-        self._folder = tempfile.TemporaryDirectory(prefix="tactile-depth-")
+        self._folder = contextlib.ExitStack()
         self._last = ""  # line on its standard error
         self._ready = threading.Event()
         self._process: subprocess.Popen | None = None
         try:
-            pipeline.hardware(self._folder.name)
-            command, root = command_of(Path(self._folder.name), pins)
+            folder = self._folder.enter_context(files.temporary())
+            pipeline.hardware(folder)
+            command, root = command_of(folder, pins)
             self._start(command, root)
         except BaseException:
             self.close()
@@ -155,7 +156,7 @@ class Simulator:
             for pipe in (process.stdout, process.stderr):
                 assert pipe is not None
                 pipe.close()
-        self._folder.cleanup()
+        self._folder.close()
 
     def _ended(self, what: str) -> DeviceError:
         return DeviceError(
