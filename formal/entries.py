@@ -55,7 +55,7 @@ class Proof:
 
 @dataclass(frozen=True)
 class Cone:
-    """On the netlist of the whole tactile_depth: no pixel and no memory lies in the cone of a handshake or side-band.
+    """Proof on the netlist of the whole that no pixel and no memory lies in the cone of a handshake or side-band.
 
     The cone is that of single bits; a memory passes everything from its inputs to its outputs. What holds of the cone
     holds of every frame, whatever it shows: the clocks at which words move are a function of the other inputs alone.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ram_check: what hdl/common/td_ram.sv asks of those who use it. A bench binds it to a ram.
+// ram_check: conditions under which hdl/common/td_ram.sv may be used. A bench binds it to a ram.
 //
 // No word is read in the clock that writes it, and (Defined) none before it was written. Power-up is the first clock,
 // which a bench spends in reset: nothing counts before its end.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// td_types_pkg: what travels beside the data between the units, the buses of tables and registers, and functions.
+// td_types_pkg: types of the side-band between units and of the buses of tables and registers, and functions.
 //
 // Members are unsigned and of fixed width: Icarus 11 takes no others.
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ulx3s_system: what the tops of the ULX3S share: serial line, reset and tactile_depth.
+// ulx3s_system: common part of the tops of the ULX3S: serial line, reset and tactile_depth.
 //
 //   ftdi_txd -> uart_receive -> link_unit <-> tactile_depth;  link_unit -> uart_transmit -> ftdi_rxd
 //

@@ -8,7 +8,7 @@ from commands.common.markdown import compact, with_tables
 from commands.common.repository import ROOT
 from tactile_depth import latency
 from tactile_depth.configuration import Configuration
-from tactile_depth.cost import CORES, KINDS, Cost, cost
+from tactile_depth.cost import KINDS, Cost, cost
 from tactile_depth.fixed_point import Format
 
 PAGE = ROOT / "docs" / "architecture.md"
@@ -61,8 +61,7 @@ def by_core(costs: list[Cost]) -> list[tuple[object, ...]]:
     counts = [one.by_core() for one in costs]
     return [
         (core, *("{} / {:,}".format(*count[core]) if core in count else "" for count in counts))
-        for core in CORES
-        if any(core in count for count in counts)
+        for core in dict.fromkeys(core for count in counts for core in count)
     ]
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// axis_source: what is offered stays until it is taken; nothing is offered in reset and in the clock after it.
+// axis_source: an offer stays until it is taken; there is none in reset and in the clock after it.
 
 `default_nettype none
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// table_accesses: what of the bus reaches the table behind a td_table_port, one clock after it was on the bus, and when
-// the answer is known: while another table is named, and from three clocks behind a read.
+// table_accesses: accesses of the bus that reach the table behind a td_table_port, one clock after they were on the
+// bus, and when the answer is known: while another table is named, and from three clocks behind a read.
 
 `default_nettype none
 

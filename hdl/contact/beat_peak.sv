@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// beat_peak: whether a depth of a beat is above a threshold, and the largest of those that are.
+// beat_peak: largest depth of a beat among those above a threshold, if there is one.
 //
 // The depths of a beat are neighbours in a row; an offset is the position of a depth in it, from 0. Stream in: a beat
 // in every cycle. Stream out: its peak, Latency = log2(Lanes) cycles later, by a tree with a register in each level.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// contact_debounce: whether something touches, decided once a frame from the area of the contact.
+// contact_debounce: touching or not, decided once a frame from the area of the contact.
 //
 //   touching <- 1 after `debounce` frames in a row with area >= minimum_area (debounce 0 counts as 1)
 //   touching <- 0 after `debounce` frames in a row with a smaller area

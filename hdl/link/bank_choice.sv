@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// bank_choice: which of two banks is written, which one is read, and which frame waits for the reader.
+// bank_choice: choice of two banks for the writer and the reader, and of the frame that waits for the reader.
 //
 // A frame begins (write_begin), is whole (write_end), and becomes ready (publish: with write_end, or later, also inside
 // the next frame). Then it waits until the reader takes it (take, only while `waiting` and keep), and is read up to

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -19,17 +18,9 @@ from tactile_depth.luts import luts
 from tactile_depth.parts import Memory, Multiplier, parts
 from tactile_depth.tactile_depth import top_parameters
 
-__all__ = ["CORES", "ECP5", "KINDS", "XCZU7EV", "CameraCost", "Cost", "camera_cost", "cost"]
+__all__ = ["ECP5", "KINDS", "XCZU7EV", "CameraCost", "Cost", "camera_cost", "cost"]
 
 KINDS = ("frame stores", "delay lines", "tables", "row buffers")
-CORES = (  # that have multipliers or memories, in the order of the data
-    *("flat_field", "gradient_lookup", "light_gains", "polynomial_gradient"),
-    *("divergence", "row_reorder", "dst_forward"),
-    *("transpose", "spectral_divide", "forward_elimination", "frame_stack", "back_substitution", "dst_inverse"),
-    *("wide_rows", "wide_dst_forward", "wide_elimination", "wide_stack", "wide_substitution", "wide_dst_inverse"),
-    *("zero_offset", "zero_capture", "contact_events"),
-)
-
 CAMERAS = Path(__file__).with_name("cameras.json")
 CLOCK_MHZ = 166.0  # of the power
 MACRO_BITS = 1024  # a larger memory is a macro, a smaller one is flip-flops or gates
@@ -125,12 +116,15 @@ class Cost:
 
     def by_core(self) -> dict[str, tuple[int, int]]:
         """Return multipliers of 27 x 18 bits and memory bits of each core, in the order of the data."""
-        tiles, bits = Counter[str](), Counter[str]()
-        for multiplier in self.multipliers:
-            tiles[multiplier.core] += XCZU7EV.multipliers(multiplier.a, multiplier.b)
-        for memory in self.memories:
-            bits[memory.core] += memory.bits
-        return {core: (tiles[core], bits[core]) for core in CORES if core in tiles or core in bits}
+        counts: dict[str, tuple[int, int]] = {}
+        for part in parts(self.parameters):
+            tiles, bits = counts.get(part.core, (0, 0))
+            if isinstance(part, Multiplier):
+                tiles += XCZU7EV.multipliers(part.a, part.b)
+            else:
+                bits += part.bits
+            counts[part.core] = tiles, bits
+        return counts
 
 
 @lru_cache(maxsize=4096)  # a search asks for the same ones again and again

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a picture to a frame of the grid, as the hardware takes it: averaged as it is, or through a camera's format."""
+"""Frames of the grid from pictures, as the hardware takes them: averaged as they are, or through a camera's format."""
 
 from __future__ import annotations
 
