@@ -22,7 +22,6 @@ from tactile_depth.fitting import (
     FITTED_SHARE,
     FRACTION_BITS,
     fit_presses,
-    fit_table,
 )
 from tactile_depth.frames import read_picture
 from tactile_depth.gradient.flat_field import captured_gains
@@ -151,24 +150,22 @@ def test_balls_that_contradict_each_other_are_said(presses: Any, quadratic: Any)
     assert "the scale is not known better than these" in doubtful[3]
 
 
-def test_the_table_gives_a_bin_the_mean_slope_of_its_pixels(presses: Any) -> None:
-    views = presses.views
-    gradient = fit_table(views, 4)
-    assert gradient.shape == (16, 16, 16, 2)
+def test_the_table_gives_a_bin_the_mean_slope_of_its_pixels(fit: Any, presses: Any) -> None:
+    views, gradient = presses.views, fit.sensor.gradient
+    assert gradient.shape == (32, 32, 32, 2)
     truth, codes = (
         np.concatenate([value(view)[view.press.distance(view.grid) < FITTED_SHARE] for view in views])  # type: ignore[no-untyped-call]
-        for value in (lambda view: view.press.slopes(view.grid), lambda view: view.codes >> 4)
+        for value in (lambda view: view.press.slopes(view.grid), lambda view: view.codes >> 3)
     )
-    index = np.ravel_multi_index(tuple(codes.T), (16, 16, 16))
+    index = np.ravel_multi_index(tuple(codes.T), (32, 32, 32))
     steep = np.hypot(*truth.T) > 0.35  # colours that no frame without contact has
     busiest = np.bincount(index[steep]).argmax()
-    at = np.unravel_index(busiest, (16, 16, 16))
+    at = np.unravel_index(busiest, (32, 32, 32))
     np.testing.assert_allclose(gradient[at], truth[index == busiest].mean(axis=0), atol=0.03)
 
 
-def test_a_gel_at_rest_reads_flat_through_the_table(presses: Any) -> None:
-    gradient = fit_table(presses.views, 5)
-    assert np.abs(gradient[15:17, 15:17, 15:17]).max() < 0.06  # a step of the codes is 0.09 of slope
+def test_a_gel_at_rest_reads_flat_through_the_table(fit: Any) -> None:
+    assert np.abs(fit.sensor.gradient[15:17, 15:17, 15:17]).max() < 0.06  # a step of the codes is 0.09 of slope
 
 
 # The fitted sensor.

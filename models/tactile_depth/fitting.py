@@ -395,16 +395,6 @@ def _depth_features(feature: np.ndarray) -> np.ndarray:
 # Table.
 
 
-def fit_table(views: Sequence[View], bits: int) -> np.ndarray:
-    """Fit the table: each bin is the weighted mean of its pixels' slopes and of a polynomial in the colour.
-
-    Returns
-    -------
-    float64 array (2**b, 2**b, 2**b, 2), slopes, multiples of 2**-FRACTION_BITS
-    """
-    return filled([_table_sums(view, bits) for view in views])
-
-
 @dataclass(frozen=True)
 class TableSums:
     """Sums over the pixels of a press; `contact` within it, `flat` where nothing touches.
@@ -438,7 +428,12 @@ def _table_sums(view: View, bits: int) -> TableSums:
 
 
 def filled(sums: Sequence[TableSums]) -> np.ndarray:
-    """Return the table of the sums of presses."""
+    """Return the table of presses: a bin is the weighted mean of its pixels' slopes and of a polynomial in the colour.
+
+    Returns
+    -------
+    float64 array (2**b, 2**b, 2**b, 2), slopes, multiples of 2**-FRACTION_BITS
+    """
     count, squares, slopes, products = (
         np.sum([getattr(one, field.name) for one in sums], axis=0) for field in fields(TableSums)
     )
