@@ -135,6 +135,7 @@ class FunctionalCoverage:
     async def watch(self) -> None:
         """Count until the end of the test, then add the counts to those of the file."""
         try:
+            await RisingEdge(self.dut.clk)  # before it Icarus has no value of the pins
             while True:
                 await self.watch_until_reset()
         finally:
@@ -212,8 +213,8 @@ class FunctionalCoverage:
 
     def count_output(self, taken: bool) -> None:
         """Count frames that leave, frames that are dropped, and changes of `contact`."""
-        dut = self.dut
-        self.clipped |= structs.unpack("events_t", int(dut.events.value))["saturations"] != 0
+        dut, events = self.dut, structs.unpack("events_t", int(self.dut.events.value))
+        self.clipped |= events["saturations"] != 0
         if taken and dut.m_axis_tuser.value:
             self.hit("gaps, stalls", self.offers, self.accepts)
             self.hit("clipped", "yes" if self.clipped else "no")
@@ -224,7 +225,7 @@ class FunctionalCoverage:
         was, self.contact = self.contact, bool(dut.contact.value)
         if self.contact != was:
             self.hit("contact", "rises" if self.contact else "is cleared")
-        if dut.depth_dropped.value:
+        if events["depth_dropped"]:
             self.hit(
                 "depth dropped, word that waits",
                 "a frame" if dut.u_contact.depth_starts.value else "the rest of a frame",
