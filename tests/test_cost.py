@@ -134,6 +134,7 @@ def test_multipliers_and_memories_are_those_of_the_rtl(tmp_path: Path, choices: 
     counted = cost(config)
     assert multipliers == Counter(tuple(sorted((m.a, m.b))) for m in counted.multipliers)
     assert memories == Counter((memory.core, memory.width, memory.words) for memory in counted.memories)
+    assert {multiplier.core for multiplier in counted.multipliers} <= repository.cores().keys()
     assert others <= {"u_depth.u_tags.due_clock", "u_depth.u_tags.tags"}, "registers of a few words, of frame_tags.sv"
 
 
