@@ -9,7 +9,7 @@ import io
 import sys
 
 from commands.common import variables
-from tactile_depth.errors import InputError
+from tactile_depth.base.errors import InputError
 
 ROOMS = {
     "run": ("calibrate", "reflex", "sim"),

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from tactile_depth.camera.camera_setup import Entry, Kind
-from tactile_depth.camera.register_lists import write_list
-from tactile_depth.rom_files import write_nodes, write_polynomials, write_words, write_zero
+from tactile_depth.chip.camera.camera_setup import Entry, Kind
+from tactile_depth.chip.camera.register_lists import write_list
+from tactile_depth.chip.rom_files import write_nodes, write_polynomials, write_words, write_zero
 
 
 def gradient_rom(folder: Path) -> None:

@@ -8,7 +8,7 @@
 // Stream out: depth codes in raster order (tridiagonal: bottom row first), Lanes neighbours in a beat with the first in
 // the lowest bits, each sign-extended to whole bytes; tuser with the first beat of a frame, tlast with the last of a
 // row; depth_mm = code * depth_lsb_mm, pressed in is positive. A stalled sink stops the pipeline. Latency: fixed from
-// the last pixel, models/tactile_depth/latency.py. Bit-accurate model: models/tactile_depth/tactile_depth.py.
+// the last pixel, models/tactile_depth/chip/latency.py. Bit-accurate model: models/tactile_depth/chip/tactile_depth.py.
 
 `default_nettype none
 

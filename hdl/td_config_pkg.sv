@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // td_config_pkg: the configuration of a pipeline as one value, and constants that no configuration changes.
 //
-// Written by `make registers` from models/tactile_depth/tactile_depth.py: change it there.
+// Written by `make registers` from models/tactile_depth/chip/tactile_depth.py: change it there.
 
 `default_nettype none
 

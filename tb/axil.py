@@ -7,8 +7,8 @@ from typing import Any
 from cocotb.triggers import RisingEdge, gather
 from cocotb_bus.drivers.amba import AXI4LiteMaster, AXIProtocolError
 
-from tactile_depth.registers.axil_port import Response
-from tactile_depth.registers.register_map import MAP, WORD
+from tactile_depth.chip.registers.axil_port import Response
+from tactile_depth.chip.registers.register_map import MAP, WORD
 
 OFFSET = {register.name: register.offset for register in MAP}
 

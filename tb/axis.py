@@ -14,7 +14,7 @@ from cocotb.triggers import RisingEdge
 from cocotb_bus.drivers import BusDriver
 from cocotb_bus.monitors import BusMonitor
 
-from tactile_depth.video.frame_guard import Word
+from tactile_depth.chip.video.frame_guard import Word
 from tb.pins import unsigned
 from tb.stream import at_every_edge
 

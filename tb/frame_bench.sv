@@ -14,7 +14,7 @@
 //   d, e clock     first and last beat of a frame on m_axis
 //   b clock        the frame's first beat with a depth above `level` leaves
 //   c clock        `contact` is up, the first time since the frame's first depth left
-//   f fault clock  the guard flags a fault, by the number of its name in models/tactile_depth/video/frame_guard.py
+//   f fault clock  the guard flags a fault, by the number of its name in models/tactile_depth/chip/video/frame_guard.py
 //   r clock codes  a reset begins; codes written so far
 // A side-band signal out of place, a word that changes before it is taken, an unknown one: the run ends with an error.
 // Registers are reached through the AXI4-Lite ports. tactile_depth_bench, and with Camera 1 tactile_sensor_bench, is a

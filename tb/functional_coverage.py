@@ -16,10 +16,10 @@ from typing import Any
 import cocotb
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.configuration import COLUMNS, ROWS, Configuration
-from tactile_depth.latency import frame_latency
-from tactile_depth.registers.register_map import MAP
-from tactile_depth.video.frame_guard import FAULTS
+from tactile_depth.chip.configuration import COLUMNS, ROWS, Configuration
+from tactile_depth.chip.latency import frame_latency
+from tactile_depth.chip.registers.register_map import MAP
+from tactile_depth.chip.video.frame_guard import FAULTS
 from tb import structs
 from tb.axis import PROFILES
 from tb.settings import RUN

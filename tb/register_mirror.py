@@ -4,8 +4,8 @@
 from types import SimpleNamespace
 from typing import Any
 
-from tactile_depth.registers.axil_port import Response, strobed_bits
-from tactile_depth.registers.register_map import MAP, REGISTERS
+from tactile_depth.chip.registers.axil_port import Response, strobed_bits
+from tactile_depth.chip.registers.register_map import MAP, REGISTERS
 from tb.pins import unsigned
 
 OFFSETS = {register.offset: register.name for register in MAP}

@@ -11,8 +11,8 @@ import cocotb
 from cocotb.triggers import RisingEdge
 from cocotbext.axi import AxiLiteBus, AxiLiteMaster, AxiStreamBus, AxiStreamFrame, AxiStreamSink, AxiStreamSource
 
-from tactile_depth.registers.axil_port import BYTES, Response
-from tactile_depth.video.frame_guard import Word
+from tactile_depth.chip.registers.axil_port import BYTES, Response
+from tactile_depth.chip.video.frame_guard import Word
 
 
 class SecondSource:

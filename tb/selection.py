@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 import cocotb
 
-from tactile_depth.configuration import Configuration
+from tactile_depth.chip.configuration import Configuration
 from tb.settings import RUN
 from tb.stream import configuration
 

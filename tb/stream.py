@@ -14,8 +14,8 @@ from cocotb.triggers import RisingEdge
 from cocotb_bus.drivers import BusDriver
 from cocotb_bus.monitors import BusMonitor
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
 from tb import pins
 from tb.pins import Read
 from tb.settings import RUN

@@ -8,7 +8,7 @@ from typing import Any
 import cocotb
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.common.td_table_port import WORD_BITS, answered
+from tactile_depth.chip.common.td_table_port import WORD_BITS, answered
 from tb import pins, structs
 
 TO_TABLE = 1  # cycles from an access on the bus to the table

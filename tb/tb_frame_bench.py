@@ -11,7 +11,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, FallingEdge, RisingEdge, with_timeout
 from cocotb_bus.drivers.amba import AXI4LiteMaster
 
-from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.chip.registers.register_map import REGISTERS
 from tb.settings import RUN
 
 CLOCK_NS = 6

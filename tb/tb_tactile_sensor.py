@@ -10,13 +10,13 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.built_in import synthetic
-from tactile_depth.camera.camera_front_end import camera_front_end, camera_settings
-from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.latency import last_word_to_first_depth
-from tactile_depth.registers.axil_port import Response
-from tactile_depth.registers.register_map import CAMERA_MAP, CAMERA_REGISTERS, MAP, REGISTERS
-from tactile_depth.tactile_depth import tactile_depth
+from tactile_depth.chip.camera.camera_front_end import camera_front_end, camera_settings
+from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.latency import last_word_to_first_depth
+from tactile_depth.chip.registers.axil_port import Response
+from tactile_depth.chip.registers.register_map import CAMERA_MAP, CAMERA_REGISTERS, MAP, REGISTERS
+from tactile_depth.chip.tactile_depth import tactile_depth
+from tactile_depth.sensor.built_in import synthetic
 from tb import axil
 from tb.axis import AxisMonitor, AxisSource
 from tb.camera.slots import camera_words

@@ -10,11 +10,11 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge, gather
 
-from tactile_depth.built_in import synthetic
-from tactile_depth.configuration import Configuration
-from tactile_depth.latency import first_depth_latency
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import tactile_depth
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.latency import first_depth_latency
+from tactile_depth.chip.tactile_depth import tactile_depth
+from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.sensor import Sensor
 from tb.axis import AxisMonitor, AxisSource, video
 from tb.pixels import unpack
 from tb.settings import RUN

@@ -20,10 +20,10 @@ from cocotb.handle import ArrayObject, HierarchyArrayObject, HierarchyObject, Lo
 from cocotb.triggers import FallingEdge, RisingEdge
 
 from commands.common.repository import cores
-from tactile_depth.built_in import synthetic
-from tactile_depth.latency import last_pixel_to_first_depth
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.tactile_depth import tactile_depth
+from tactile_depth.chip.latency import last_pixel_to_first_depth
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.chip.tactile_depth import tactile_depth
+from tactile_depth.sensor.built_in import synthetic
 from tb.axis import video
 from tb.pixels import pack
 from tb.settings import RUN

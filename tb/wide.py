@@ -12,8 +12,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.wide_commutator import LEAD
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.wide_commutator import LEAD
 from tb.pins import Late, Read, signed, unsigned
 from tb.stream import Bench, StreamDriver, StreamMonitor, at_every_edge, check_bursts, check_words, interrupt
 

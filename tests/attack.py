@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 
 from commands.run import bench
-from tactile_depth.built_in import synthetic
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration
-from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
-from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.tactile_depth import solve
-from tactile_depth.video.frame_guard import FAULTS, Guarded, Word, frame_guard
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.gradient_lookup import gradient_codes, gradient_lookup
+from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.chip.tactile_depth import solve
+from tactile_depth.chip.video.frame_guard import FAULTS, Guarded, Word, frame_guard
+from tactile_depth.sensor.built_in import synthetic
 from tb.axis import BREAKS, SILENT, WITHOUT_START, broken, faults_of, positions, video
 from tb.pixels import pack, unpack
 

@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tactile_depth.presses import GridPresses, camera_pitch_mm, gather, to_grid
-from tactile_depth.scenes import LIGHTS
+from tactile_depth.calibrate.presses import GridPresses, camera_pitch_mm, gather, to_grid
+from tactile_depth.sensor.scenes import LIGHTS
 from tests import real_data
 
 CAMERA, PITCH = (112, 160), 0.1  # rows and columns, mm per pixel

@@ -12,13 +12,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from tactile_depth.contact.contact_events import Record
-from tactile_depth.link.depth_formats import DepthFormat, exact_shift
-from tactile_depth.link.depth_frames import DepthFrame, DepthFrames
-from tactile_depth.link.device import Build, LinkDevice
-from tactile_depth.link.framing import to_line
-from tactile_depth.link.packets import Select
-from tactile_depth.link.rates import rate
+from tactile_depth.chip.contact.contact_events import Record
+from tactile_depth.chip.link.depth_formats import DepthFormat, exact_shift
+from tactile_depth.chip.link.depth_frames import DepthFrame, DepthFrames
+from tactile_depth.chip.link.device import Build, LinkDevice
+from tactile_depth.chip.link.framing import to_line
+from tactile_depth.chip.link.packets import Select
+from tactile_depth.chip.link.rates import rate
 
 SIDE, FRAMES = 128, 10
 LEAST_FRAMES_A_SECOND = 60

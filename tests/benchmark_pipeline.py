@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tactile_depth import cores
-from tactile_depth.built_in import synthetic
-from tactile_depth.pipeline import Pipeline
-from tactile_depth.scenes import Press, render
-from tactile_depth.sensor import Camera
+from tactile_depth.chip.poisson import cores
+from tactile_depth.depth.pipeline import Pipeline
+from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.scenes import Press, render
+from tactile_depth.sensor.sensor import Camera
 
 CAMERA = (240, 320)  # picture size of a GelSight Mini
 
@@ -27,7 +27,7 @@ def test_picture_to_depth(
     benchmark: Any, monkeypatch: pytest.MonkeyPatch, arithmetic: Any, pictures: int, used: str
 ) -> None:
     if used == "numpy":
-        monkeypatch.setattr("tactile_depth.pipeline.fastest", lambda: cores.NUMPY)
+        monkeypatch.setattr("tactile_depth.depth.pipeline.fastest", lambda: cores.NUMPY)
     elif cores.fastest() == cores.NUMPY:
         pytest.skip("numba is missing: pip install .[fast]")
     no_contact = render("flat", *CAMERA, press=Press(noise=0)).frames[0]

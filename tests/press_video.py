@@ -17,8 +17,8 @@ import numpy as np
 from PIL import Image
 
 import tactile_depth as td
-from tactile_depth.samples import CAMERA
-from tactile_depth.scenes import Press, render
+from tactile_depth.sensor.samples import CAMERA
+from tactile_depth.sensor.scenes import Press, render
 
 DRAWN = 24  # different frames, which repeat
 DEEPEST_MM, CIRCLE_MM = 1.4, 3.0

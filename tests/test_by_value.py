@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import tactile_depth as td
-from tactile_depth.by_value import ByValue
-from tactile_depth.frames import Frames
+from tactile_depth.base.by_value import ByValue
+from tactile_depth.pictures.frames import Frames
 
 
 def press() -> td.BallPress:

@@ -17,10 +17,10 @@ import pytest
 import tactile_depth as td
 from commands.common.repository import ROOT
 from commands.common.simulator import check
-from tactile_depth.link import packets as link
-from tactile_depth.link.framing import LONGEST_BODY, cobs_decode, to_line
-from tactile_depth.reader import Reader
-from tactile_depth.registers.table_banks import COMMIT
+from tactile_depth.chip.link import packets as link
+from tactile_depth.chip.link.framing import LONGEST_BODY, cobs_decode, to_line
+from tactile_depth.chip.registers.table_banks import COMMIT
+from tactile_depth.pictures.reader import Reader
 from tests.device.cable import Cable, setup_of
 from tests.test_c_header import compiled, tool
 

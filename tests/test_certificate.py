@@ -11,17 +11,17 @@ import pytest
 from commands.common import run_request
 from commands.run import sim
 from commands.study import certify as command
-from tactile_depth import reference
-from tactile_depth.bounds import difference_bounds
-from tactile_depth.built_in import load
-from tactile_depth.certificate import certify, deepest, node_format, slope_response
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import DEPTH_HEADROOM, Configuration
-from tactile_depth.errors import InputError
-from tactile_depth.fixed_point import Format
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.sensor import Camera, Sensor
-from tactile_depth.tactile_depth import solve
+from commands.study.certificate import certify, deepest, node_format, slope_response
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.bounds import difference_bounds
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import DEPTH_HEADROOM, Configuration
+from tactile_depth.chip.fixed_point import Format
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.tactile_depth import solve
+from tactile_depth.depth import reference
+from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.sensor import Camera, Sensor
 
 WHOLE: list[dict[str, Any]] = [
     {"columns": 16},

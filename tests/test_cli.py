@@ -18,10 +18,10 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
+from tactile_depth.base.interruption import SIGNALS
 from tactile_depth.cli.main import main
 from tactile_depth.cli.overview import DARK, OUTSIDE, colours, draw_overview, round_number
 from tactile_depth.cli.ply import triangles
-from tactile_depth.interruption import SIGNALS
 from tests.drawn_light import as_picture, no_contact, pressed
 from tests.real_data import FOLDER, needs_real_data
 

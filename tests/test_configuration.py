@@ -11,18 +11,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tactile_depth.bounds import bounds
-from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import DEPTH_HEADROOM, Configuration, Format
-from tactile_depth.errors import InputError
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.poisson.spectral_solver import spectral_solver
-from tactile_depth.poisson.transform.dst_forward import dst_forward
-from tactile_depth.poisson.transform.dst_inverse import dst_inverse
-from tactile_depth.poisson.transform.orders import makhoul
-from tactile_depth.poisson.transform.row_reorder import row_reorder
-from tactile_depth.poisson.transform.transpose import transpose
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.bounds import bounds
+from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import DEPTH_HEADROOM, Configuration, Format
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.poisson.spectral_solver import spectral_solver
+from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
+from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.chip.poisson.transform.orders import makhoul
+from tactile_depth.chip.poisson.transform.row_reorder import row_reorder
+from tactile_depth.chip.poisson.transform.transpose import transpose
 
 # Inputs that attain the bounds. Everything is linear, so a node's value is the sum of its responses to single
 # words, and the input of the largest value has the signs of those responses.

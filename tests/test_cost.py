@@ -9,15 +9,15 @@ from typing import Any
 import pytest
 
 from commands.common import repository
+from commands.cost.cost import KINDS, camera_cost, cost
+from commands.cost.devices import ECP5, XCZU7EV, Device
+from commands.cost.luts import RUNS, logic, memories
 from commands.hardware import yosys
-from tactile_depth.built_in import synthetic
-from tactile_depth.configuration import Configuration
-from tactile_depth.cost import KINDS, camera_cost, cost
-from tactile_depth.devices import ECP5, XCZU7EV, Device
-from tactile_depth.errors import InputError
-from tactile_depth.luts import RUNS, logic, memories
-from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
-from tactile_depth.tactile_depth import hdl_parameters, top_parameters, write_roms
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.transform.sdf_fft import twiddle_stages
+from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters, write_roms
+from tactile_depth.sensor.built_in import synthetic
 
 DEVICES = {device.name: device for device in (XCZU7EV, ECP5)}
 FITTED, CHECKED = 0.035, 0.06  # largest difference of LUTs of logic

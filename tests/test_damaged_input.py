@@ -21,11 +21,11 @@ from hypothesis.extra import numpy as arrays
 from PIL import Image
 
 from commands.common.run_request import configure, parse
-from tactile_depth import calibration_file
-from tactile_depth.built_in import load, synthetic
-from tactile_depth.errors import InputError
-from tactile_depth.frames import load_frames
-from tactile_depth.press_folder import read_presses
+from tactile_depth.base.errors import InputError
+from tactile_depth.calibrate.press_folder import read_presses
+from tactile_depth.pictures.frames import load_frames
+from tactile_depth.sensor import calibration_file
+from tactile_depth.sensor.built_in import load, synthetic
 from tb.settings import RUN
 
 EXAMPLES, FULL = 40, 50

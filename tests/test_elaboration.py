@@ -12,7 +12,7 @@ import pytest
 
 from commands.common import repository, simulator
 from commands.verify.slang_lint import findings, waiver
-from tactile_depth.tactile_depth import config_value, default_parameters
+from tactile_depth.chip.tactile_depth import config_value, default_parameters
 from tb.settings import RUN
 from tb.structures import Refused
 

@@ -15,8 +15,8 @@ from commands.common.repository import ROOT
 from commands.common.run_request import ACCEPTED, CAMERA
 from commands.common.variables import VARIABLES
 from commands.run import calibrate
+from tactile_depth.base.errors import LONGEST, Argument, InputError
 from tactile_depth.cli.main import OPTIONS, _parser, named
-from tactile_depth.errors import LONGEST, Argument, InputError
 from tests.drawn_light import no_contact
 
 GRID = Argument("grid", (24, 32))

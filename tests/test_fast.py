@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 
 import tactile_depth as td
-from tactile_depth import cores
-from tactile_depth.checks.picture_check import Checked
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration
-from tactile_depth.gradient.light_gains import Light
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.light_gains import Light
+from tactile_depth.chip.poisson import cores
+from tactile_depth.pictures.picture_check import Checked
 
-fast = pytest.importorskip("tactile_depth.fast", reason="numba is missing: pip install .[fast]", exc_type=ImportError)
+fast = pytest.importorskip(
+    "tactile_depth.chip.poisson.fast", reason="numba is missing: pip install .[fast]", exc_type=ImportError
+)
 DRAWS: dict[str, Callable[[np.random.Generator, Any], np.ndarray]] = {
     "small": lambda rng, shape: rng.integers(-1000, 1000, shape),
     "full": lambda rng, shape: rng.integers(-(2**26), 2**26, shape),
@@ -85,9 +87,9 @@ def test_a_pipeline_gives_what_it_gives_without(monkeypatch: pytest.MonkeyPatch,
     extremes = rng.choice([np.uint8(0), np.uint8(255)], (12, 16, 3)).repeat(20, 0).repeat(20, 1)
     pictures = np.stack([drawn.image, drawn.reference, noise, extremes])
     results = []
-    monkeypatch.setattr("tactile_depth.pipeline.check_picture", lambda _, __, name: Checked(name, None, []))
+    monkeypatch.setattr("tactile_depth.depth.pipeline.check_picture", lambda _, __, name: Checked(name, None, []))
     for used in (cores.fastest(), cores.NUMPY):
-        monkeypatch.setattr("tactile_depth.pipeline.fastest", lambda used=used: used)
+        monkeypatch.setattr("tactile_depth.depth.pipeline.fastest", lambda used=used: used)
         pipeline = td.Pipeline(drawn.sensor, drawn.reference, **choices)
         results.append((pipeline(pictures), pipeline.zero_codes))
     (compiled, zero), (expected, expected_zero) = results
@@ -100,8 +102,8 @@ def test_a_pipeline_gives_what_it_gives_without(monkeypatch: pytest.MonkeyPatch,
 
 def test_numba_is_used_if_it_can_be(monkeypatch: pytest.MonkeyPatch) -> None:
     assert cores.fastest() != cores.NUMPY
-    monkeypatch.setitem(sys.modules, "tactile_depth.fast", None)  # as without numba
-    monkeypatch.delattr("tactile_depth.fast")
+    monkeypatch.setitem(sys.modules, "tactile_depth.chip.poisson.fast", None)  # as without numba
+    monkeypatch.delattr("tactile_depth.chip.poisson.fast")
     assert cores.fastest.__wrapped__() == cores.NUMPY
 
 
@@ -110,6 +112,6 @@ def test_models_in_numpy_stay_where_numba_cannot_keep_its_code(monkeypatch: pyte
         raise RuntimeError("cannot cache function: no locator available")
 
     monkeypatch.setattr("numba.njit", refused)
-    monkeypatch.delitem(sys.modules, "tactile_depth.fast")
-    monkeypatch.delattr("tactile_depth.fast")
+    monkeypatch.delitem(sys.modules, "tactile_depth.chip.poisson.fast")
+    monkeypatch.delattr("tactile_depth.chip.poisson.fast")
     assert cores.fastest.__wrapped__() == cores.NUMPY

@@ -21,7 +21,7 @@ from typing import Any
 
 import pytest
 
-from tactile_depth.configuration import Configuration
+from tactile_depth.chip.configuration import Configuration
 from tb.settings import RUN
 from tb.structures import BOTH, VERILATOR, Structure
 from tests.attack import PROFILES, Attack, Outcome, Reset, attack, cases, phases, resets

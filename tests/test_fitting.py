@@ -13,24 +13,24 @@ from PIL import Image
 from scipy.ndimage import uniform_filter
 
 import tactile_depth as td
-from tactile_depth.configuration import Configuration
-from tactile_depth.depth.zero_capture import captured_zero
-from tactile_depth.depth.zero_offset import zero_offset
-from tactile_depth.errors import InputError, InputWarning
-from tactile_depth.evaluation import scores_of
-from tactile_depth.fitting import (
+from tactile_depth.base.errors import InputError, InputWarning
+from tactile_depth.calibrate.evaluation import scores_of
+from tactile_depth.calibrate.fitting import (
     FITTED_SHARE,
     FRACTION_BITS,
     fit_presses,
 )
-from tactile_depth.frames import read_picture
-from tactile_depth.gradient.flat_field import captured_gains
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.press_folder import read_presses
-from tactile_depth.reference import pixel_terms, polynomials_at_pixels, weighted
-from tactile_depth.scenes import LIGHTS
-from tactile_depth.sensor import MODELS
-from tactile_depth.tactile_depth import slope_codes, solve
+from tactile_depth.calibrate.press_folder import read_presses
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.depth.zero_capture import captured_zero
+from tactile_depth.chip.depth.zero_offset import zero_offset
+from tactile_depth.chip.gradient.flat_field import captured_gains
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.tactile_depth import slope_codes, solve
+from tactile_depth.depth.reference import pixel_terms, polynomials_at_pixels, weighted
+from tactile_depth.pictures.frames import read_picture
+from tactile_depth.sensor.scenes import LIGHTS
+from tactile_depth.sensor.sensor import MODELS
 from tests.ball_presses import (
     CAMERA,
     PITCH,

@@ -10,13 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tactile_depth import reference
-from tactile_depth.built_in import synthetic
-from tactile_depth.common.td_node_map import node_map
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIAL, Configuration
-from tactile_depth.errors import InputError
-from tactile_depth.gradient.flat_field import (
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.common.td_node_map import node_map
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIAL, Configuration
+from tactile_depth.chip.gradient.flat_field import (
     captured_gains,
     dark_pixels,
     deviations,
@@ -24,7 +22,7 @@ from tactile_depth.gradient.flat_field import (
     pixel_gains,
     unit_gains,
 )
-from tactile_depth.gradient.polynomial_gradient import (
+from tactile_depth.chip.gradient.polynomial_gradient import (
     UNIT_BITS,
     coefficient_map,
     correction_codes,
@@ -36,9 +34,11 @@ from tactile_depth.gradient.polynomial_gradient import (
     polynomial_gradient,
     polynomial_words,
 )
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.sensor import CORRECTIONS, Sensor
-from tactile_depth.tactile_depth import slope_codes, slope_tables, solve
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.tactile_depth import slope_codes, slope_tables, solve
+from tactile_depth.depth import reference
+from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.sensor import CORRECTIONS, Sensor
 
 SHAPES = [
     {"columns": 16},

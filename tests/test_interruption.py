@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 
 from commands.common import signals, variables
-from tactile_depth import files, frames, interruption
+from tactile_depth.base import files, interruption
 from tactile_depth.cli import main
+from tactile_depth.pictures import frames
 
 INTERRUPTIONS = 2500
 LONGEST_S = 1e-3  # until a signal: a few workspaces, and a few arrays that are read

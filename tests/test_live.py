@@ -20,10 +20,10 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
+from tactile_depth.base.errors import InputError
 from tactile_depth.cli import live as command
 from tactile_depth.cli.main import main
 from tactile_depth.cli.source import Source
-from tactile_depth.errors import InputError
 from tests.press_video import press_frames, write_sensor, write_video
 
 FRAMES = 10

@@ -10,33 +10,34 @@ from hypothesis import strategies as st
 from scipy.fft import dctn, dstn
 from scipy.linalg import solve_banded
 
-from tactile_depth import latency, reference
-from tactile_depth.built_in import load, synthetic
-from tactile_depth.common.td_axis_skid import CAPACITY, AxisSkid
-from tactile_depth.common.td_rom import rom
-from tactile_depth.configuration import COLUMNS, Configuration
-from tactile_depth.contact.threshold_comparator import ThresholdComparator
-from tactile_depth.depth.frame_output import Clock, frame_output
-from tactile_depth.depth.frame_tags import FrameTags
-from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
-from tactile_depth.poisson.back_substitution import back_substitution
-from tactile_depth.poisson.forward_elimination import forward_elimination
-from tactile_depth.poisson.frame_stack import frame_stack
-from tactile_depth.poisson.thomas_table import thomas_table
-from tactile_depth.poisson.transform.mode_pairs import mode_pairs
-from tactile_depth.poisson.transform.orders import bit_reversed, eigenvalues, makhoul, mirror
-from tactile_depth.poisson.transform.row_reorder import row_reorder
-from tactile_depth.poisson.transform.transpose import transpose
-from tactile_depth.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors
-from tactile_depth.poisson.tridiagonal_solver import tridiagonal_solver
-from tactile_depth.registers.axil_port import Response, strobed_bits
-from tactile_depth.registers.axil_registers import AxilRegisters, Build, Events, Live
-from tactile_depth.registers.event_registers import COUNTERS
-from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS, WORD
-from tactile_depth.rom_files import pack, write_words
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import solve, tactile_depth, top_parameters
-from tactile_depth.video.frame_guard import Word, frame_guard
+from tactile_depth.chip import latency
+from tactile_depth.chip.common.td_axis_skid import CAPACITY, AxisSkid
+from tactile_depth.chip.common.td_rom import rom
+from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.contact.threshold_comparator import ThresholdComparator
+from tactile_depth.chip.depth.frame_output import Clock, frame_output
+from tactile_depth.chip.depth.frame_tags import FrameTags
+from tactile_depth.chip.gradient.gradient_lookup import gradient_codes, gradient_lookup
+from tactile_depth.chip.poisson.back_substitution import back_substitution
+from tactile_depth.chip.poisson.forward_elimination import forward_elimination
+from tactile_depth.chip.poisson.frame_stack import frame_stack
+from tactile_depth.chip.poisson.thomas_table import thomas_table
+from tactile_depth.chip.poisson.transform.mode_pairs import mode_pairs
+from tactile_depth.chip.poisson.transform.orders import bit_reversed, eigenvalues, makhoul, mirror
+from tactile_depth.chip.poisson.transform.row_reorder import row_reorder
+from tactile_depth.chip.poisson.transform.transpose import transpose
+from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors
+from tactile_depth.chip.poisson.tridiagonal_solver import tridiagonal_solver
+from tactile_depth.chip.registers.axil_port import Response, strobed_bits
+from tactile_depth.chip.registers.axil_registers import AxilRegisters, Build, Events, Live
+from tactile_depth.chip.registers.event_registers import COUNTERS
+from tactile_depth.chip.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS, WORD
+from tactile_depth.chip.rom_files import pack, write_words
+from tactile_depth.chip.tactile_depth import solve, tactile_depth, top_parameters
+from tactile_depth.chip.video.frame_guard import Word, frame_guard
+from tactile_depth.depth import reference
+from tactile_depth.sensor.built_in import load, synthetic
+from tactile_depth.sensor.sensor import Sensor
 
 SEED = st.integers(0, 2**32 - 1)
 SIZE = st.sampled_from([8, 16, 32, 64])

@@ -11,11 +11,11 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
-from tactile_depth.checks.blocks import Rest
-from tactile_depth.checks.picture_check import check_picture
-from tactile_depth.frames import read_picture
-from tactile_depth.press_folder import read_presses
-from tactile_depth.scenes import BENCH
+from tactile_depth.calibrate.press_folder import read_presses
+from tactile_depth.pictures.blocks import Rest
+from tactile_depth.pictures.frames import read_picture
+from tactile_depth.pictures.picture_check import check_picture
+from tactile_depth.sensor.scenes import BENCH
 from tests.ball_presses import real_folder
 from tests.drawn_light import as_picture, no_contact, pressed
 

@@ -11,13 +11,13 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
-from tactile_depth.c_header import FILE, c_header
-from tactile_depth.contact.contact_events import ContactEvents, Settings
-from tactile_depth.pipeline import default_grid
-from tactile_depth.resampling import resampling
-from tactile_depth.rom_files import write_words
-from tactile_depth.tactile_depth import hdl_parameters, light_of, slope_tables, tactile_depth, top_parameters
-from tactile_depth.tactile_depth import write_roms as write_tables
+from tactile_depth.base.resampling import resampling
+from tactile_depth.chip.c_header import FILE, c_header
+from tactile_depth.chip.contact.contact_events import ContactEvents, Settings
+from tactile_depth.chip.rom_files import write_words
+from tactile_depth.chip.tactile_depth import hdl_parameters, light_of, slope_tables, tactile_depth, top_parameters
+from tactile_depth.chip.tactile_depth import write_roms as write_tables
+from tactile_depth.depth.pipeline import default_grid
 from tests.drawn_light import no_contact
 
 SMALL = (24, 32)
@@ -160,7 +160,7 @@ def test_a_batch_is_its_frames_one_by_one(ball: Any, small: Any) -> None:
 
 def test_records_are_computed_when_they_are_read(monkeypatch: pytest.MonkeyPatch, small: Any, ball: Any) -> None:
     calls: list[Any] = []
-    monkeypatch.setattr("tactile_depth.result.Recorder.record", lambda _, codes: calls.append(codes))
+    monkeypatch.setattr("tactile_depth.depth.result.Recorder.record", lambda _, codes: calls.append(codes))
     result = small(np.stack([ball.image] * 2))
     assert result.height_mm.max() > 1
     assert not calls

@@ -14,12 +14,12 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
-from tactile_depth import circles
-from tactile_depth.circles import find_circle
-from tactile_depth.errors import InputError
-from tactile_depth.fitting import fit_presses
-from tactile_depth.press_folder import read_presses
-from tactile_depth.presses import GridPress, camera_pitch_mm, gather, to_grid
+from tactile_depth.base.errors import InputError
+from tactile_depth.calibrate import circles
+from tactile_depth.calibrate.circles import find_circle
+from tactile_depth.calibrate.fitting import fit_presses
+from tactile_depth.calibrate.press_folder import read_presses
+from tactile_depth.calibrate.presses import GridPress, camera_pitch_mm, gather, to_grid
 from tests.ball_presses import (
     CAMERA,
     COLUMNS,

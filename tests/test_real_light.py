@@ -8,9 +8,9 @@ import pytest
 
 import tactile_depth as td
 from commands.study.presses import LIGHTS, Measured, in_light, measured
-from tactile_depth.frames import read_stack
-from tactile_depth.press_folder import read_presses
-from tactile_depth.presses import GridPress
+from tactile_depth.calibrate.press_folder import read_presses
+from tactile_depth.calibrate.presses import GridPress
+from tactile_depth.pictures.frames import read_stack
 from tests.ball_presses import real_folder
 
 

@@ -10,18 +10,18 @@ import numpy as np
 import pytest
 
 from commands.run import bench
-from tactile_depth.built_in import load
-from tactile_depth.camera_configuration import CameraChoice
-from tactile_depth.configuration import Configuration
-from tactile_depth.depth.zero_capture import captured_zero
-from tactile_depth.evaluation import scores_of
-from tactile_depth.fitting import fit_presses
-from tactile_depth.frames import read_picture
-from tactile_depth.grid_sampler import grid_sampler
-from tactile_depth.latency import last_word_to_first_depth
-from tactile_depth.presses import GridPresses, View, gather
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import tactile_depth
+from tactile_depth.calibrate.evaluation import scores_of
+from tactile_depth.calibrate.fitting import fit_presses
+from tactile_depth.calibrate.presses import GridPresses, View, gather
+from tactile_depth.chip.camera_configuration import CameraChoice
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.depth.zero_capture import captured_zero
+from tactile_depth.chip.latency import last_word_to_first_depth
+from tactile_depth.chip.tactile_depth import tactile_depth
+from tactile_depth.pictures.frames import read_picture
+from tactile_depth.pictures.grid_sampler import grid_sampler
+from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.sensor import Sensor
 from tests.ball_presses import read, real_folder, write_folder
 
 FULL_WORDS: dict[str, Any] = {}  # the defaults, 24 bits

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tactile_depth.built_in import synthetic
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.reference import depth, eigenvalues, slopes, solve
-from tactile_depth.scenes import dome, photograph
-from tactile_depth.sensor import Sensor
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.depth.reference import depth, eigenvalues, slopes, solve
+from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.scenes import dome, photograph
+from tactile_depth.sensor.sensor import Sensor
 
 
 def second_difference(z: np.ndarray, axis: int) -> np.ndarray:

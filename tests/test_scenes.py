@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tactile_depth import reference
-from tactile_depth.built_in import synthetic
-from tactile_depth.errors import InputError
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.scenes import (
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.depth import reference
+from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.scenes import (
     BENCH,
     NOISE,
     REST,

@@ -24,11 +24,11 @@ from PIL import Image
 import tactile_depth as td
 from commands.common.repository import ROOT
 from commands.run import bench
-from tactile_depth.configuration import LIGHT_GAIN
-from tactile_depth.frames import read_picture
-from tactile_depth.registers.axil_registers import GAINS
-from tactile_depth.resampling import resampling
-from tactile_depth.tactile_depth import hdl_parameters, top_parameters
+from tactile_depth.base.resampling import resampling
+from tactile_depth.chip.configuration import LIGHT_GAIN
+from tactile_depth.chip.registers.axil_registers import GAINS
+from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters
+from tactile_depth.pictures.frames import read_picture
 from tests import real_data
 from tests.drawn_light import no_contact
 

@@ -13,13 +13,13 @@ import pytest
 
 from commands.common import repository, wrapper
 from commands.common import simulator as simulation
-from tactile_depth.built_in import synthetic
-from tactile_depth.c_header import FILE, c_header
-from tactile_depth.configuration import Configuration
-from tactile_depth.depth.zero_capture import captured_zero
-from tactile_depth.pipeline import SYNTHETIC_GRID
-from tactile_depth.scenes import render
-from tactile_depth.tactile_depth import tactile_depth, top_parameters, write_roms
+from tactile_depth.chip.c_header import FILE, c_header
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.depth.zero_capture import captured_zero
+from tactile_depth.chip.tactile_depth import tactile_depth, top_parameters, write_roms
+from tactile_depth.depth.pipeline import SYNTHETIC_GRID
+from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.scenes import render
 from tb.structures import Structure
 from tb.tb_two_pipelines import calibration
 

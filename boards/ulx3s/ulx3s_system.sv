@@ -6,7 +6,7 @@
 // Packets: docs/link.md. With Camera 0 pictures come from the serial line; with Camera 1 they come on s_axis, and those
 // on the line are dropped. recorded changes with every record. tactile_depth_ulx3s, with Camera tactile_sensor_ulx3s,
 // is a wrapper, which `make fpga` writes for a configuration.
-// Model: models/tactile_depth/link/device.py around models/tactile_depth/tactile_depth.py.
+// Model: models/tactile_depth/chip/link/device.py around models/tactile_depth/chip/tactile_depth.py.
 
 `default_nettype none
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from tactile_depth.errors import InputError
+from tactile_depth.base.errors import InputError
 from tb.structures import Mutants, Structure
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -64,7 +64,7 @@ def cores() -> Mapping[str, Core]:
             name,
             "" if folder == Path() else str(folder),
             file,
-            _existing(ROOT / "models" / "tactile_depth" / folder / f"{name}.py"),
+            _existing(ROOT / "models" / "tactile_depth" / "chip" / folder / f"{name}.py"),
             _benches(ROOT / "tb" / folder, name),
             _existing(ROOT / "tests" / folder / f"test_{name}.py"),
             _existing(ROOT / "formal" / folder / f"fv_{name}.sv"),

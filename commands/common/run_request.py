@@ -14,17 +14,17 @@ from typing import Any
 
 from commands.common import simulator as simulation
 from commands.common import variables
-from tactile_depth.built_in import load
-from tactile_depth.calibration_file import BUILT_IN
-from tactile_depth.camera_configuration import FORMATS, PHASES, CameraChoice, CameraConfiguration
-from tactile_depth.certificate import deepest
-from tactile_depth.configuration import COLUMNS, GRADIENT_MODELS, Configuration
-from tactile_depth.errors import InputError
-from tactile_depth.frames import REST_SCENE
-from tactile_depth.npy import is_file
-from tactile_depth.presets import PRESETS, Preset
-from tactile_depth.scenes import NOISE, SCENES, SENSOR_WIDTH_MM, Press
-from tactile_depth.sensor import Sensor
+from commands.study.certificate import deepest
+from tactile_depth.base.errors import InputError
+from tactile_depth.base.npy import is_file
+from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoice, CameraConfiguration
+from tactile_depth.chip.configuration import COLUMNS, GRADIENT_MODELS, Configuration
+from tactile_depth.pictures.frames import REST_SCENE
+from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.calibration_file import BUILT_IN
+from tactile_depth.sensor.presets import PRESETS, Preset
+from tactile_depth.sensor.scenes import NOISE, SCENES, SENSOR_WIDTH_MM, Press
+from tactile_depth.sensor.sensor import Sensor
 
 DEFAULT_SCENE = "ball"
 WORST = "worst"  # a depth range that no slopes can exceed

@@ -11,7 +11,7 @@ from typing import Any
 
 import psutil
 
-from tactile_depth import interruption
+from tactile_depth.base import interruption
 
 GRACE_S = 2.0  # from SIGTERM to SIGKILL of a child
 

@@ -26,8 +26,8 @@ from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import Runner, Verilator, get_runner
 
 from commands.common.repository import HDL, ROOT, sources
-from tactile_depth import files
-from tactile_depth.errors import Argument, InputError, one_of
+from tactile_depth.base import files
+from tactile_depth.base.errors import Argument, InputError, one_of
 from tb.settings import RUN
 
 SIMULATORS = ("verilator", "icarus")

@@ -13,9 +13,9 @@ from contextlib import contextmanager
 from typing import Any
 
 from commands.common import signals
-from tactile_depth import interruption
-from tactile_depth.errors import Argument, InputError, InputWarning, one_of
-from tactile_depth.files import cause
+from tactile_depth.base import interruption
+from tactile_depth.base.errors import Argument, InputError, InputWarning, one_of
+from tactile_depth.base.files import cause
 
 EQUAL, MISMATCH, BAD_INPUT, FAILURE = 0, 1, 2, 3  # exit status; 128 + the number of a signal
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from commands.common import repository
-from tactile_depth.tactile_depth import CONSTANTS, default_parameters
+from tactile_depth.chip.tactile_depth import CONSTANTS, default_parameters
 
 DEFAULTS = repository.HDL / "td_config_pkg.sv"
 NAME = re.compile(r"[a-z][a-z0-9_]*")
@@ -46,7 +46,7 @@ def package() -> str:
     return f"""// SPDX-License-Identifier: Apache-2.0
 // td_config_pkg: the configuration of a pipeline as one value, and constants that no configuration changes.
 //
-// Written by `make registers` from models/tactile_depth/tactile_depth.py: change it there.
+// Written by `make registers` from models/tactile_depth/chip/tactile_depth.py: change it there.
 
 `default_nettype none
 

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from commands.common.run_request import Request
-from tactile_depth.configuration import Configuration
-from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
-from tactile_depth.errors import InputError
-from tactile_depth.frames import REST_SCENE, Frames, load_frames
-from tactile_depth.scenes import SCENES
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import light_of, slope_tables, tactile_depth
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2, captured_zero
+from tactile_depth.chip.tactile_depth import light_of, slope_tables, tactile_depth
+from tactile_depth.pictures.frames import REST_SCENE, Frames, load_frames
+from tactile_depth.sensor.scenes import SCENES
+from tactile_depth.sensor.sensor import Sensor
 
 
 def untouched(request: Request, frames: Frames) -> np.ndarray | None:

@@ -26,17 +26,17 @@ from tqdm import tqdm
 
 from commands.common import recorded, repository, run_request, variables
 from commands.common.markdown import table
+from commands.cost.cost import MACRO_BITS
 from commands.hardware import estimate, gate_sim, memory_model, synthesis, yosys
 from commands.hardware.gate_power import DATA, NAMES, power_of, typical
 from commands.hardware.gate_sim import Activity, Macro, Stimulus
 from commands.hardware.gates import Netlist, from_yosys, verilog
 from commands.hardware.liberty import Library, read
 from commands.run import bench
-from tactile_depth import files
-from tactile_depth.cost import MACRO_BITS
-from tactile_depth.errors import InputError
-from tactile_depth.latency import first_depth_latency
-from tactile_depth.tactile_depth import tactile_depth
+from tactile_depth.base import files
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.latency import first_depth_latency
+from tactile_depth.chip.tactile_depth import tactile_depth
 
 TOP = "tactile_depth"
 DEFAULT_LIB = Path("/usr/share/qflow/tech/osu018/osu018_stdcells.lib")

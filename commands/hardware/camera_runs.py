@@ -2,19 +2,19 @@
 """`python -m commands.hardware.camera_runs raw8 yuyv ..`: measure the camera front end by pixel format, on each device.
 
 Maps camera_unit as `make synth` does, for a picture of 640 x 480 pixels on a grid of 96 x 128, and adds the counts to
-models/tactile_depth/cameras.json, which `tactile_depth.cost.camera_cost` reads.
+commands/cost/cameras.json, which `commands.cost.cost.camera_cost` reads.
 """
 
 import json
 import sys
 
+from commands.cost.cost import CAMERAS
 from commands.hardware import synth
 from commands.hardware.targets import TARGETS
-from tactile_depth import files
-from tactile_depth.built_in import synthetic
-from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.configuration import Configuration
-from tactile_depth.cost import CAMERAS
+from tactile_depth.base import files
+from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.sensor.built_in import synthetic
 
 PICTURE, CONFIG = (480, 640), Configuration(columns=128, rows=96, solver="tridiagonal")
 

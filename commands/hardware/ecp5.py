@@ -12,7 +12,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tactile_depth.rom_files import write_words
+from tactile_depth.chip.rom_files import write_words
 
 BLOCK = 16384  # bits of a block memory
 WHOLE_WORDS = 2048  # words of a memory that boards/ecp5/td_ram.sv builds without slices

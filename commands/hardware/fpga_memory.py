@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from tactile_depth.devices import BLOCK, DISTRIBUTED, ULTRA, XCZU7EV
+from commands.cost.devices import BLOCK, DISTRIBUTED, ULTRA, XCZU7EV
 
 TOP = "tactile_depth"
 STYLES = {"ultra": ULTRA, "block": BLOCK}
@@ -24,7 +24,7 @@ class Memory:
     rom: bool
 
     def plain(self) -> dict[str, float]:
-        """Return UltraRAMs and block RAMs by its style and the rule of models/tactile_depth/devices.py."""
+        """Return UltraRAMs and block RAMs by its style and the rule of commands/cost/devices.py."""
         built = XCZU7EV.memories(self.depth, self.width, STYLES.get(self.style, DISTRIBUTED), self.rom)
         return {"UltraRAM": built["ultra"], "BRAM36": built["block"]}
 

@@ -17,8 +17,8 @@ try:
     from commands.common import run_request, variables, wrapper
     from commands.common.zero_offset import untouched, zero_of
     from commands.hardware import synth, synthesis
-    from tactile_depth.errors import InputError
-    from tactile_depth.tactile_depth import top_parameters, write_roms
+    from tactile_depth.base.errors import InputError
+    from tactile_depth.chip.tactile_depth import top_parameters, write_roms
 except ImportError as error:
     sys.exit(f"tables of tactile_depth: {error} ({sys.executable}): run `make setup`, put {ROOT}/.venv/bin on PATH")
 

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any
 
 from commands.hardware.liberty import Cell, Library, pins_of, truth
-from tactile_depth.errors import InputError
+from tactile_depth.base.errors import InputError
 
 Bit = int | str  # number of a net, or a constant: "0", "1", "x"
 

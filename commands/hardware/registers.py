@@ -26,9 +26,9 @@ from systemrdl.node import AddrmapNode, FieldNode, RegNode, RootNode
 
 from commands.common import variables, wrapper
 from commands.common.repository import ROOT, sources
-from tactile_depth import files
-from tactile_depth.camera.pixel_format import chroma_codes
-from tactile_depth.camera_configuration import FORMATS
+from tactile_depth.base import files
+from tactile_depth.chip.camera.pixel_format import chroma_codes
+from tactile_depth.chip.camera_configuration import FORMATS
 
 FUSESOC = ROOT / "tactile_depth.core"
 VENDOR = "tactile-depth"  # of the IP-XACT components
@@ -83,7 +83,7 @@ def compiled(source: Path = PIPELINE.source, inst_name: str | None = None) -> Ro
 
 
 def access(field: FieldNode) -> str:
-    """Return the access of a field, one of tactile_depth.registers.register_map.ACCESSES.
+    """Return the access of a field, one of tactile_depth.chip.registers.register_map.ACCESSES.
 
     Raises ValueError: no register of this design has such an access.
     """
@@ -298,7 +298,7 @@ def generated(of: Map) -> dict[Path, str]:
             of.source.with_suffix(".h"): f"// SPDX-License-Identifier: Apache-2.0\n// {of.written_by}\n"
             + header.read_text(),
             of.source.with_suffix(".xml"): ip_xact(of, top, folder / f"{of.name}.xml"),
-            ROOT / "models" / "tactile_depth" / "registers" / of.data: json.dumps(described, indent=1) + "\n",
+            ROOT / "models" / "tactile_depth" / "chip" / "registers" / of.data: json.dumps(described, indent=1) + "\n",
             of.package: package(of, registers),
         }
 

@@ -6,7 +6,7 @@ table over grids and both solvers. Exit status: 0 when the design fits, 1 when n
 
 The cores of the top and of the solver keep their boundaries, so that each has its figures and the design is their sum.
 With CAMERA, BAYER and WINDOW the camera front end comes along, in a row of its own. commands/hardware/targets.py has
-the mappings. The count of models/tactile_depth/cost.py stands below the sum. The logic depth is the longest path from
+the mappings. The count of commands/cost/cost.py stands below the sum. The logic depth is the longest path from
 and to a register, memory, multiplier or port: the sum of the delays of its cells, without wires, by Yosys' `sta` on the
 mapped netlist. An ECP5 has none, because Yosys has no delays of its registers, memories and multipliers.
 """
@@ -31,16 +31,16 @@ from tqdm import tqdm
 from commands.common import published, recorded, repository, run_request, variables
 from commands.common.markdown import table
 from commands.common.signals import threads
+from commands.cost.cost import cost
 from commands.hardware import ecp5, synthesis, yosys
 from commands.hardware.fpga_memory import BLOCKS_PER_ULTRA, TOP, Memory, memories, path_of
 from commands.hardware.targets import DEFAULT_TARGET, LOGIC, MEMORY, SHIFT, TARGETS, Target
-from tactile_depth import files
-from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.configuration import COLUMNS, Configuration
-from tactile_depth.cost import cost
-from tactile_depth.errors import InputError
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import hdl_parameters
+from tactile_depth.base import files
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.tactile_depth import hdl_parameters
+from tactile_depth.sensor.sensor import Sensor
 
 OUT = repository.ROOT / "build" / "synth"
 UNITS = ("u_video", "u_gradient", "u_poisson", "u_depth", "u_contact")  # of hdl/tactile_depth.sv
@@ -73,7 +73,7 @@ class Design:
 
     configuration: dict[str, Any]  # grid, solver, boundary, widths, gradient model, flat field, camera
     totals: dict[str, float]  # by resource of the target
-    model: dict[str, float]  # the same by models/tactile_depth/cost.py, without registers
+    model: dict[str, float]  # the same by commands/cost/cost.py, without registers
     details: dict[str, float]  # kinds of LUTs, memories as Yosys maps them, all memory in UltraRAMs
     cores: list[Core]
     memories: list[Memory]
@@ -240,7 +240,7 @@ def camera_unit(
 
 
 def modelled(config: Configuration, target: Target) -> dict[str, float]:
-    """Return the resources of a configuration by models/tactile_depth/cost.py."""
+    """Return the resources of a configuration by commands/cost/cost.py."""
     count, device = cost(config), target.device
     found = {device.multiplier: count.multipliers_of(device), device.block: count.blocks_of(device)}
     ultra = {"UltraRAM": count.ultras_of(device)} if "UltraRAM" in target.has else {}

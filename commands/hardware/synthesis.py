@@ -7,12 +7,12 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 
 from commands.common import recorded, repository, run_request
-from tactile_depth import files
-from tactile_depth.built_in import load
-from tactile_depth.configuration import Configuration
-from tactile_depth.frames import REST_SCENE, Frames, flat_frames, load_frames, on_grid
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import hdl_parameters, write_roms
+from tactile_depth.base import files
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
+from tactile_depth.pictures.frames import REST_SCENE, Frames, flat_frames, load_frames, on_grid
+from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.sensor import Sensor
 
 SOLVERS = {"spectral_solver", "tridiagonal_solver", "wide_solver"}
 # Small ROMs are LUTs. For Yosys "distributed" is a RAM of LUTs, and it has none with a read port alone.

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from commands.common import repository
-from tactile_depth.devices import ECP5, XCZU7EV, Device
+from commands.cost.devices import ECP5, XCZU7EV, Device
 
 LOGIC, MEMORY, SHIFT = "LUT as logic", "LUT as memory", "LUT as shift register"
 Cells = Mapping[str, tuple[str, float]]  # resource and number of it, by cell

@@ -15,9 +15,10 @@ import sys
 from commands.common import repository, run_request, variables, wrapper
 from commands.common.zero_offset import untouched, zero_of
 from commands.hardware import synth, synthesis
-from tactile_depth import c_header, files
-from tactile_depth.errors import InputError
-from tactile_depth.tactile_depth import top_parameters, write_roms
+from tactile_depth.base import files
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip import c_header
+from tactile_depth.chip.tactile_depth import top_parameters, write_roms
 
 
 def main() -> None:

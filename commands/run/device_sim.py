@@ -16,8 +16,8 @@ from pathlib import Path
 
 from commands.common import repository, wrapper
 from commands.common import simulator as simulation
-from tactile_depth.errors import InputError
-from tactile_depth.hardware_files import PARAMETERS
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.hardware_files import PARAMETERS
 
 BENCH, BOARD = "device_bench", "ulx3s"
 MAIN = repository.ROOT / "tb" / "device_main.cpp"

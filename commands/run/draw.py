@@ -8,7 +8,7 @@ import matplotlib
 import numpy as np
 
 from commands.run.flags import Flags
-from tactile_depth.frames import Frames
+from tactile_depth.pictures.frames import Frames
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactile_depth import reference
-from tactile_depth.configuration import Configuration
-from tactile_depth.gradient.flat_field import dark_pixels, reference_gains, require_light
-from tactile_depth.sensor import Sensor
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.flat_field import dark_pixels, reference_gains, require_light
+from tactile_depth.depth import reference
+from tactile_depth.sensor.sensor import Sensor
 
 
 @dataclass(frozen=True)

@@ -35,13 +35,13 @@ from commands.run import bench, reflex_picture
 from commands.run import reflex_model as model
 from commands.run.reflex_model import Draws, Request, Setup, Times
 from commands.run.reflex_tables import sentences, tables
-from tactile_depth import files
-from tactile_depth.configuration import COLUMNS, Configuration
-from tactile_depth.errors import InputError
-from tactile_depth.latency import last_pixel_to_first_depth
-from tactile_depth.scenes import SENSOR_WIDTH_MM
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import tactile_depth
+from tactile_depth.base import files
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.latency import last_pixel_to_first_depth
+from tactile_depth.chip.tactile_depth import tactile_depth
+from tactile_depth.sensor.scenes import SENSOR_WIDTH_MM
+from tactile_depth.sensor.sensor import Sensor
 
 RESULTS = ("reflex.json", "reflex.png")
 DEFAULT_OUT = repository.ROOT / "build" / "reflex"

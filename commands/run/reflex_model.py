@@ -13,12 +13,12 @@ from tqdm import tqdm
 
 from commands.common import published
 from commands.common.run_request import CONTACT_THRESHOLD
-from tactile_depth import reference
-from tactile_depth.built_in import load
-from tactile_depth.scenes import SYNTHETIC_PIXEL_PITCH_MM, Press, render, scene_pixel_pitch_mm
-from tactile_depth.sensor import Sensor
+from tactile_depth.depth import reference
+from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.scenes import SYNTHETIC_PIXEL_PITCH_MM, Press, render, scene_pixel_pitch_mm
+from tactile_depth.sensor.sensor import Sensor
 
-PIN = "ball"  # radius of its round tip, as in models/tactile_depth/scenes.py
+PIN = "ball"  # radius of its round tip, as in models/tactile_depth/sensor/scenes.py
 STOP_MM = 1.0  # depth at the end of the press
 
 # Components of the delays.
@@ -249,7 +249,7 @@ def delays(request: Request, near: Setup, host: Setup) -> list[dict[str, str]]:
             f"0 to {DRIVER_BUFFERS - 1} frames, each as likely",
             "OpenCV asks V4L2 for 4 buffers (opencv/opencv#11047, #13145), one being filled; how many wait: assumption",
         ),
-        ("host", "reconstruction", "as measured in each trial", "tactile_depth.reference on this machine"),
+        ("host", "reconstruction", "as measured in each trial", "tactile_depth.depth.reference on this machine"),
         ("host", "operating system", "as measured in each trial", f"lateness after a sleep of {ASLEEP_MS:g} ms, here"),
     ]
     return [dict(zip(("path", "name", "distribution", "source"), row, strict=True)) for row in rows]

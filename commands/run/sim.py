@@ -25,17 +25,19 @@ from commands.run.compare import compare, warnings
 from commands.run.draw import draw_depth
 from commands.run.flags import flags
 from commands.run.sim_table import check_registers, coefficient_words, measure, table
-from tactile_depth import files, latency, reference
-from tactile_depth.accuracy import errors
-from tactile_depth.camera_configuration import CameraChoice
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration
-from tactile_depth.depth.zero_offset import exact_zero
-from tactile_depth.frames import Frames, load_frames, on_grid
-from tactile_depth.gradient.light_gains import Light, LightFilter
-from tactile_depth.registers.axil_registers import GAINS
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import light_of, slope_tables, tactile_depth
+from commands.study.accuracy import errors
+from tactile_depth.base import files
+from tactile_depth.chip import latency
+from tactile_depth.chip.camera_configuration import CameraChoice
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.depth.zero_offset import exact_zero
+from tactile_depth.chip.gradient.light_gains import Light, LightFilter
+from tactile_depth.chip.registers.axil_registers import GAINS
+from tactile_depth.chip.tactile_depth import light_of, slope_tables, tactile_depth
+from tactile_depth.depth import reference
+from tactile_depth.pictures.frames import Frames, load_frames, on_grid
+from tactile_depth.sensor.sensor import Sensor
 
 RESULTS = ("depth.npy", "depth.png", "report.json")
 DUMPS = (".vcd", ".fst")

@@ -4,9 +4,9 @@
 import numpy as np
 
 from commands.run import bench
-from tactile_depth.configuration import Configuration
-from tactile_depth.poisson.spectral_divide import reciprocal_rom
-from tactile_depth.poisson.thomas_table import thomas_table
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.spectral_divide import reciprocal_rom
+from tactile_depth.chip.poisson.thomas_table import thomas_table
 
 ROWS_SHOWN = 16
 

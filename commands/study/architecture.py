@@ -6,10 +6,10 @@
 
 from commands.common.markdown import compact, with_tables
 from commands.common.repository import ROOT
-from tactile_depth import latency
-from tactile_depth.configuration import Configuration
-from tactile_depth.cost import KINDS, Cost, cost
-from tactile_depth.fixed_point import Format
+from commands.cost.cost import KINDS, Cost, cost
+from tactile_depth.chip import latency
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.fixed_point import Format
 
 PAGE = ROOT / "docs" / "architecture.md"
 BEGIN, END = "<!-- tables: python -m commands.study.architecture -->", "<!-- end of the tables -->"

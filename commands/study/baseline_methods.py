@@ -17,8 +17,9 @@ import matplotlib
 import numpy as np
 import scipy.fft
 
-from tactile_depth import files, reference
-from tactile_depth.built_in import synthetic
+from tactile_depth.base import files
+from tactile_depth.depth import reference
+from tactile_depth.sensor.built_in import synthetic
 
 matplotlib.use("Agg")
 

@@ -6,7 +6,7 @@ the bench in turn: scipy, ducc0, pyFFTW and PyTorch on one core and on all, and 
 frames already on it. The method of the tridiagonal solver runs on the CPU too: ducc0 along the rows and Thomas's
 algorithm by numba down the columns, and on one core in C with SIMD (simd_solver.c), compiled for this machine. The C
 code is timed from the pixels on, too: that is what the pipeline does.
-Every result is checked by tactile_depth.reference before it is timed: WARM_UPS solves, then RUNS that count, or as many
+Every result is checked by `reference` before it is timed: WARM_UPS solves, then RUNS that count, or as many
 as the time allows. Each method is timed in its own process, pinned to its cores, so that no threads of another method
 run.
 
@@ -40,13 +40,14 @@ from tqdm import tqdm
 
 from commands.common import markdown, published, recorded, repository, variables
 from commands.common.machine import machine
-from tactile_depth import files, reference
-from tactile_depth.built_in import synthetic
-from tactile_depth.configuration import COLUMNS, Configuration, most_lanes
-from tactile_depth.errors import InputError
-from tactile_depth.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.scenes import render
+from tactile_depth.base import files
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.configuration import COLUMNS, Configuration, most_lanes
+from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.depth import reference
+from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.scenes import render
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt

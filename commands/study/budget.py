@@ -34,6 +34,7 @@ import tactile_depth as td
 from commands.common import markdown, recorded, repository, variables
 from commands.common.run_request import camera_choice
 from commands.run.calibrate import data_folder
+from commands.study.accuracy import VERSION
 from commands.study.budget_steps import (
     BACK,
     BESIDE,
@@ -48,17 +49,16 @@ from commands.study.budget_steps import (
     products,
 )
 from commands.study.drawn_sensor import PLACES, DrawnSensor
-from tactile_depth import files
-from tactile_depth.accuracy import VERSION
-from tactile_depth.calibration_file import PIXEL_PITCHES_MM
-from tactile_depth.camera_configuration import CameraChoice
-from tactile_depth.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS
-from tactile_depth.errors import InputError
-from tactile_depth.fitting import Fit, fit_presses
-from tactile_depth.frames import read_picture
-from tactile_depth.pipeline import BOUNDARIES
-from tactile_depth.presses import AT_REST, GridPresses, PressPictures, camera_pitch_mm, gather, to_grid
-from tactile_depth.scenes import BENCH
+from tactile_depth.base import files
+from tactile_depth.base.errors import InputError
+from tactile_depth.calibrate.fitting import Fit, fit_presses
+from tactile_depth.calibrate.presses import AT_REST, GridPresses, PressPictures, camera_pitch_mm, gather, to_grid
+from tactile_depth.chip.camera_configuration import CameraChoice
+from tactile_depth.chip.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS
+from tactile_depth.depth.pipeline import BOUNDARIES
+from tactile_depth.pictures.frames import read_picture
+from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
+from tactile_depth.sensor.scenes import BENCH
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt

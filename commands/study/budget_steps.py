@@ -11,15 +11,15 @@ import numpy as np
 from scipy.fft import dstn, idstn
 
 import tactile_depth as td
-from tactile_depth import reference
-from tactile_depth.camera_configuration import CameraChoice
-from tactile_depth.configuration import RATIO
-from tactile_depth.depth.zero_offset import exact_zero
-from tactile_depth.gradient.light_gains import Light, settled
-from tactile_depth.grid_sampler import GridSampler, grid_sampler
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.presses import GridPress, GridPresses
-from tactile_depth.resampling import resampling
+from tactile_depth.base.resampling import resampling
+from tactile_depth.calibrate.presses import GridPress, GridPresses
+from tactile_depth.chip.camera_configuration import CameraChoice
+from tactile_depth.chip.configuration import RATIO
+from tactile_depth.chip.depth.zero_offset import exact_zero
+from tactile_depth.chip.gradient.light_gains import Light, settled
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.depth import reference
+from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler
 
 FRONT = ("quantisation", "pixel format", "camera noise and 8 bits", "light drift", "calibration")
 BACK = ("boundary", "discretisation")

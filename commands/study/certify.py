@@ -19,14 +19,14 @@ from tqdm import tqdm
 from commands.common import markdown, repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.run import sim, sim_table
-from tactile_depth import files
-from tactile_depth.certificate import Node, certify, slope_response
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import GRADIENT_MODELS, Configuration
-from tactile_depth.frames import Frames, camera_scale
-from tactile_depth.gradient.gradient_lookup import gradient_codes
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import tactile_depth
+from commands.study.certificate import Node, certify, slope_response
+from tactile_depth.base import files
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import GRADIENT_MODELS, Configuration
+from tactile_depth.chip.gradient.gradient_lookup import gradient_codes
+from tactile_depth.chip.tactile_depth import tactile_depth
+from tactile_depth.pictures.frames import Frames, camera_scale
+from tactile_depth.sensor.sensor import Sensor
 
 RESULTS = ("worst.npy", "certificate.json")
 BATCH = 8  # frames that the model runs at a time

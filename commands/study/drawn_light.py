@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from PIL import Image
 
-from tactile_depth.reference import polynomials_at_pixels
-from tactile_depth.scenes import BENCH, NOISE
-from tactile_depth.sensor import Sensor
+from tactile_depth.depth.reference import polynomials_at_pixels
+from tactile_depth.sensor.scenes import BENCH, NOISE
+from tactile_depth.sensor.sensor import Sensor
 
 LEVEL = 90.0  # mean grey level of the untouched gel
 Height = Callable[[np.ndarray, np.ndarray], np.ndarray]

@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactile_depth.ball_press import BallPress
-from tactile_depth.presses import PressPictures
-from tactile_depth.scenes import BENCH, LIGHTS, NOISE, SENSOR_WIDTH_MM, SLOPE_LIMIT, Body
+from tactile_depth.calibrate.ball_press import BallPress
+from tactile_depth.calibrate.presses import PressPictures
+from tactile_depth.sensor.scenes import BENCH, LIGHTS, NOISE, SENSOR_WIDTH_MM, SLOPE_LIMIT, Body
 
 LIGHTS_MM, LIGHTS_ABOVE_MM = 30.0, 43.0  # from the middle of the gel: 0.7 of I / ref per unit of slope there
 LEVEL = 110.0  # grey level of the flat gel in the middle

@@ -23,16 +23,17 @@ from commands.common import markdown, repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.study import certify as certificate
 from commands.study import sensor_extremes, transform_noise
+from commands.study.accuracy import errors
+from commands.study.certificate import certify
 from commands.study.transform_noise import BIAS, Compliance, compliance
-from tactile_depth import files, reference
-from tactile_depth.accuracy import errors
-from tactile_depth.built_in import load
-from tactile_depth.certificate import certify
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import COLUMNS, ROWS, Configuration
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.scenes import REST, SENSOR_WIDTH_MM, Press, photograph, render
-from tactile_depth.tactile_depth import tactile_depth
+from tactile_depth.base import files
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import COLUMNS, ROWS, Configuration
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.chip.tactile_depth import tactile_depth
+from tactile_depth.depth import reference
+from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.scenes import REST, SENSOR_WIDTH_MM, Press, photograph, render
 
 RESULTS = ("extremes.json",)
 CALIBRATION = "synthetic"

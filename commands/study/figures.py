@@ -19,16 +19,16 @@ import numpy as np
 from commands.common import published, recorded, run_request, variables
 from commands.common.markdown import compact
 from commands.common.repository import ROOT
+from commands.cost.cost import CAMERAS, cost
 from commands.hardware import estimate, lut_runs, memory_model, synth
 from commands.hardware.targets import DEFAULT_TARGET, TARGETS
 from commands.run import sim
 from commands.run.sim_table import coefficient_words
 from commands.study import baselines, budget, trade_front
-from tactile_depth.accuracy import errors
-from tactile_depth.configuration import Configuration, most_lanes
-from tactile_depth.cost import CAMERAS, cost
-from tactile_depth.frames import load_frames, on_grid
-from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
+from commands.study.accuracy import errors
+from tactile_depth.chip.configuration import Configuration, most_lanes
+from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
+from tactile_depth.pictures.frames import load_frames, on_grid
 
 PAGES = [ROOT / "docs" / f"{name}.md" for name in ("results", "hardware", "software", "error-budget")]
 TABLE = re.compile(r"(<!-- figures: ([^\n]+) -->\n).*?(\n<!-- end of figures -->)", re.DOTALL)

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from commands.study.drawn_light import DrawnLight
-from tactile_depth.configuration import Configuration
-from tactile_depth.contact.contact_events import WORD_BITS, ContactEvents, Settings
-from tactile_depth.gradient.flat_field import ratios
-from tactile_depth.gradient.light_gains import Light, LightFilter
-from tactile_depth.registers.event_registers import COUNTERS, EVENT_COUNTERS, SATURATIONS, EventRegisters
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import slope_tables
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.contact.contact_events import WORD_BITS, ContactEvents, Settings
+from tactile_depth.chip.gradient.flat_field import ratios
+from tactile_depth.chip.gradient.light_gains import Light, LightFilter
+from tactile_depth.chip.registers.event_registers import COUNTERS, EVENT_COUNTERS, SATURATIONS, EventRegisters
+from tactile_depth.chip.tactile_depth import slope_tables
+from tactile_depth.sensor.sensor import Sensor
 
 FRAMES = 10_000_000
 PICTURES = 4  # that repeat, each with its own noise of the camera

@@ -21,13 +21,13 @@ from commands.common import markdown, variables
 from commands.common import simulator as simulation
 from commands.run import bench
 from commands.run.calibrate import data_folder
-from tactile_depth import files
-from tactile_depth.calibration_file import PIXEL_PITCHES_MM
-from tactile_depth.configuration import LIGHT_GAIN
-from tactile_depth.fitting import DRAWN_OUT, errors_by_number, fit_presses
-from tactile_depth.frames import read_picture
-from tactile_depth.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
-from tactile_depth.registers.axil_registers import GAINS
+from tactile_depth.base import files
+from tactile_depth.calibrate.fitting import DRAWN_OUT, errors_by_number, fit_presses
+from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
+from tactile_depth.chip.configuration import LIGHT_GAIN
+from tactile_depth.chip.registers.axil_registers import GAINS
+from tactile_depth.pictures.frames import read_picture
+from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
 
 VARIABLES = ("PRESSES", "PITCH", "SIM", "RTL")
 NUMBERS = (8, 12, 18, 24, 36)  # presses of a fit

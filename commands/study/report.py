@@ -25,13 +25,14 @@ from commands.common.repository import ROOT
 from commands.hardware import asic, synth
 from commands.run import reflex, reflex_tables, sim
 from commands.study import baselines, budget, extremes, sweep, trade, trade_front, transform_noise
+from commands.study.accuracy import WORST
 from commands.study.rows import Row
-from tactile_depth import files, reference
-from tactile_depth.accuracy import WORST
-from tactile_depth.built_in import synthetic
-from tactile_depth.configuration import COLUMNS, Configuration
-from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
-from tactile_depth.scenes import BENCH, SENSOR_WIDTH_MM, render
+from tactile_depth.base import files
+from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth
+from tactile_depth.depth import reference
+from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.scenes import BENCH, SENSOR_WIDTH_MM, render
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt

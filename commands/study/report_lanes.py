@@ -17,7 +17,7 @@ from commands.common.repository import ROOT
 from commands.study import sweep
 from commands.study.report_page import Figure, picture, results, table
 from commands.study.rows import Row
-from tactile_depth.configuration import Configuration
+from tactile_depth.chip.configuration import Configuration
 
 HEAD = (
     *("grid", "lanes", "last pixel to first depth, cycles", "last pixel to last depth, cycles"),

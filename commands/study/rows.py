@@ -17,8 +17,8 @@ from typing import Any, BinaryIO
 
 from tqdm import tqdm
 
-from tactile_depth import files
-from tactile_depth.errors import InputError
+from tactile_depth.base import files
+from tactile_depth.base.errors import InputError
 
 Key = tuple[str, ...]
 Row = dict[str, str]

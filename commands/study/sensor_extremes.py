@@ -20,14 +20,14 @@ from commands.run import sim, sim_table
 from commands.run.flags import flags
 from commands.study import long_state
 from commands.study.drawn_light import DrawnLight, Height, exact
-from tactile_depth import files
-from tactile_depth.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WIDTHS, Configuration
-from tactile_depth.errors import InputError, InputWarning
-from tactile_depth.frames import Frames, camera_scale
-from tactile_depth.pipeline import Pipeline
-from tactile_depth.presets import CHIP
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.sensor import Sensor
+from tactile_depth.base import files
+from tactile_depth.base.errors import InputError, InputWarning
+from tactile_depth.chip.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WIDTHS, Configuration
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.depth.pipeline import Pipeline
+from tactile_depth.pictures.frames import Frames, camera_scale
+from tactile_depth.sensor.presets import CHIP
+from tactile_depth.sensor.sensor import Sensor
 
 RESULTS = ("extremes.json",)
 CHOSEN = {run_request.WORDS[name]: f"{value:g}" for name, value in CHIP.words.items()}

@@ -21,11 +21,12 @@ import joblib
 from commands.common import published, variables
 from commands.common.markdown import table
 from commands.common.repository import ROOT
+from commands.study import accuracy
+from commands.study.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
 from commands.study.rows import Row, Table, Wanted
-from tactile_depth import accuracy, files
-from tactile_depth.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
-from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration, most_lanes
-from tactile_depth.errors import InputError
+from tactile_depth.base import files
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration, most_lanes
 
 DEFAULT_OUT = ROOT / "build" / "sweep"
 GRIDS = (32, 64, 128, 256, 512)

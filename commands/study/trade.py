@@ -30,31 +30,31 @@ from commands.common import recorded, run_request, variables
 from commands.common import simulator as simulation
 from commands.common.repository import ROOT
 from commands.common.zero_offset import untouched, zero_of
+from commands.cost.cost import ECP5, cost
 from commands.run import sim
 from commands.run.calibrate import data_folder
+from commands.study.accuracy import VERSION
 from commands.study.presses import Measured, measured
 from commands.study.rows import Row, Table, Wanted
 from commands.study.trade_front import draw, front_of, summary, write_beaten
-from tactile_depth import files
-from tactile_depth.accuracy import VERSION
-from tactile_depth.ball_press import BallPress
-from tactile_depth.calibration_file import PIXEL_PITCHES_MM
-from tactile_depth.camera_configuration import CameraChoice
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration, most_lanes
-from tactile_depth.contact import threshold_comparator
-from tactile_depth.contact.contact_events import Settings
-from tactile_depth.cores import fastest
-from tactile_depth.cost import ECP5, cost
-from tactile_depth.errors import InputError
-from tactile_depth.fitting import fit_folds
-from tactile_depth.frames import Frames, load_frames, on_grid, read_picture
-from tactile_depth.latency import last_pixel_to_first_depth
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
-from tactile_depth.result import Recorder
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import light_of, slope_codes, slope_tables, solve, zeroed
+from tactile_depth.base import files
+from tactile_depth.base.errors import InputError
+from tactile_depth.calibrate.ball_press import BallPress
+from tactile_depth.calibrate.fitting import fit_folds
+from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
+from tactile_depth.chip.camera_configuration import CameraChoice
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration, most_lanes
+from tactile_depth.chip.contact import threshold_comparator
+from tactile_depth.chip.contact.contact_events import Settings
+from tactile_depth.chip.latency import last_pixel_to_first_depth
+from tactile_depth.chip.poisson.cores import fastest
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.tactile_depth import light_of, slope_codes, slope_tables, solve, zeroed
+from tactile_depth.depth.result import Recorder
+from tactile_depth.pictures.frames import Frames, load_frames, on_grid, read_picture
+from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
+from tactile_depth.sensor.sensor import Sensor
 
 VARIABLES = ("PRESSES", "PITCH", "OUT", "RTL", "SEED", "SIM")
 DEFAULT_OUT = ROOT / "build" / "trade"

@@ -20,7 +20,7 @@ from commands.common.markdown import table
 from commands.common.published import CLOCK_MHZ
 from commands.hardware.targets import TARGETS
 from commands.study.rows import Row
-from tactile_depth import files
+from tactile_depth.base import files
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt

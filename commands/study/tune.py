@@ -23,19 +23,19 @@ from tqdm import tqdm
 from commands.common import published, repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.common.zero_offset import untouched, zero_of
+from commands.cost.cost import Cost
 from commands.hardware.targets import TARGETS
 from commands.run import sim
+from commands.study.accuracy import SMALLEST_PEAK_PX, depth_px, errors
 from commands.study.tune_search import ALL_FRAMES, Judgement, Limits, Search, Widths
-from tactile_depth import files
-from tactile_depth.accuracy import SMALLEST_PEAK_PX, depth_px, errors
-from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration, most_lanes
-from tactile_depth.cost import Cost
-from tactile_depth.errors import InputError
-from tactile_depth.frames import Frames, load_frames, on_grid
-from tactile_depth.latency import last_pixel_to_last_depth
-from tactile_depth.scenes import AS_EVER
-from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import light_of, slope_tables
+from tactile_depth.base import files
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration, most_lanes
+from tactile_depth.chip.latency import last_pixel_to_last_depth
+from tactile_depth.chip.tactile_depth import light_of, slope_tables
+from tactile_depth.pictures.frames import Frames, load_frames, on_grid
+from tactile_depth.sensor.scenes import AS_EVER
+from tactile_depth.sensor.sensor import Sensor
 
 # In the order of `Limits`.
 NUMBERS = ("TOLERANCE", "MAX_LATENCY_US", "MAX_MAP_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_LUT", "MAX_MEMORY_KBIT")

@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import fmean
 
+from commands.cost.cost import Cost, cost
+from commands.cost.devices import Device
 from commands.hardware.targets import DEFAULT_TARGET, TARGETS, Target
-from tactile_depth.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WIDTHS, Configuration
-from tactile_depth.cost import Cost, cost
-from tactile_depth.devices import Device
+from tactile_depth.chip.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WIDTHS, Configuration
 
 
 @dataclass(frozen=True)

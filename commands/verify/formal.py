@@ -23,10 +23,10 @@ from commands.common.repository import ROOT, chosen, cores, sources, stated, tes
 from commands.hardware.yosys import in_wheel
 from commands.verify import items, sign_off
 from formal.entries import Cone, Proof
-from tactile_depth.built_in import synthetic
-from tactile_depth.configuration import Configuration
-from tactile_depth.errors import InputError
-from tactile_depth.tactile_depth import hdl_parameters, write_roms
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
+from tactile_depth.sensor.built_in import synthetic
 
 BENCHES = ROOT / "formal"
 ITEMS = "formal/test_proofs.py::test_proof"

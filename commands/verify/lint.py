@@ -24,13 +24,20 @@ from commands.common import simulator as simulation
 from commands.hardware import fpga
 from commands.hardware import yosys as yosys_runner
 from commands.verify import items
-from tactile_depth.built_in import load
-from tactile_depth.camera.register_lists import pins, write_list
-from tactile_depth.configuration import COLUMNS, POLYNOMIAL, Configuration
-from tactile_depth.depth.zero_offset import no_zero
-from tactile_depth.gradient.flat_field import unit_gains
-from tactile_depth.rom_files import write_gains, write_nodes, write_polynomials, write_solver, write_words, write_zero
-from tactile_depth.tactile_depth import default_parameters, hdl_parameters, write_roms
+from tactile_depth.chip.camera.register_lists import pins, write_list
+from tactile_depth.chip.configuration import COLUMNS, POLYNOMIAL, Configuration
+from tactile_depth.chip.depth.zero_offset import no_zero
+from tactile_depth.chip.gradient.flat_field import unit_gains
+from tactile_depth.chip.rom_files import (
+    write_gains,
+    write_nodes,
+    write_polynomials,
+    write_solver,
+    write_words,
+    write_zero,
+)
+from tactile_depth.chip.tactile_depth import default_parameters, hdl_parameters, write_roms
+from tactile_depth.sensor.built_in import load
 from tb.settings import RunSettings
 
 GRIDS = (16, 128, 512)

@@ -27,7 +27,7 @@ from commands.common import repository, variables
 from commands.common.progress import following
 from commands.verify import equivalence, mutants, sign_off
 from commands.verify.equivalence import EQUIVALENT, settle
-from tactile_depth.configuration import Configuration
+from tactile_depth.chip.configuration import Configuration
 
 OUT = repository.ROOT / "build" / "mutate"
 CORE_BAR, TOTAL_BAR = 95.0, 97.0  # per cent of the mutants that are not equivalent: each core, all cores together

@@ -14,7 +14,7 @@ from pathlib import Path
 from commands.common import repository, variables
 from commands.common.repository import ROOT, git
 from commands.verify.test import all_succeed, pytest, settings, tests_of
-from tactile_depth.errors import InputError
+from tactile_depth.base.errors import InputError
 
 UPSTREAM = "origin/main"
 WHOLE = ("sim", "N=64", "SOLVER=tridiagonal")

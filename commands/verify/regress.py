@@ -20,7 +20,7 @@ import numpy as np
 
 from commands.common import markdown, repository, variables
 from commands.verify import items
-from tactile_depth.errors import InputError
+from tactile_depth.base.errors import InputError
 from tb.settings import RunSettings
 
 POWER_UPS = 100

@@ -10,9 +10,9 @@ from typing import Any
 
 from commands.common import markdown, repository, variables
 from commands.common import simulator as simulation
-from tactile_depth.built_in import synthetic
-from tactile_depth.configuration import Configuration
-from tactile_depth.tactile_depth import hdl_parameters, write_roms
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
+from tactile_depth.sensor.built_in import synthetic
 from tb.settings import RunSettings
 
 CASES: dict[str, dict[str, Any]] = {

@@ -14,12 +14,12 @@ from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles
 from cocotbext.axi import AxiLiteBus, AxiLiteMaster, AxiStreamBus, AxiStreamFrame, AxiStreamSink, AxiStreamSource
 
-from tactile_depth.built_in import synthetic
-from tactile_depth.configuration import Configuration
-from tactile_depth.gradient.gradient_lookup import gradient_codes
-from tactile_depth.registers.register_map import REGISTERS, TABLES
-from tactile_depth.scenes import render
-from tactile_depth.tactile_depth import Tables, tactile_depth
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.gradient_lookup import gradient_codes
+from tactile_depth.chip.registers.register_map import REGISTERS, TABLES
+from tactile_depth.chip.tactile_depth import Tables, tactile_depth
+from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.scenes import render
 
 
 async def write(master: AxiLiteMaster, register: str, value: int) -> None:

@@ -6,7 +6,7 @@
 module fv_td_divide #(
   parameter int DivisorWidth  = 3,
   parameter int QuotientWidth = 4,
-  parameter int Latency       = 5,  // models/tactile_depth/common/td_divide.py
+  parameter int Latency       = 5,  // models/tactile_depth/chip/common/td_divide.py
   localparam int NumeratorWidth = DivisorWidth + QuotientWidth
 ) (
   input logic                      clk,

@@ -6,7 +6,7 @@
 module fv_beat_peak #(
   parameter int Width   = 2,
   parameter int Lanes   = 4,
-  parameter int Latency = 2,  // models/tactile_depth/contact/beat_peak.py
+  parameter int Latency = 2,  // models/tactile_depth/chip/contact/beat_peak.py
   localparam int OffsetWidth = $clog2(Lanes)
 ) (
   input logic                   clk,

@@ -6,7 +6,7 @@
 module fv_beat_sums #(
   parameter int Width   = 2,
   parameter int Lanes   = 4,
-  parameter int Latency = 2,  // models/tactile_depth/contact/beat_sums.py
+  parameter int Latency = 2,  // models/tactile_depth/chip/contact/beat_sums.py
   localparam int OffsetWidth = $clog2(Lanes),
   localparam int WeightWidth = Width + OffsetWidth,
   localparam int MomentWidth = WeightWidth + OffsetWidth

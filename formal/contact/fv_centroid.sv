@@ -7,7 +7,7 @@
 module fv_centroid #(
   parameter int PositionWidth = 2,
   parameter int WeightWidth   = 3,
-  parameter int Latency       = 16,  // models/tactile_depth/contact/centroid.py
+  parameter int Latency       = 16,  // models/tactile_depth/chip/contact/centroid.py
   localparam int MomentWidth = WeightWidth + PositionWidth,
   localparam int MeanWidth = PositionWidth + 4
 ) (

@@ -13,7 +13,7 @@ module fv_contact_events
   parameter int Width   = 2,
   parameter int Rows    = 4,
   parameter int Columns = 8,
-  parameter int Latency = 28  // models/tactile_depth/contact/contact_events.py
+  parameter int Latency = 28  // models/tactile_depth/chip/contact/contact_events.py
 ) (
   input logic                    clk,
   input logic                    rst,

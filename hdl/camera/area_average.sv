@@ -13,7 +13,7 @@
 // first of a frame, out_last with the last of a row. in_abort, in a cycle without a pixel, ends a frame that is not
 // whole: one more word leaves, the first of a frame if none did, and its out_last is inverted, so that frame_guard
 // drops the frame. Latency: 18 cycles with en, from the pixel that completes a block, and from in_abort. en low:
-// nothing moves. Bit-accurate model: models/tactile_depth/camera/area_average.py.
+// nothing moves. Bit-accurate model: models/tactile_depth/chip/camera/area_average.py.
 
 `default_nettype none
 

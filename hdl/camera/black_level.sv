@@ -7,7 +7,7 @@
 // lies so far within Bits + 2 bits that no difference leaves them, and nothing is clipped before the average. Stream
 // in, stream out: the pixels of the window with their marks. out_gains belong to the pixel on out_samples. Latency: 1
 // cycle with en, in_abort too; en low: nothing moves.
-// Bit-accurate model: models/tactile_depth/camera/black_level.py.
+// Bit-accurate model: models/tactile_depth/chip/camera/black_level.py.
 
 `default_nettype none
 

@@ -7,7 +7,7 @@
 // Stream in: sums of a block's columns, in the order of the raster, and the marks of the pixels: in_row_start with the
 // first of a row, and in_frame_start if no row is before it. Stream out: a word for each block that is complete.
 // Memory: a line of totals. Latency: 3 cycles with en; en low: nothing moves.
-// Bit-accurate model: models/tactile_depth/camera/block_totals.py.
+// Bit-accurate model: models/tactile_depth/chip/camera/block_totals.py.
 
 `default_nettype none
 

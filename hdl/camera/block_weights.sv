@@ -5,7 +5,7 @@
 // is Denominator long and a block Numerator. `weight` is the part of the present pixel in the present block. When
 // `block_ends`, the pixel is the last of the block, and its other part, Denominator - weight, is in the next block.
 // `step` takes the present pixel; with `restart` it is the first of the axis. The outputs are combinational and belong
-// to the present pixel. en low: nothing moves. Bit-accurate model: models/tactile_depth/camera/block_weights.py.
+// to the present pixel. en low: nothing moves. Bit-accurate model: models/tactile_depth/chip/camera/block_weights.py.
 
 `default_nettype none
 

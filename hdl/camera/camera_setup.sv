@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // camera_setup: writes registers into a camera over SCCB, reads each back, and drives the camera's other pins.
 //
-// camera.hex has the list, an entry in a word {kind[1:0], address[15:0], data[7:0]}, by models/tactile_depth/camera/
+// camera.hex has the list, an entry in a word {kind[1:0], address[15:0], data[7:0]}, by models/tactile_depth/chip/camera/
 // register_lists.py:
 //   0  write the register `address`, read it back, compare      2  read, and compare with data: the product ID
 //   1  write it; it does not read back what was written         3  {power_down, reset_n} = address[1:0], then data ms
@@ -10,7 +10,7 @@
 //
 // SCCB: start, bytes of eight bits and a ninth that nobody looks at, stop; a bit takes 4 QuarterClocks. A read is two
 // transmissions, one that puts the address and one that reads. sio_d is pulled low or released, never driven high.
-// Model: models/tactile_depth/camera/camera_setup.py.
+// Model: models/tactile_depth/chip/camera/camera_setup.py.
 
 `default_nettype none
 

@@ -4,7 +4,7 @@
 //   s_axis -> camera_front_end -> m_axis        register_command, register_answer <-> camera_registers
 //
 // Stream in: AXI4-Stream Video in the camera's format. Stream out: that which tactile_depth takes. Latency:
-// camera_front_end.sv. Parameters: models/tactile_depth/camera/camera_unit.py.
+// camera_front_end.sv. Parameters: models/tactile_depth/chip/camera/camera_unit.py.
 
 `default_nettype none
 

@@ -11,7 +11,7 @@
 // number of frames given up, for one clock, as the next frame arrives; 255 stands for more.
 //
 // After a reset nothing leaves until a frame begins. The side of pclk has no reset, since pclk may stand still in it:
-// it begins with initial values. Model: models/tactile_depth/camera/dvp_receive.py.
+// it begins with initial values. Model: models/tactile_depth/chip/camera/dvp_receive.py.
 
 `default_nettype none
 

@@ -13,7 +13,7 @@
 // Stream in: the pixels of a picture in raster order, in_inside with those of the window. Stream out: those of the
 // window, with their marks and colour (bit 0 a column of blue, bit 1 a row of blue). in_abort passes behind them.
 // Latency: 1 cycle with en. YUYV: 3 and 4 from the second pixel of a pair, in_abort 4. en low: nothing moves.
-// Bit-accurate model: models/tactile_depth/camera/pixel_format.py.
+// Bit-accurate model: models/tactile_depth/chip/camera/pixel_format.py.
 
 `default_nettype none
 

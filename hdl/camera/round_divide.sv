@@ -6,7 +6,7 @@
 // Restoring division of total / 2^Drop in a pipeline, one bit of the quotient a stage. The bits below 2^Drop decide in
 // the rounding alone: their highest adds half to the remainder, the others tell whether anything is above a tie.
 // `weight` is not 0. Latency: 10 cycles with en; en low: nothing moves.
-// Bit-accurate model: models/tactile_depth/camera/round_divide.py.
+// Bit-accurate model: models/tactile_depth/chip/camera/round_divide.py.
 
 `default_nettype none
 

@@ -7,7 +7,7 @@
 // those of blue, and red_columns is sum w of the columns of red.
 // Stream in: the pixels of a row, in_row_start with the first; gaps anywhere. Stream out: a word with the last pixel of
 // each block. Latency: 3 cycles with en; en low: nothing moves.
-// Bit-accurate model: models/tactile_depth/camera/row_sums.py.
+// Bit-accurate model: models/tactile_depth/chip/camera/row_sums.py.
 
 `default_nettype none
 

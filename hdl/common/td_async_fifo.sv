@@ -11,7 +11,7 @@
 // comes from; `make fpga` reports the routed delay. The words are registers: each was written before its count came.
 //
 // There is no reset, since one of the clocks may stand still in it: the registers begin with initial values. Model:
-// models/tactile_depth/common/td_async_fifo.py.
+// models/tactile_depth/chip/common/td_async_fifo.py.
 
 `default_nettype none
 

@@ -3,7 +3,7 @@
 //
 // Stream in, stream out: the same words in the same order. Latency: 1 cycle, one word a cycle sustained. Every output,
 // s_ready too, comes from a register: no combinational path crosses it. It never waits for s_valid to raise s_ready.
-// Cycle-accurate model: models/tactile_depth/common/td_axis_skid.py, a queue.
+// Cycle-accurate model: models/tactile_depth/chip/common/td_axis_skid.py, a queue.
 
 `default_nettype none
 

@@ -8,7 +8,7 @@
 // Latency: read_word is valid from 1 cycle after a read with en to the end of the next cycle with en. free_word is
 // valid 1 cycle after a free_read outside a reset, in that cycle alone; after a read in the cycle of a change it is of
 // the bank that was left. File gives both banks at power-up. Bit-accurate model:
-// models/tactile_depth/common/td_banked_table.py.
+// models/tactile_depth/chip/common/td_banked_table.py.
 
 `default_nettype none
 

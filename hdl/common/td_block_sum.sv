@@ -9,7 +9,7 @@
 // Stream in: words of whole frames, raster order, the channels side by side; gaps change no sum. in_first_frame and
 // in_last_frame count with in_frame_start. Latency: the memory is written 5 cycles after the last word of a block's
 // row; write_complete: with it the sum holds the whole block of a last frame. The memory answers 1 cycle after read_en.
-// Bit-accurate model: models/tactile_depth/common/td_block_sum.py.
+// Bit-accurate model: models/tactile_depth/chip/common/td_block_sum.py.
 
 `default_nettype none
 

@@ -3,7 +3,7 @@
 //
 // A burst is Words words in successive enabled cycles; start comes with the first. position and active are
 // combinational with start; bursts may follow each other without a pause. A start inside a burst begins again at 0.
-// Bit-accurate model: models/tactile_depth/common/td_burst_counter.py.
+// Bit-accurate model: models/tactile_depth/chip/common/td_burst_counter.py.
 
 `default_nettype none
 

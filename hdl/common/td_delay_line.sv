@@ -2,7 +2,7 @@
 // td_delay_line: out is in, Delay enabled cycles later.
 //
 // Time moves with en alone, not with the data: what is inside drains by itself. Short lines are registers, long ones a
-// memory whose pointer runs round. Bit-accurate model: models/tactile_depth/common/td_delay_line.py.
+// memory whose pointer runs round. Bit-accurate model: models/tactile_depth/chip/common/td_delay_line.py.
 
 `default_nettype none
 

@@ -2,7 +2,7 @@
 // td_dot_product: a0 b0 + a1 b1, exact. Latency: 4 cycles.
 //
 // Registered and staggered as two cascaded DSP48E2 take it: operands, product (multiply), sum. No reset on the way.
-// Bit-accurate model: models/tactile_depth/common/td_dot_product.py.
+// Bit-accurate model: models/tactile_depth/chip/common/td_dot_product.py.
 
 `default_nettype none
 

@@ -5,7 +5,7 @@
 // these.
 // The product register has no reset and one enable, as a DSP block asks; operands may come from a register, a memory or
 // logic, and either may be the wider one.
-// Bit-accurate model: models/tactile_depth/common/td_multiply.py.
+// Bit-accurate model: models/tactile_depth/chip/common/td_multiply.py.
 
 `default_nettype none
 

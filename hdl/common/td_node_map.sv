@@ -11,7 +11,7 @@
 // of Side = max(1, Lanes / b) neighbouring nodes at once and reads them 1 cycle later; what the bus reads meanwhile is
 // left open. File <Name>_f.hex, f = Channels (column modulo Side) + channel, gives both banks at power-up; a memory
 // without contents must be written before the first frame. Bit-accurate model:
-// models/tactile_depth/common/td_node_map.py.
+// models/tactile_depth/chip/common/td_node_map.py.
 
 `default_nettype none
 

@@ -3,7 +3,7 @@
 //
 // The one place to put a memory macro. A core must not read a word in the cycle that writes it: what such a read
 // returns is undefined. A File (one line per word, $readmemh) gives the contents at power-up.
-// Bit-accurate model: models/tactile_depth/common/td_ram.py.
+// Bit-accurate model: models/tactile_depth/chip/common/td_ram.py.
 
 `default_nettype none
 

@@ -5,7 +5,7 @@
 //
 // A binary tree with a register in each level: the branches of a node are its word, and the word half its span later.
 // So it takes Count - 1 adders, whatever step is. Latency: log2(Count) cycles with en; with one word 0.
-// Bit-accurate model: models/tactile_depth/common/td_ramp.py.
+// Bit-accurate model: models/tactile_depth/chip/common/td_ramp.py.
 
 `default_nettype none
 

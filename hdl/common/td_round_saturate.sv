@@ -4,7 +4,7 @@
 //   out = sat_OutWidth( round( in / 2^Drop ) )          Drop <= 0: shift left, exact
 //
 // Rounding can carry out of the top bit (0111.1 -> 1000), so the sum keeps a guard bit and the saturation works on
-// that. Bit-accurate model: models/tactile_depth/common/td_round_saturate.py.
+// that. Bit-accurate model: models/tactile_depth/chip/common/td_round_saturate.py.
 
 `default_nettype none
 

@@ -6,7 +6,7 @@
 // of which the lowest bits of the index name one; a number past the last reads 0. That entry stands on table_answer
 // from 3 cycles after the read on the bus until the next read of this table, in each cycle behind one in which the bus
 // names the table; otherwise table_answer is 0, so that answers are combined by OR. A reset withdraws an access that
-// has not reached the table. Cycle-accurate model: models/tactile_depth/common/td_table_port.py.
+// has not reached the table. Cycle-accurate model: models/tactile_depth/chip/common/td_table_port.py.
 
 `default_nettype none
 

@@ -3,7 +3,7 @@
 //
 // The depths of a beat are neighbours in a row; an offset is the position of a depth in it, from 0. Stream in: a beat
 // in every cycle. Stream out: its peak, Latency = log2(Lanes) cycles later, by a tree with a register in each level.
-// Where nothing is above, the peak has no meaning. Bit-accurate model: models/tactile_depth/contact/beat_peak.py.
+// Where nothing is above, the peak has no meaning. Bit-accurate model: models/tactile_depth/chip/contact/beat_peak.py.
 
 `default_nettype none
 

@@ -5,7 +5,7 @@
 // it is above the threshold. A moment counts offsets from the last depth. Stream in: a beat in every cycle. Stream out:
 // its sums, Latency = log2(Lanes) cycles later, by a tree with a register in each level. Where nothing is above, count,
 // weight and moment are 0, and the limits have no meaning.
-// Bit-accurate model: models/tactile_depth/contact/beat_sums.py.
+// Bit-accurate model: models/tactile_depth/chip/contact/beat_sums.py.
 
 `default_nettype none
 

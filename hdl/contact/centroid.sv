@@ -8,7 +8,7 @@
 // No position has more than PositionWidth bits, so a moment is less than weight 2^PositionWidth; a weight of 0 gives no
 // meaning to the result.
 // Latency: 2 PositionWidth + 12 cycles from `start` to `done`; column and row are valid in that cycle alone.
-// Bit-accurate model: models/tactile_depth/contact/centroid.py.
+// Bit-accurate model: models/tactile_depth/chip/contact/centroid.py.
 
 `default_nettype none
 

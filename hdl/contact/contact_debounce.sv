@@ -6,7 +6,7 @@
 //
 // Settings are those of the frame whose area is valid. A minimum_area of 0 makes every frame one that touches.
 // Latency: touching_next follows area in the same cycle; touching, began and ended 1 cycle later. Bit-accurate model:
-// models/tactile_depth/contact/contact_debounce.py.
+// models/tactile_depth/chip/contact/contact_debounce.py.
 
 `default_nettype none
 

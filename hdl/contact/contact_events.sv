@@ -14,7 +14,7 @@
 // begins afresh. Settings and in_time are taken with a frame's first beat. From the last beat of a frame to that of the
 // next lie at least Latency cycles. Stream out: the record of each frame, docs/registers.md, as a packet. Latency: the
 // record is in its register, until the next, Latency = 2 log2(larger side) + 2 log2(Lanes) + 22 cycles after the last
-// beat, touching 3 cycles after it. Bit-accurate model: models/tactile_depth/contact/contact_events.py.
+// beat, touching 3 cycles after it. Bit-accurate model: models/tactile_depth/chip/contact/contact_events.py.
 
 `default_nettype none
 

@@ -8,7 +8,7 @@
 // with each beat. `touching` is read in the cycle of count_valid at the earliest, so it may be decided in that cycle
 // from `count`. Latency: count_valid comes 2 cycles after the last beat of a frame, peak_valid 3 + log2(Lanes); `count`
 // and the peak are those of the frame in that cycle alone. Gaps change nothing.
-// Bit-accurate model: models/tactile_depth/contact/contact_peak.py.
+// Bit-accurate model: models/tactile_depth/chip/contact/contact_peak.py.
 
 `default_nettype none
 

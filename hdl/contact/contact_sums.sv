@@ -9,7 +9,7 @@
 // lowest bits. The last row is the last to come. A frame that begins inside another begins afresh. The threshold is
 // taken with a frame's first beat. Latency: sums_valid comes 2 + log2(Lanes) cycles after the last beat of a frame;
 // `sums` are those of the frame in that cycle alone. Gaps change nothing.
-// Bit-accurate model: models/tactile_depth/contact/contact_sums.py.
+// Bit-accurate model: models/tactile_depth/chip/contact/contact_sums.py.
 
 `default_nettype none
 

@@ -8,7 +8,7 @@
 // Stream in: depth codes of whole frames under `en`, Lanes neighbours in a beat; this unit makes `en`, low while the
 // output is full. Streams out: AXI4-Stream, each depth sign-extended to whole bytes, the first in the lowest bits; a
 // packet of words for each frame. Latency: 1 cycle to m_axis, 2 to contact.
-// Models: models/tactile_depth/contact/depth_gate.py, models/tactile_depth/contact/.
+// Models: models/tactile_depth/chip/contact/depth_gate.py, models/tactile_depth/chip/contact/.
 
 `default_nettype none
 

@@ -11,7 +11,7 @@
 // `tap_` is the stream for the comparator and contact_events: each word once, in order; with 0 in the cycle in which it
 // leaves, with 1 a cycle after it came, given up or not. When 0 turns to 1, words that wait for the sink are tapped
 // first, one a cycle: for that alone en is low with 1, for one cycle. Cycle-accurate model:
-// models/tactile_depth/contact/depth_gate.py.
+// models/tactile_depth/chip/contact/depth_gate.py.
 
 `default_nettype none
 

@@ -4,7 +4,7 @@
 // Stream out: packets of Words words under valid and ready, word 0 first, tlast with the last. A record that finds the
 // one before still waiting for its turn replaces it, and record_lost is high for one cycle; a packet that has begun is
 // finished. Latency: the record is in its register 1 cycle after new_valid, its packet begins 1 cycle later.
-// Cycle-accurate model: models/tactile_depth/contact/record_packets.py.
+// Cycle-accurate model: models/tactile_depth/chip/contact/record_packets.py.
 
 `default_nettype none
 

@@ -7,7 +7,7 @@
 //
 // Stream in: depth codes as they leave (valid and ready together), Lanes of them in a beat; it never stalls them. A
 // threshold written inside a frame counts from the next one on. Latency: 1 cycle. Bit-accurate model:
-// models/tactile_depth/contact/threshold_comparator.py.
+// models/tactile_depth/chip/contact/threshold_comparator.py.
 
 `default_nettype none
 

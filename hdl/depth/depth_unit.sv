@@ -8,7 +8,7 @@
 // In brackets: with ZeroOffset. A tag waits for each frame that is in the solver: whether the frame was malformed,
 // its bank of the zero offset, and its time. A malformed frame does not leave. Stream in: bursts of the solver, Lanes
 // depth codes in a beat. Stream out: those of whole frames under `en`, in the same order. Latency: 0 cycles; with
-// ZeroOffset that of zero_offset. Models: models/tactile_depth/depth/.
+// ZeroOffset that of zero_offset. Models: models/tactile_depth/chip/depth/.
 
 `default_nettype none
 

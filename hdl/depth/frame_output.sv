@@ -4,7 +4,7 @@
 // Stream in: bursts of Columns words, Rows of them a frame, one after another. in_due: now a frame's first word is due;
 // in_bad belongs to that frame. Stream out: the words of good frames, each with its position. Positions count from
 // in_due, so a frame has its form whatever comes in; where bursts and frames do not begin as they should, out_of_step
-// is high. Latency: 0 cycles. Bit-accurate model: models/tactile_depth/depth/frame_output.py.
+// is high. Latency: 0 cycles. Bit-accurate model: models/tactile_depth/chip/depth/frame_output.py.
 
 `default_nettype none
 

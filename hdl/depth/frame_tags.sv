@@ -4,7 +4,7 @@
 // A tag is pushed with the last pixel of a frame. Latency enabled cycles later `due` is high for one enabled cycle,
 // with the tag on due_tag. No order is kept: each slot compares the time with its own, so an upset costs the frame it
 // hits and no other. Pushes lie at least Pixels enabled cycles apart, so there are never more tags than slots.
-// Cycle-accurate model: models/tactile_depth/depth/frame_tags.py.
+// Cycle-accurate model: models/tactile_depth/chip/depth/frame_tags.py.
 
 `default_nettype none
 

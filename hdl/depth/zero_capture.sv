@@ -11,7 +11,7 @@
 // offset. Lanes depths of a beat, or those of a block, are added up first; with several blocks to a beat the zero
 // offsets of as many neighbouring nodes leave at once. Latency: from the last beat of the last row of blocks to done 7
 // cycles, and one for each level of that sum, log2(min(Lanes, 2^BlockLog2)), en or not; a request counts for beats that
-// come as many cycles earlier. Bit-accurate model: models/tactile_depth/depth/zero_capture.py.
+// come as many cycles earlier. Bit-accurate model: models/tactile_depth/chip/depth/zero_capture.py.
 
 `default_nettype none
 

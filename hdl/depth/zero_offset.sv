@@ -8,7 +8,7 @@
 // depths, whole frames but for a reset. Stream out: the same. Latency: that of td_node_map, and 1 cycle; a gap or en
 // low changes no depth. `active`: a frame is inside. `saturations` counts the clipped depths of a beat. Table port:
 // docs/streams.md; a zero offset is at the index of its node. Bit-accurate model:
-// models/tactile_depth/depth/zero_offset.py.
+// models/tactile_depth/chip/depth/zero_offset.py.
 
 `default_nettype none
 

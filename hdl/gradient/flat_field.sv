@@ -10,7 +10,7 @@
 // one cycle for each. Nothing that a dark pixel would clip counts as saturation.
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0. Stream out: colours relative to the reference.
 // Latency: 13 cycles. Table port: docs/streams.md; a gain is at index 4 node + channel: red 0, green 1, blue 2.
-// Bit-accurate model: models/tactile_depth/gradient/flat_field.py.
+// Bit-accurate model: models/tactile_depth/chip/gradient/flat_field.py.
 
 `default_nettype none
 

@@ -14,7 +14,7 @@
 // comes, if `follow` is high and `in_bad` was not. `write` of a colour replaces its gain by write_gain, and wins; less
 // than 1/2 counts as 1/2.
 // Stream in: colours relative to the reference, raster order. Stream out: deviations, I gain / reference - 1.
-// Latency: 2 cycles; a gap in, a gap out. Bit-accurate model: models/tactile_depth/gradient/light_gains.py.
+// Latency: 2 cycles; a gap in, a gap out. Bit-accurate model: models/tactile_depth/chip/gradient/light_gains.py.
 
 `default_nettype none
 

@@ -10,7 +10,7 @@
 // gain is written, and asks for the change-over. While busy nobody else writes that bank, nor asks for a change-over.
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0, the same that flat_field takes; gaps and en low change no gain.
 // Latency: from the last pixel to done the cycles of all nodes and 2 more, en or not. Bit-accurate model:
-// models/tactile_depth/gradient/reference_capture.py.
+// models/tactile_depth/chip/gradient/reference_capture.py.
 
 `default_nettype none
 

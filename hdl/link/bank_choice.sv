@@ -11,7 +11,7 @@
 // replaces the one that waits. `replaced` is high for one clock for each frame that is lost so. While keep is low no
 // frame becomes ready, the one that waits is given up, and nothing counts as replaced. A bank is free for the writer in
 // the clock of done.
-// Cycle-accurate model: models/tactile_depth/link/bank_choice.py.
+// Cycle-accurate model: models/tactile_depth/chip/link/bank_choice.py.
 
 `default_nettype none
 

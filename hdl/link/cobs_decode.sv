@@ -6,7 +6,7 @@
 // code, so that the last one of a piece does not. Out: a byte for each byte in but the codes without a zero before
 // them; out_end at the delimiter of a piece that is not empty, with out_bad if the last code points beyond the end, a
 // byte was broken, or the piece is longer than Longest. Nothing comes out before the first delimiter after a reset.
-// Latency: 1 cycle. Cycle-accurate model: models/tactile_depth/link/cobs_decode.py.
+// Latency: 1 cycle. Cycle-accurate model: models/tactile_depth/chip/link/cobs_decode.py.
 
 `default_nettype none
 

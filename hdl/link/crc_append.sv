@@ -4,7 +4,7 @@
 // Stream in: bytes of kind and fields under valid and ready, last with the last of a packet; what is offered stays
 // until it is taken. Stream out: the same bytes, then the four of the CRC over them, last with the last of these.
 // Latency: bytes pass without a register; the CRC follows in the cycles behind the last byte, in which none is taken.
-// Model: to_line of models/tactile_depth/link/framing.py, before COBS.
+// Model: to_line of models/tactile_depth/chip/link/framing.py, before COBS.
 
 `default_nettype none
 

@@ -7,7 +7,7 @@
 // number of the last frame that was taken; `sending`: it is not complete yet. A reset gives the frame up; cold_rst,
 // which comes with a reset, clears `sent`, which is 0 at power-up. `resets` does not change inside a frame. A byte
 // takes a clock; 5 more before each value, 8 if it is a mean, and 1 before a word of the record. Models: Depth and
-// Trailer in models/tactile_depth/link/packets.py, to_bytes in models/tactile_depth/link/depth_formats.py.
+// Trailer in models/tactile_depth/chip/link/packets.py, to_bytes in models/tactile_depth/chip/link/depth_formats.py.
 
 `default_nettype none
 

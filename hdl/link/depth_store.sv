@@ -9,7 +9,7 @@
 // value_read with value_address, record_data 1 clock after record_word. value_read is low in the clock of frame_done.
 // A frame that comes whole replaces one that waits. `skipped`: a whole frame is lost so. While keep is low, frames are
 // not kept, and none is counted. Memory: two banks of a frame. Model of the banks:
-// models/tactile_depth/link/bank_choice.py.
+// models/tactile_depth/chip/link/bank_choice.py.
 
 `default_nettype none
 

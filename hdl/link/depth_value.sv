@@ -5,7 +5,7 @@
 //
 // It rounds once, to the nearest, ties to even, and clips to 16 bits, signed. Codes come one in a clock at most,
 // in_first with the first of a value; average and shift do not change inside a value. Latency: 3 clocks from the last
-// code. Model: to_bytes in models/tactile_depth/link/depth_formats.py.
+// code. Model: to_bytes in models/tactile_depth/chip/link/depth_formats.py.
 
 `default_nettype none
 

@@ -9,7 +9,7 @@
 // It stands around tactile_depth: m_axis, m_axil to its s_axis, s_axil; its m_axis, m_event to s_axis, s_event, which
 // are never held back. A line with flow control waits for in_ready; one without it loses a packet that finds no room.
 // `resets` and the number of the last frame survive rst; cold_rst, together with rst, clears them at power-up.
-// Protocol: docs/link.md. Model: models/tactile_depth/link/device.py.
+// Protocol: docs/link.md. Model: models/tactile_depth/chip/link/device.py.
 
 `default_nettype none
 

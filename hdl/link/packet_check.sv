@@ -3,7 +3,7 @@
 //
 // Bytes in, then in_end without a byte. Out: the same bytes but the last 4, each when the fourth behind it has come;
 // then out_end with out_good if the packet was not bad, had 5 bytes or more, and its CRC is right (td_link_pkg).
-// Latency: 1 cycle. Cycle-accurate model: models/tactile_depth/link/packet_check.py.
+// Latency: 1 cycle. Cycle-accurate model: models/tactile_depth/chip/link/packet_check.py.
 
 `default_nettype none
 

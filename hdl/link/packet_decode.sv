@@ -6,7 +6,7 @@
 // behind its last byte. Reads and writes leave at `request`, pictures at `picture`: their bytes but the kind, under
 // valid and ready, in the cycle in which they come in. A packet of one of these kinds with a wrong length or field
 // gives `bad` for one clock, 1 cycle behind the byte that shows it, and nothing else. A packet of another kind is
-// dropped. Model: unpack in models/tactile_depth/link/packets.py.
+// dropped. Model: unpack in models/tactile_depth/chip/link/packets.py.
 
 `default_nettype none
 

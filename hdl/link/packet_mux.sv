@@ -5,7 +5,7 @@
 // record was chosen after the last packet of depth, depth goes before the next record.
 // Streams in, stream out: bytes under valid and ready, last with the last of a packet; what is offered stays until it
 // is taken. Latency: 1 cycle to choose, in which nothing is offered; then bytes pass without a register.
-// Cycle-accurate model: models/tactile_depth/link/packet_mux.py.
+// Cycle-accurate model: models/tactile_depth/chip/link/packet_mux.py.
 
 `default_nettype none
 

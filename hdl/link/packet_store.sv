@@ -7,7 +7,7 @@
 // with the last; out_length and out_length_mod3 are the true length, all through the packet. A byte that is taken with
 // out_drop takes the rest of its packet with it. A bank is free behind the last byte. `bad` is high for one clock for
 // a packet that is bad or lost. Latency: 3 cycles from in_end to the first byte, 1 to `bad`; a byte every 3 cycles.
-// Model: models/tactile_depth/link/packet_store.py.
+// Model: models/tactile_depth/chip/link/packet_store.py.
 
 `default_nettype none
 

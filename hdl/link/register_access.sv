@@ -10,7 +10,7 @@
 // and number of the last one is not done again: the same reply leaves again, unless `forget` was high since the last
 // one began. The next request waits until the reply has left. Latency: an access is offered 2 clocks after its last
 // byte, the first byte of a reply the clock after the answer to the last access. Model: LinkDevice in
-// models/tactile_depth/link/device.py.
+// models/tactile_depth/chip/link/device.py.
 
 `default_nettype none
 

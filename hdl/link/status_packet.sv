@@ -4,7 +4,7 @@
 // A packet out, bytes under valid and ready: kind, version, fields (docs/link.md). The fields are those of the clock in
 // which its first byte is taken. Requests before that clock make one packet; one in that clock, or behind it, makes
 // another. Latency: the first byte is offered the clock after the request, or 2 clocks after a reset. Model: Status in
-// models/tactile_depth/link/packets.py.
+// models/tactile_depth/chip/link/packets.py.
 
 `default_nettype none
 

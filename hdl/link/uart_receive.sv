@@ -3,7 +3,7 @@
 //
 // A byte is there for one clock. A stop bit that is low, as in a break, gives `broken` for a clock in its place, and
 // nothing more until the line is high again. A start bit shorter than half a bit is none. The line may be asynchronous;
-// the rates may differ by 4 %. Bit-accurate model: models/tactile_depth/link/uart.py.
+// the rates may differ by 4 %. Bit-accurate model: models/tactile_depth/chip/link/uart.py.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // uart_transmit: bytes onto a serial line of 8 bits, lowest first, no parity, one stop bit.
 //
-// Bytes in: ready/valid; one is taken when the line is free. Model: models/tactile_depth/link/uart.py.
+// Bytes in: ready/valid; one is taken when the line is free. Model: models/tactile_depth/chip/link/uart.py.
 
 `default_nettype none
 

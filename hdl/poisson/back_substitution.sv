@@ -5,7 +5,7 @@
 //
 // Stream in: bursts of Columns words d, Rows of them a frame, last row first, gaps between bursts anywhere. Stream out:
 // the same bursts of z, Width bits. Latency: 8 cycles; en low: nothing moves. z waits in a memory for the row above.
-// One multiplier. Bit-accurate model: models/tactile_depth/poisson/back_substitution.py.
+// One multiplier. Bit-accurate model: models/tactile_depth/chip/poisson/back_substitution.py.
 
 `default_nettype none
 

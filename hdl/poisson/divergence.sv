@@ -5,7 +5,7 @@
 //
 // The depth map is shifted by half a pixel up and to the left, because slopes are differenced backwards.
 // Stream in: slopes of pixels in raster order. Stream out: the divergence at the same pixels. Latency: 2 cycles; a gap
-// in, a gap out. One line of gy is stored. Bit-accurate model: models/tactile_depth/poisson/divergence.py.
+// in, a gap out. One line of gy is stored. Bit-accurate model: models/tactile_depth/chip/poisson/divergence.py.
 
 `default_nettype none
 

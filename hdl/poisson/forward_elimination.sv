@@ -8,7 +8,7 @@
 // Stream in: bursts of Columns modes, Rows of them a frame, gaps between bursts anywhere. Stream out: the same bursts
 // of d, rounded to the stored word. Latency: 9 cycles. The running row keeps Width bits. One multiplier, with Neumann
 // two more for the mean; between dependent values lie at least Columns cycles, so it pipelines freely. Bit-accurate
-// model: models/tactile_depth/poisson/forward_elimination.py.
+// model: models/tactile_depth/chip/poisson/forward_elimination.py.
 
 `default_nettype none
 

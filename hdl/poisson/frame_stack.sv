@@ -11,7 +11,7 @@
 //
 // WordsPerRow words lie side by side in a row of the memory, collected before the write and taken apart after the read.
 // Where Columns is no multiple of it the first row of a burst has fewer, so that a burst ends with a full one.
-// Bit-accurate model: models/tactile_depth/poisson/frame_stack.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/frame_stack.py.
 
 `default_nettype none
 

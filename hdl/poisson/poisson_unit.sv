@@ -13,8 +13,8 @@
 // Stream in: slopes in raster order. Stream out: a burst of Columns / Lanes beats for each row, Lanes depth codes in a
 // beat, the first in the lowest bits; `burst_start` with the first beat of a row and depth_frame_start with the first
 // of a frame; rows in raster order (tridiagonal: the bottom row first). Latency from the last slope to the first depth:
-// models/tactile_depth/latency.py; gaps in the input do not change it.
-// Models: models/tactile_depth/poisson/divergence.py, models/tactile_depth/poisson/.
+// models/tactile_depth/chip/latency.py; gaps in the input do not change it.
+// Models: models/tactile_depth/chip/poisson/divergence.py, models/tactile_depth/chip/poisson/.
 
 `default_nettype none
 

@@ -7,7 +7,7 @@
 // Stream in: bursts of Columns modes, Columns of them a frame, both directions in bit-reversed order. Stream out: the
 // same. Latency: 6 cycles; en low: nothing moves. The table is symmetric: the ROM holds the lower triangle, p (p + 1) /
 // 2 + t for t <= p, and its address is kept by adding. Mantissa M has CoeffWidth bits at every size of the reciprocal.
-// Bit-accurate model: models/tactile_depth/poisson/spectral_divide.py, which also writes the ROM.
+// Bit-accurate model: models/tactile_depth/chip/poisson/spectral_divide.py, which also writes the ROM.
 
 `default_nettype none
 

@@ -5,8 +5,8 @@
 //
 // Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes in raster order,
 // one burst of Columns words a row. Latency: fixed, in the model. Formats:
-// models/tactile_depth/configuration.py.
-// Bit-accurate model: models/tactile_depth/poisson/spectral_solver.py.
+// models/tactile_depth/chip/configuration.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/spectral_solver.py.
 
 `default_nettype none
 

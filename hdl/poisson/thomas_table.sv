@@ -7,7 +7,7 @@
 // follows its last change is not stored: word base + min(row, settled). The last row has a table of its own, and a
 // shift, since its coefficients exceed 1 under Neumann. A user that multiplies nothing in that row leaves it out. For
 // several modes in a clock, a coefficient and a shift are those of all of them side by side.
-// Bit-accurate model: models/tactile_depth/poisson/thomas_table.py, which also writes the ROMs.
+// Bit-accurate model: models/tactile_depth/chip/poisson/thomas_table.py, which also writes the ROMs.
 
 `default_nettype none
 

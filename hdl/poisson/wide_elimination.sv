@@ -8,7 +8,7 @@
 // any gaps between bursts; a start comes 2 clocks before the first words. Stream out: the same bursts, d of the row and
 // e of the row above it, both rounded to the stored word; e of a frame's first row has no meaning. Latency: 9 clocks.
 // The running row keeps Width bits, and c beside it. Two multipliers for each word. Bit-accurate model:
-// models/tactile_depth/poisson/wide_elimination.py.
+// models/tactile_depth/chip/poisson/wide_elimination.py.
 
 `default_nettype none
 

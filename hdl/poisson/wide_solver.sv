@@ -7,7 +7,7 @@
 // one burst of Columns / Lanes clocks a row, Lanes codes a clock, the first in the lowest bits; the rows of a frame
 // without a pause. Down the rows go DownWords modes a clock; up the rows goes a row Lanes modes a clock, and every two
 // rows share one complex transform. Latency: fixed, in the model, and the same after any gaps.
-// Bit-accurate model: models/tactile_depth/poisson/wide_solver.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/wide_solver.py.
 
 `default_nettype none
 

@@ -13,7 +13,7 @@
 //
 // In place: the reader is always ahead of the writer of the next frame, which goes the way that the reader goes, up and
 // down in turn. The last row has a memory of its own. Only beats of the upper half of a row need its last words, so the
-// reader begins half a row before these. Bit-accurate model: models/tactile_depth/poisson/wide_stack.py.
+// reader begins half a row before these. Bit-accurate model: models/tactile_depth/chip/poisson/wide_stack.py.
 
 `default_nettype none
 

@@ -7,7 +7,7 @@
 // frame pair follows pair without a pause; a start comes 6 clocks before the first words of a pair. Stream out: pairs
 // of z, Width bits; a start comes 2 clocks before the first words. Latency: 2 clocks. The rows of a pair do not depend
 // on each other, so z has 2 Beats clocks to the next product. One multiplier for each word.
-// Bit-accurate model: models/tactile_depth/poisson/wide_substitution.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/wide_substitution.py.
 
 `default_nettype none
 

@@ -8,7 +8,7 @@
 // `refused`, with the data, makes the response SLVERR. No ready output depends on an input of the port in the same
 // cycle. While rst is high every ready is low: no access is taken that would find no answer. A reset forgets those in
 // flight, but a write that is due in its first cycle takes effect: `write` comes from a register, because it begins
-// long paths. Model: models/tactile_depth/registers/axil_port.py.
+// long paths. Model: models/tactile_depth/chip/registers/axil_port.py.
 
 `default_nettype none
 

@@ -5,7 +5,7 @@
 // cycles in which its event is high, SATURATIONS the values clipped. An event in the cycle of a clearing write is kept.
 // `irq` is high in the cycle after one in which a bit of INTERRUPT_STATUS and its bit of interrupt_mask are 1.
 // read_data is the word at read_offset in the same cycle, 0 where there is none.
-// Model: models/tactile_depth/registers/event_registers.py.
+// Model: models/tactile_depth/chip/registers/event_registers.py.
 
 `default_nettype none
 

@@ -4,7 +4,7 @@
 // Register n has the offset, the bits and the value after a reset of word n of Offsets, Masks and Resets; by default
 // they are those of registers/tactile_depth.rdl. A write replaces the bytes that are strobed, and shows in the next
 // cycle. read_data is the word at read_offset in the same cycle, 0 where there is none.
-// Model: models/tactile_depth/registers/setting_registers.py.
+// Model: models/tactile_depth/chip/registers/setting_registers.py.
 
 `default_nettype none
 

@@ -7,7 +7,7 @@
 // table_answer from 3 cycles later until the next such read, and stand on late_data then. Refused: what has no entry, a
 // write with a byte that is not strobed, and a write of a table that is `closed`. A write that is refused does nothing.
 // In a reset neither is commanded.
-// Model: models/tactile_depth/registers/table_access.py.
+// Model: models/tactile_depth/chip/registers/table_access.py.
 
 `default_nettype none
 

@@ -7,7 +7,7 @@
 // capture's request is high in the cycle of the write that starts it; from the next cycle to that of `done`, `busy`
 // shall be high. A start is refused for a table that the build has not, and for the zero offset while its change-over
 // is pending. rst forgets what no frame has taken and leaves the banks; cold_rst, together with rst, clears them.
-// Model: models/tactile_depth/registers/table_banks.py.
+// Model: models/tactile_depth/chip/registers/table_banks.py.
 
 `default_nettype none
 

@@ -11,7 +11,7 @@
 // A fault is high for one cycle, once for each broken frame. What is left of a broken frame on the input is dropped;
 // the filler repeats the last pixel. Stream in: AXI4-Stream Video, ready/valid. Stream out: pixels in raster order;
 // with the last of a frame out_frame_end, and out_bad if it is marked. Latency: 1 cycle; en low: nothing moves.
-// Bit-accurate model: models/tactile_depth/video/frame_guard.py.
+// Bit-accurate model: models/tactile_depth/chip/video/frame_guard.py.
 
 `default_nettype none
 

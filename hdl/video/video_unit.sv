@@ -6,7 +6,7 @@
 //
 // Stream in: 24-bit pixels, raster order, ready/valid. Stream out: Rows x Columns pixels a frame, under `en`; with the
 // first of a frame pixel_frame_start, with the last pixel_frame_end, and pixel_bad if the frame was malformed.
-// Latency: 2 cycles. A gap in, a gap out. Model: models/tactile_depth/video/frame_guard.py.
+// Latency: 2 cycles. A gap in, a gap out. Model: models/tactile_depth/chip/video/frame_guard.py.
 
 `default_nettype none
 

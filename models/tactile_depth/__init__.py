@@ -18,18 +18,18 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     __version__: str
-    from tactile_depth.ball_press import BallPress
-    from tactile_depth.built_in import identify, load
+    from tactile_depth.base.errors import InputError, InputWarning
+    from tactile_depth.calibrate.ball_press import BallPress
+    from tactile_depth.calibrate.evaluation import Evaluation, evaluate
+    from tactile_depth.calibrate.fitting import fit
+    from tactile_depth.depth.pipeline import Pipeline
+    from tactile_depth.depth.result import Contact, Result
     from tactile_depth.device.device import Device
     from tactile_depth.device.errors import DeviceError
     from tactile_depth.device.frame import DeviceFrame
-    from tactile_depth.errors import InputError, InputWarning
-    from tactile_depth.evaluation import Evaluation, evaluate
-    from tactile_depth.fitting import fit
-    from tactile_depth.pipeline import Pipeline
-    from tactile_depth.result import Contact, Result
-    from tactile_depth.samples import Sample, sample
-    from tactile_depth.sensor import Camera, HeightError, Sensor
+    from tactile_depth.sensor.built_in import identify, load
+    from tactile_depth.sensor.samples import Sample, sample
+    from tactile_depth.sensor.sensor import Camera, HeightError, Sensor
 
 __all__ = [
     "BallPress",
@@ -54,18 +54,18 @@ __all__ = [
 ]
 
 _MODULES = {
-    "ball_press": ("BallPress",),
-    "built_in": ("identify", "load"),
+    "calibrate.ball_press": ("BallPress",),
+    "sensor.built_in": ("identify", "load"),
     "device.device": ("Device",),
     "device.errors": ("DeviceError",),
     "device.frame": ("DeviceFrame",),
-    "errors": ("InputError", "InputWarning"),
-    "evaluation": ("Evaluation", "evaluate"),
-    "fitting": ("fit",),
-    "pipeline": ("Pipeline",),
-    "result": ("Contact", "Result"),
-    "samples": ("Sample", "sample"),
-    "sensor": ("Camera", "HeightError", "Sensor"),
+    "base.errors": ("InputError", "InputWarning"),
+    "calibrate.evaluation": ("Evaluation", "evaluate"),
+    "calibrate.fitting": ("fit",),
+    "depth.pipeline": ("Pipeline",),
+    "depth.result": ("Contact", "Result"),
+    "sensor.samples": ("Sample", "sample"),
+    "sensor.sensor": ("Camera", "HeightError", "Sensor"),
 }
 _PLACES = {name: module for module, names in _MODULES.items() for name in names}
 

@@ -16,17 +16,17 @@ from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, FallingEdge, ReadOnly, RisingEdge, Timer, ValueChange
 
 from commands.common.run_request import threshold_code
-from tactile_depth.built_in import synthetic
-from tactile_depth.contact.contact_events import ContactEvents, Settings
-from tactile_depth.link.depth_frames import DepthFrames
-from tactile_depth.link.device import Build, LinkDevice
-from tactile_depth.link.framing import to_line
-from tactile_depth.link.packets import MOST_PIXELS, Packet, PacketReader, Picture, RecordPacket, Status, Write
-from tactile_depth.link.uart import BITS, transmit
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.scenes import render
-from tactile_depth.tactile_depth import tactile_depth
-from tactile_depth.video.frame_guard import frame_guard
+from tactile_depth.chip.contact.contact_events import ContactEvents, Settings
+from tactile_depth.chip.link.depth_frames import DepthFrames
+from tactile_depth.chip.link.device import Build, LinkDevice
+from tactile_depth.chip.link.framing import to_line
+from tactile_depth.chip.link.packets import MOST_PIXELS, Packet, PacketReader, Picture, RecordPacket, Status, Write
+from tactile_depth.chip.link.uart import BITS, transmit
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.chip.tactile_depth import tactile_depth
+from tactile_depth.chip.video.frame_guard import frame_guard
+from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.scenes import render
 from tb.pixels import unpack
 from tb.selection import Level, case
 from tb.stream import CLOCK_NS, configuration, parameters

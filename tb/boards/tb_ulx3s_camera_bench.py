@@ -8,15 +8,15 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.camera.camera_front_end import camera_front_end
-from tactile_depth.camera.camera_setup import Entry, Kind
-from tactile_depth.camera.dvp_receive import IDLE, Pins, camera_pins
-from tactile_depth.camera.pixel_format import photograph
-from tactile_depth.camera.register_lists import Camera
-from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.configuration import Configuration
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.scenes import render
+from tactile_depth.chip.camera.camera_front_end import camera_front_end
+from tactile_depth.chip.camera.camera_setup import Entry, Kind
+from tactile_depth.chip.camera.dvp_receive import IDLE, Pins, camera_pins
+from tactile_depth.chip.camera.pixel_format import photograph
+from tactile_depth.chip.camera.register_lists import Camera
+from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.sensor.scenes import render
 from tb.boards.tb_ulx3s import Board
 from tb.camera.sccb_camera import SccbCamera
 from tb.selection import case

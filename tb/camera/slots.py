@@ -12,11 +12,11 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.camera.block_weights import block_weights, pixels_of
-from tactile_depth.camera.camera_front_end import SETTINGS
-from tactile_depth.camera.pixel_format import stream
-from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.video.frame_guard import Word
+from tactile_depth.chip.camera.block_weights import block_weights, pixels_of
+from tactile_depth.chip.camera.camera_front_end import SETTINGS
+from tactile_depth.chip.camera.pixel_format import stream
+from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.video.frame_guard import Word
 from tb.axis import video
 
 Slot = dict[str, int]

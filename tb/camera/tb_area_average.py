@@ -6,8 +6,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.camera.area_average import LATENCY, UNITY, area_average
-from tactile_depth.camera_configuration import GAIN_WIDTH
+from tactile_depth.chip.camera.area_average import LATENCY, UNITY, area_average
+from tactile_depth.chip.camera_configuration import GAIN_WIDTH
 from tb.camera.slots import Slot, Slots, Window, packed
 from tb.cases import on_bench
 from tb.stream import MANY, check_words, drive, parameters, parametrize

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from tactile_depth.camera.black_level import LATENCY, black_level
+from tactile_depth.chip.camera.black_level import LATENCY, black_level
 from tb.camera.slots import Slot, Slots, packed, unpacked
 from tb.cases import on_bench
 from tb.stream import MANY, drive, parameters, parametrize

@@ -6,8 +6,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.camera.block_totals import LATENCY, block_areas, block_totals
-from tactile_depth.camera.row_sums import sums_over_blocks
+from tactile_depth.chip.camera.block_totals import LATENCY, block_areas, block_totals
+from tactile_depth.chip.camera.row_sums import sums_over_blocks
 from tb.camera.slots import Slot, Slots, Window, packed, unpacked
 from tb.cases import on_bench
 from tb.stream import drive, parameters, parametrize

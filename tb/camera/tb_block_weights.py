@@ -6,7 +6,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.camera.block_weights import block_weights
+from tactile_depth.chip.camera.block_weights import block_weights
 from tb.stream import drive, parameters, parametrize
 
 LONGEST = 60  # pixels of an axis

@@ -15,11 +15,11 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.camera.camera_front_end import SETTINGS, camera_front_end, camera_settings
-from tactile_depth.camera.camera_front_end import latency as camera_front_end_latency
-from tactile_depth.camera.camera_window import FAULTS, Settings, camera_window
-from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.video.frame_guard import Word, frame_guard
+from tactile_depth.chip.camera.camera_front_end import SETTINGS, camera_front_end, camera_settings
+from tactile_depth.chip.camera.camera_front_end import latency as camera_front_end_latency
+from tactile_depth.chip.camera.camera_window import FAULTS, Settings, camera_window
+from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.video.frame_guard import Word, frame_guard
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSink, AxisSource, broken, positions, profile
 from tb.camera.slots import camera_words, pack_settings
 from tb.cases import on_bench

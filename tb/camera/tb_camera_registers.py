@@ -8,9 +8,9 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.camera.camera_registers import CONTROL, COUNTERS, STATUS, CameraRegisters, Setup
-from tactile_depth.camera.camera_window import FAULTS
-from tactile_depth.registers.register_map import CAMERA_MAP, CAMERA_REGISTERS, WORD
+from tactile_depth.chip.camera.camera_registers import CONTROL, COUNTERS, STATUS, CameraRegisters, Setup
+from tactile_depth.chip.camera.camera_window import FAULTS
+from tactile_depth.chip.registers.register_map import CAMERA_MAP, CAMERA_REGISTERS, WORD
 from tb import structs
 from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench

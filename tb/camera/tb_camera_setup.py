@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""camera_setup against tactile_depth.camera.camera_setup in every cycle, with a camera on its lines that also fails."""
+"""camera_setup against its model in every cycle, with a camera on its lines that also fails."""
 
 import itertools
 import os
@@ -11,7 +11,7 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, ReadOnly, RisingEdge
 
-from tactile_depth.camera.camera_setup import CameraSetup, Entry, Kind, Outputs
+from tactile_depth.chip.camera.camera_setup import CameraSetup, Entry, Kind, Outputs
 from tb.camera.sccb_camera import SccbCamera
 from tb.cases import on_bench
 from tb.pins import by_name

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""camera_window against tactile_depth.camera.camera_window: pixels, marks, breaks and faults of the words taken.
+"""camera_window against tactile_depth.chip.camera.camera_window: pixels, marks, breaks and faults of the words taken.
 
 tests/camera/test_camera_window.py checks what the model flags and drops.
 """
@@ -12,8 +12,8 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.camera.camera_window import FAULTS, LATENCY, Settings, camera_window
-from tactile_depth.video.frame_guard import Word
+from tactile_depth.chip.camera.camera_window import FAULTS, LATENCY, Settings, camera_window
+from tactile_depth.chip.video.frame_guard import Word
 from tb.axis import BREAKS, SILENT, AxisSource, broken, positions, profile, spoiled, video
 from tb.cases import on_bench
 from tb.pins import by_name

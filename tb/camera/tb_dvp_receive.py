@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""dvp_receive against tactile_depth.camera.dvp_receive, at every edge of both clocks: ratios, stalls, resets."""
+"""dvp_receive against tactile_depth.chip.camera.dvp_receive, at every edge of both clocks: ratios, stalls, resets."""
 
 import itertools
 import os
@@ -11,8 +11,8 @@ import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.camera.dvp_receive import IDLE, Beat, DvpReceive, Pins, camera_pins
-from tactile_depth.common.td_async_fifo import AsyncFifo
+from tactile_depth.chip.camera.dvp_receive import IDLE, Beat, DvpReceive, Pins, camera_pins
+from tactile_depth.chip.common.td_async_fifo import AsyncFifo
 from tb.axis import AxisMonitor, AxisSink, profile
 from tb.pins import Driver
 from tb.stream import REGRESS, parameters, parametrize, sample

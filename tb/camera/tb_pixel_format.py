@@ -6,9 +6,9 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.camera.pixel_format import colours, pixel_format, raw_shift
-from tactile_depth.camera.pixel_format import latency as pixel_format_latency
-from tactile_depth.camera_configuration import CameraConfiguration
+from tactile_depth.chip.camera.pixel_format import colours, pixel_format, raw_shift
+from tactile_depth.chip.camera.pixel_format import latency as pixel_format_latency
+from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tb.camera.slots import Slot, Slots, unpacked
 from tb.cases import on_bench
 from tb.settings import RUN

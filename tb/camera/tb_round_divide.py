@@ -7,7 +7,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.camera.round_divide import LATENCY, round_divide
+from tactile_depth.chip.camera.round_divide import LATENCY, round_divide
 from tb.stream import MANY, drive, parameters, parametrize
 
 

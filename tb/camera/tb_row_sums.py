@@ -6,7 +6,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.camera.row_sums import LATENCY, red_columns, row_sums
+from tactile_depth.chip.camera.row_sums import LATENCY, red_columns, row_sums
 from tb.camera.slots import Slot, Slots, Window, packed, unpacked
 from tb.stream import drive, extremes, parameters, parametrize, uniform
 

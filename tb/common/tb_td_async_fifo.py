@@ -9,7 +9,7 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.common.td_async_fifo import AsyncFifo
+from tactile_depth.chip.common.td_async_fifo import AsyncFifo
 from tb.axis import profile
 from tb.stream import REGRESS, parameters, parametrize
 from tb.two_clocks import RATIOS, run_clock, watch

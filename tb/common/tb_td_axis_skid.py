@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""td_axis_skid against tactile_depth.common.td_axis_skid, every output in every cycle; gaps, stalls, resets."""
+"""td_axis_skid against tactile_depth.chip.common.td_axis_skid, every output in every cycle; gaps, stalls, resets."""
 
 import os
 import random
@@ -9,7 +9,7 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.common.td_axis_skid import AxisSkid
+from tactile_depth.chip.common.td_axis_skid import AxisSkid
 from tb.axis import PROFILES, AxisMonitor, AxisSink, AxisSource, profile
 from tb.pins import by_name
 from tb.stream import CLOCK_NS, REGRESS, parameters, parametrize, sample

@@ -10,7 +10,7 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.common.td_banked_table import BankedTable
+from tactile_depth.chip.common.td_banked_table import BankedTable
 from tb.pins import Driver, by_name
 from tb.stream import CLOCK_NS, parameters, parametrize
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.common.td_burst_counter import burst_counter
+from tactile_depth.chip.common.td_burst_counter import burst_counter
 from tb.stream import drive, parameters, parametrize
 
 

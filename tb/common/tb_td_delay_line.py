@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""td_delay_line against tactile_depth.common.td_delay_line, with pauses, before and after a reset in mid-stream."""
+"""td_delay_line against its model, with pauses, before and after a reset in mid-stream."""
 
 import random
 from typing import Any
 
 import cocotb
 
-from tactile_depth.common.td_delay_line import delay_line
+from tactile_depth.chip.common.td_delay_line import delay_line
 from tb.stream import drive, parameters, parametrize
 
 

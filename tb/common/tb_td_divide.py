@@ -7,7 +7,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.common.td_divide import cycles, divide
+from tactile_depth.chip.common.td_divide import cycles, divide
 from tb.stream import drive, parameters
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""td_dot_product against tactile_depth.common.td_dot_product: every combination of extremes, random words, pauses."""
+"""td_dot_product against its model: every combination of extremes, random words, pauses."""
 
 import itertools
 import random
@@ -8,7 +8,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_dot_product import LATENCY, dot_product
+from tactile_depth.chip.common.td_dot_product import LATENCY, dot_product
 from tb.stream import drive, parameters, parametrize
 
 FACTORS = ("a0", "b0", "a1", "b1")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""td_multiply against tactile_depth.common.td_multiply: every combination of extremes, random words, pauses."""
+"""td_multiply against tactile_depth.chip.common.td_multiply: every combination of extremes, random words, pauses."""
 
 import itertools
 import random
@@ -8,7 +8,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_multiply import LATENCY, multiply
+from tactile_depth.chip.common.td_multiply import LATENCY, multiply
 from tb.stream import drive, parameters, parametrize
 
 

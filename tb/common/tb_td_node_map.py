@@ -6,7 +6,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_node_map import latency, node_map, side
+from tactile_depth.chip.common.td_node_map import latency, node_map, side
 from tb.cases import on_bench
 from tb.depth_frames import packed
 from tb.nodes import Grid, Nodes, reads_as_a_pause_ends, watch_active

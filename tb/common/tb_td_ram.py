@@ -7,7 +7,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.common.td_ram import ram
+from tactile_depth.chip.common.td_ram import ram
 from tb.settings import RUN
 from tb.stream import drive, parameters
 

@@ -8,7 +8,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_ramp import latency, ramp
+from tactile_depth.chip.common.td_ramp import latency, ramp
 from tb.stream import drive, parameters, parametrize
 
 

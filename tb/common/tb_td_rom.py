@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""td_rom against tactile_depth.common.td_rom: every word, twice over in random order, with pauses."""
+"""td_rom against tactile_depth.chip.common.td_rom: every word, twice over in random order, with pauses."""
 
 import random
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.common.td_rom import LATENCY, rom
+from tactile_depth.chip.common.td_rom import LATENCY, rom
 from tb.stream import drive, parameters, parametrize
 
 

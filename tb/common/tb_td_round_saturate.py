@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""td_round_saturate against tactile_depth.common.td_round_saturate: every input."""
+"""td_round_saturate against tactile_depth.chip.common.td_round_saturate: every input."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ import cocotb
 import numpy as np
 from cocotb.triggers import Timer
 
-from tactile_depth.common.td_round_saturate import Monitor, round_half_even, round_saturate
+from tactile_depth.chip.common.td_round_saturate import Monitor, round_half_even, round_saturate
 from tb.stream import parameters
 
 

@@ -8,7 +8,7 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.common.td_table_port import WORD_BITS, TablePort
+from tactile_depth.chip.common.td_table_port import WORD_BITS, TablePort
 from tb import structs
 from tb.stream import CLOCK_NS, parameters
 

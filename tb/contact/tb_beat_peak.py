@@ -6,7 +6,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.contact.beat_peak import beat_peak, latency
+from tactile_depth.chip.contact.beat_peak import beat_peak, latency
 from tb.stream import drive, parameters
 
 BEATS = 600

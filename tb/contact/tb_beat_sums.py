@@ -7,7 +7,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.contact.beat_sums import BeatSums, beat_sums, latency
+from tactile_depth.chip.contact.beat_sums import BeatSums, beat_sums, latency
 from tb.stream import drive, parameters
 
 BEATS = 600

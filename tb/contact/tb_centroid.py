@@ -6,7 +6,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.contact.centroid import cycles, mean
+from tactile_depth.chip.contact.centroid import cycles, mean
 from tb.stream import drive, parameters
 
 

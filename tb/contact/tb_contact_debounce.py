@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import cocotb
 
-from tactile_depth.contact.contact_debounce import BEGAN, ENDED, TOUCHING, ContactDebounce
+from tactile_depth.chip.contact.contact_debounce import BEGAN, ENDED, TOUCHING, ContactDebounce
 from tb.stream import REGRESS, drive, parameters, parametrize
 
 

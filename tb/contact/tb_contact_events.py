@@ -8,8 +8,8 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.contact.contact_events import CYCLES_TO_TOUCHING, WORDS, ContactEvents, Settings, latency
-from tactile_depth.contact.record_packets import RecordPackets
+from tactile_depth.chip.contact.contact_events import CYCLES_TO_TOUCHING, WORDS, ContactEvents, Settings, latency
+from tactile_depth.chip.contact.record_packets import RecordPackets
 from tb.axis import profile
 from tb.cases import on_bench
 from tb.contact.depth_bench import WORD_HIGH, DepthBench

@@ -7,7 +7,7 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.contact.contact_peak import CYCLES_TO_COUNT, ContactPeak, Peak, cycles_to_peak
+from tactile_depth.chip.contact.contact_peak import CYCLES_TO_COUNT, ContactPeak, Peak, cycles_to_peak
 from tb.cases import on_bench
 from tb.contact.depth_bench import WORD_LOW, DepthBench
 from tb.stream import REGRESS, parametrize

@@ -7,7 +7,7 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.contact.contact_sums import ContactSums, Sums, cycles_to_sums
+from tactile_depth.chip.contact.contact_sums import ContactSums, Sums, cycles_to_sums
 from tb.cases import on_bench
 from tb.contact.depth_bench import DepthBench
 from tb.stream import REGRESS, parametrize

@@ -9,7 +9,7 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.contact.depth_gate import DepthGate, Word
+from tactile_depth.chip.contact.depth_gate import DepthGate, Word
 from tb.axis import PROFILES, AxisMonitor, profile
 from tb.cases import on_bench
 from tb.pins import Driver, by_name

@@ -6,7 +6,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.contact.record_packets import RecordPackets
+from tactile_depth.chip.contact.record_packets import RecordPackets
 from tb.axis import PROFILES, profile
 from tb.stream import drive, parameters, parametrize
 

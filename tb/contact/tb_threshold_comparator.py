@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""threshold_comparator against tactile_depth.contact.threshold_comparator: contact in every cycle."""
+"""threshold_comparator against tactile_depth.chip.contact.threshold_comparator: contact in every cycle."""
 
 import os
 import random
@@ -9,7 +9,7 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.contact.threshold_comparator import ThresholdComparator
+from tactile_depth.chip.contact.threshold_comparator import ThresholdComparator
 from tb.cases import on_bench
 from tb.stream import CLOCK_NS, parameters
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""frame_output against tactile_depth.depth.frame_output: words, side-bands and marks in every enabled cycle."""
+"""frame_output against tactile_depth.chip.depth.frame_output: words, side-bands and marks in every enabled cycle."""
 
 import os
 import random
@@ -9,7 +9,7 @@ import cocotb
 from cocotb.clock import Clock as ClockOf
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.depth.frame_output import Clock, frame_output
+from tactile_depth.chip.depth.frame_output import Clock, frame_output
 from tb.cases import on_bench
 from tb.pins import Driver, by_name
 from tb.stream import CLOCK_NS, depth_position, parameters, parametrize

@@ -9,7 +9,7 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.depth.frame_tags import FrameTags
+from tactile_depth.chip.depth.frame_tags import FrameTags
 from tb.cases import on_bench
 from tb.stream import CLOCK_NS, parameters, parametrize
 

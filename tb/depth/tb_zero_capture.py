@@ -9,8 +9,8 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.common.td_node_map import side
-from tactile_depth.depth.zero_capture import captured_zero, cycles, levels
+from tactile_depth.chip.common.td_node_map import side
+from tactile_depth.chip.depth.zero_capture import captured_zero, cycles, levels
 from tb.cases import on_bench
 from tb.common.capture_bench import request, request_after
 from tb.depth_frames import DepthDriver, depth_words, packed, random_depths

@@ -9,13 +9,13 @@ import cocotb
 import numpy as np
 from cocotb.triggers import FallingEdge, RisingEdge
 
-from tactile_depth.common import td_node_map
-from tactile_depth.common.td_node_map import node_map
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration
-from tactile_depth.depth.zero_offset import latency as zero_offset_latency
-from tactile_depth.depth.zero_offset import zero_offset
-from tactile_depth.registers.register_map import TABLES
+from tactile_depth.chip.common import td_node_map
+from tactile_depth.chip.common.td_node_map import node_map
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.depth.zero_offset import latency as zero_offset_latency
+from tactile_depth.chip.depth.zero_offset import zero_offset
+from tactile_depth.chip.registers.register_map import TABLES
 from tb.cases import on_bench
 from tb.depth_frames import DepthDriver, depth_words, packed, random_depths
 from tb.nodes import Grid, Nodes

@@ -8,11 +8,19 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.common.td_node_map import node_map
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import DEVIATION, RATIO
-from tactile_depth.gradient.flat_field import CODE, LATENCY, dark_pixels, deviations, flat_codes, ratios, unit_gains
-from tactile_depth.registers.register_map import TABLES
+from tactile_depth.chip.common.td_node_map import node_map
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import DEVIATION, RATIO
+from tactile_depth.chip.gradient.flat_field import (
+    CODE,
+    LATENCY,
+    dark_pixels,
+    deviations,
+    flat_codes,
+    ratios,
+    unit_gains,
+)
+from tactile_depth.chip.registers.register_map import TABLES
 from tb import pins
 from tb.cases import on_bench
 from tb.nodes import Grid, Nodes, reads_as_a_pause_ends

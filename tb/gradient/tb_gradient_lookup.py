@@ -10,10 +10,10 @@ import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.built_in import synthetic
-from tactile_depth.common.td_banked_table import BankedTable
-from tactile_depth.gradient.gradient_lookup import LATENCY, gradient_codes, gradient_lookup
-from tactile_depth.registers.register_map import TABLES
+from tactile_depth.chip.common.td_banked_table import BankedTable
+from tactile_depth.chip.gradient.gradient_lookup import LATENCY, gradient_codes, gradient_lookup
+from tactile_depth.chip.registers.register_map import TABLES
+from tactile_depth.sensor.built_in import synthetic
 from tb.cases import on_bench
 from tb.pins import by_name
 from tb.pixels import pack, unpack

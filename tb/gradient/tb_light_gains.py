@@ -10,9 +10,9 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.fixed_point import Format
-from tactile_depth.gradient.light_gains import LATENCY, RATES, Light
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.fixed_point import Format
+from tactile_depth.chip.gradient.light_gains import LATENCY, RATES, Light
 from tb.cases import on_bench
 from tb.pins import by_name
 from tb.stream import (

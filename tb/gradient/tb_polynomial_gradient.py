@@ -12,9 +12,9 @@ import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.gradient.polynomial_gradient import LATENCY, coefficients, slope_codes
-from tactile_depth.registers.register_map import TABLES
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.gradient.polynomial_gradient import LATENCY, coefficients, slope_codes
+from tactile_depth.chip.registers.register_map import TABLES
 from tb import pins
 from tb.cases import on_bench
 from tb.stream import Bench, StreamDriver, StreamMonitor, parameters, parametrize, send_apart

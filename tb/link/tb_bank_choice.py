@@ -6,7 +6,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.link.bank_choice import BankChoice, Seen
+from tactile_depth.chip.link.bank_choice import BankChoice, Seen
 from tb.stream import drive, parametrize
 
 CLOCKS = 1500

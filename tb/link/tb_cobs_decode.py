@@ -6,8 +6,8 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.link.cobs_decode import LONGEST_PIECE, CobsDecode, Decoded
-from tactile_depth.link.framing import RUN, cobs_encode
+from tactile_depth.chip.link.cobs_decode import LONGEST_PIECE, CobsDecode, Decoded
+from tactile_depth.chip.link.framing import RUN, cobs_encode
 from tb.stream import drive, parameters, parametrize
 
 LENGTHS = (*range(8), 16, RUN - 1, RUN, RUN + 1, 2 * RUN, 2 * RUN + 1)  # of data

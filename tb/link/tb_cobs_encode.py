@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import cocotb
 
-from tactile_depth.link.framing import DELIMITER, RUN, cobs_encode
+from tactile_depth.chip.link.framing import DELIMITER, RUN, cobs_encode
 from tb.cases import on_bench
 from tb.link.byte_packets import BYTE, STREAMS, Bench, random_packet, words
 from tb.stream import MANY, REGRESS, parameters, parametrize

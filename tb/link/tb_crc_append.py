@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import cocotb
 
-from tactile_depth.link.framing import CRC_BYTES
+from tactile_depth.chip.link.framing import CRC_BYTES
 from tb.cases import on_bench
 from tb.link.byte_packets import STREAMS, Bench, random_packet, words
 from tb.stream import MANY, parametrize

@@ -15,9 +15,9 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.contact.contact_events import WORDS, record
-from tactile_depth.link.depth_formats import DepthFormat, sent_shape, to_bytes, value_bytes
-from tactile_depth.link.packets import LARGEST_SHIFT, Depth, Trailer
+from tactile_depth.chip.contact.contact_events import WORDS, record
+from tactile_depth.chip.link.depth_formats import DepthFormat, sent_shape, to_bytes, value_bytes
+from tactile_depth.chip.link.packets import LARGEST_SHIFT, Depth, Trailer
 from tb.axis import PROFILES, profile
 from tb.cases import on_bench
 from tb.pins import Driver, by_name

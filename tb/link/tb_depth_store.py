@@ -10,8 +10,8 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.contact.contact_events import WORDS
-from tactile_depth.link.bank_choice import BankChoice
+from tactile_depth.chip.contact.contact_events import WORDS
+from tactile_depth.chip.link.bank_choice import BankChoice
 from tb.stream import MANY, drive, parameters, parametrize
 
 Pins = dict[str, int]

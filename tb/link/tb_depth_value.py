@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""depth_value against tactile_depth.link.depth_formats: every shift, ties, values that just clip, extremes."""
+"""depth_value against tactile_depth.chip.link.depth_formats: every shift, ties, values that just clip, extremes."""
 
 import random
 from typing import Any
@@ -7,8 +7,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.link.depth_formats import DepthFormat, to_bytes
-from tactile_depth.link.packets import LARGEST_SHIFT
+from tactile_depth.chip.link.depth_formats import DepthFormat, to_bytes
+from tactile_depth.chip.link.packets import LARGEST_SHIFT
 from tb.stream import MANY, drive, parameters, parametrize
 
 LATENCY = 3

@@ -14,11 +14,11 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.contact.contact_events import WORDS, record
-from tactile_depth.link import packets as link
-from tactile_depth.link.depth_formats import DepthFormat, exact_shift
-from tactile_depth.link.device import Build, LinkDevice
-from tactile_depth.link.framing import to_line
+from tactile_depth.chip.contact.contact_events import WORDS, record
+from tactile_depth.chip.link import packets as link
+from tactile_depth.chip.link.depth_formats import DepthFormat, exact_shift
+from tactile_depth.chip.link.device import Build, LinkDevice
+from tactile_depth.chip.link.framing import to_line
 from tb.axis import VIDEO
 from tb.link.axil_slave import AxilSlave, Registers
 from tb.pins import Driver, unsigned

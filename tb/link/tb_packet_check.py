@@ -7,8 +7,8 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.link.framing import CRC_BYTES
-from tactile_depth.link.packet_check import Checked, PacketCheck
+from tactile_depth.chip.link.framing import CRC_BYTES
+from tactile_depth.chip.link.packet_check import Checked, PacketCheck
 from tb.stream import drive, parametrize
 
 POLYNOMIAL = 0xEDB88320

@@ -8,8 +8,8 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.link.framing import LONGEST_BODY
-from tactile_depth.link.packets import SELECT, TO_DEVICE, Ask, Kind, Picture, Read, Select, Write, unpack
+from tactile_depth.chip.link.framing import LONGEST_BODY
+from tactile_depth.chip.link.packets import SELECT, TO_DEVICE, Ask, Kind, Picture, Read, Select, Write, unpack
 from tb.axis import profile
 from tb.cases import on_bench
 from tb.pins import Driver, by_name

@@ -7,7 +7,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.link.packet_mux import DEPTH, RECORD, SOURCES, PacketMux
+from tactile_depth.chip.link.packet_mux import DEPTH, RECORD, SOURCES, PacketMux
 from tb.cases import on_bench
 from tb.link.byte_packets import STREAMS, Bench, random_packet, words
 from tb.link.byte_packets import packets as packets_of

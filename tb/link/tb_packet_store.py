@@ -7,8 +7,8 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.link.framing import LONGEST_BODY
-from tactile_depth.link.packet_store import PacketStore
+from tactile_depth.chip.link.framing import LONGEST_BODY
+from tactile_depth.chip.link.packet_store import PacketStore
 from tb.axis import PROFILES, profile
 from tb.stream import drive, parameters, parametrize, sample
 

@@ -10,9 +10,9 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.link.device import Build, LinkDevice
-from tactile_depth.link.framing import to_line
-from tactile_depth.link.packets import MOST_PIXELS, Picture
+from tactile_depth.chip.link.device import Build, LinkDevice
+from tactile_depth.chip.link.framing import to_line
+from tactile_depth.chip.link.packets import MOST_PIXELS, Picture
 from tb.axis import AxisMonitor, AxisSink, AxisSource, profile
 from tb.cases import on_bench
 from tb.pins import Driver, unsigned

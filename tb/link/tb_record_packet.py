@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""record_packet against tactile_depth.link.packets: records close together, sinks of every kind, resets."""
+"""record_packet against tactile_depth.chip.link.packets: records close together, sinks of every kind, resets."""
 
 import random
 from collections.abc import Sequence
@@ -7,8 +7,8 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.contact.contact_events import WORDS, record
-from tactile_depth.link.packets import RECORD, RecordPacket
+from tactile_depth.chip.contact.contact_events import WORDS, record
+from tactile_depth.chip.link.packets import RECORD, RecordPacket
 from tb.axis import PROFILES, profile
 from tb.stream import drive, parametrize
 

@@ -9,8 +9,8 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.link.depth_formats import DepthFormat
-from tactile_depth.link.packets import Status
+from tactile_depth.chip.link.depth_formats import DepthFormat
+from tactile_depth.chip.link.packets import Status
 from tb.axis import PROFILES, profile
 from tb.stream import CLOCK_NS, parametrize
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""uart_receive against tactile_depth.link.uart: bytes at several rates, gaps, breaks, noise, resets."""
+"""uart_receive against tactile_depth.chip.link.uart: bytes at several rates, gaps, breaks, noise, resets."""
 
 import os
 import random
@@ -9,7 +9,7 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.link.uart import receive, transmit
+from tactile_depth.chip.link.uart import receive, transmit
 from tb.stream import CLOCK_NS, parameters, parametrize
 
 BYTES = 40

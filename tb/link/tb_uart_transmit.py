@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""uart_transmit against tactile_depth.link.uart: every level of every bit; gaps, a reset."""
+"""uart_transmit against tactile_depth.chip.link.uart: every level of every bit; gaps, a reset."""
 
 import os
 import random
@@ -10,7 +10,7 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.link.uart import BITS, receive, transmit
+from tactile_depth.chip.link.uart import BITS, receive, transmit
 from tb.axis import AxisSource, profile
 from tb.stream import CLOCK_NS, parameters, parametrize
 

@@ -10,11 +10,11 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.back_substitution import LATENCY as BACK_SUBSTITUTION
-from tactile_depth.poisson.back_substitution import back_substitution
-from tactile_depth.poisson.forward_elimination import LATENCY as FORWARD_ELIMINATION
-from tactile_depth.poisson.forward_elimination import forward_elimination
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.back_substitution import LATENCY as BACK_SUBSTITUTION
+from tactile_depth.chip.poisson.back_substitution import back_substitution
+from tactile_depth.chip.poisson.forward_elimination import LATENCY as FORWARD_ELIMINATION
+from tactile_depth.chip.poisson.forward_elimination import forward_elimination
 from tb.stream import MANY, check_bursts, configuration, parametrize, sample, uniform, with_and_without_en
 
 MODELS = {"forward_elimination": forward_elimination, "back_substitution": back_substitution}

@@ -6,9 +6,9 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.latency import solver_latency
-from tactile_depth.tactile_depth import solve
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.latency import solver_latency
+from tactile_depth.chip.tactile_depth import solve
 from tb.lanes import BeatMonitor
 from tb.stream import (
     MANY,

@@ -6,8 +6,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.forward_elimination import zero_mean
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.forward_elimination import zero_mean
 from tb.stream import MANY, configuration, drive, parametrize, uniform
 
 CLOSEST = 6  # cycles between two rows, at least: the way of an addend into the mean

@@ -6,7 +6,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.poisson.divergence import LATENCY, divergence
+from tactile_depth.chip.poisson.divergence import LATENCY, divergence
 from tb.stream import (
     Bench,
     StreamDriver,

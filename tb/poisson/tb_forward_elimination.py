@@ -6,7 +6,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.poisson.forward_elimination import LATENCY
+from tactile_depth.chip.poisson.forward_elimination import LATENCY
 from tb.poisson.elimination_bench import a_frame_begins_afresh, check, frames, many_frames, reset_in_mid_frame
 from tb.stream import configuration, with_and_without_en
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.poisson.frame_stack import LATENCY, frame_stack
+from tactile_depth.chip.poisson.frame_stack import LATENCY, frame_stack
 from tb.stream import check_frame_memory, parameters, parametrize, places, sample
 
 FRAMES = 4  # in place, the order of rows in the memory flips with every frame

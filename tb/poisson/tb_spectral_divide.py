@@ -6,8 +6,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.spectral_divide import LATENCY, spectral_divide
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.spectral_divide import LATENCY, spectral_divide
 from tb.stream import MANY, check_bursts, configuration, extremes, parameters, parametrize, sample, uniform
 
 

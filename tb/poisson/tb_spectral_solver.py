@@ -6,9 +6,9 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.spectral_solver import latency as spectral_solver_latency
-from tactile_depth.poisson.spectral_solver import spectral_solver
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.spectral_solver import latency as spectral_solver_latency
+from tactile_depth.chip.poisson.spectral_solver import spectral_solver
 from tb.stream import (
     MANY,
     Bench,

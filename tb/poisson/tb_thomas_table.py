@@ -6,7 +6,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.poisson.thomas_table import LATENCY, thomas_table
+from tactile_depth.chip.poisson.thomas_table import LATENCY, thomas_table
 from tb.stream import configuration, drive, parametrize
 
 

@@ -8,8 +8,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.wide_elimination import LATENCY, wide_elimination
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.wide_elimination import LATENCY, wide_elimination
 from tb.pins import Read
 from tb.stream import MANY, check_bursts, configuration, parametrize, sample, uniform, with_and_without_en
 from tb.wide import WideDriver, WideMonitor

@@ -7,7 +7,7 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.poisson.wide_stack import LEAD, latency, wide_stack
+from tactile_depth.chip.poisson.wide_stack import LEAD, latency, wide_stack
 from tb.pairs import AloneMonitor, PairMonitor
 from tb.stream import Bench, check_frame_starts, check_words, interrupt, parameters, parametrize, places, sample
 from tb.wide import WideDriver, WideMonitor

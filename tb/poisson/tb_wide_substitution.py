@@ -6,12 +6,12 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.wide_commutator import LEAD
-from tactile_depth.poisson.transform.wide_row_pairs import up_positions
-from tactile_depth.poisson.wide_stack import LEAD as IN_LEAD
-from tactile_depth.poisson.wide_stack import wide_stack
-from tactile_depth.poisson.wide_substitution import LATENCY, wide_substitution
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.wide_commutator import LEAD
+from tactile_depth.chip.poisson.transform.wide_row_pairs import up_positions
+from tactile_depth.chip.poisson.wide_stack import LEAD as IN_LEAD
+from tactile_depth.chip.poisson.wide_stack import wide_stack
+from tactile_depth.chip.poisson.wide_substitution import LATENCY, wide_substitution
 from tb.pairs import AloneMonitor, PairMonitor
 from tb.stream import MANY, check_bursts, configuration, parametrize, uniform, with_and_without_en
 from tb.wide import WideDriver

@@ -10,7 +10,7 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.registers.axil_port import AxilPort, Pins
+from tactile_depth.chip.registers.axil_port import AxilPort, Pins
 from tb.pins import by_name
 from tb.stream import CLOCK_NS
 

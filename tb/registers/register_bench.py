@@ -15,8 +15,8 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.registers.axil_port import strobed_bits
-from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, WORD, Register
+from tactile_depth.chip.registers.axil_port import strobed_bits
+from tactile_depth.chip.registers.register_map import ADDRESS_WIDTH, MAP, WORD, Register
 from tb.pins import Driver, by_name
 from tb.stream import CLOCK_NS, REGRESS
 

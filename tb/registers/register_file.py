@@ -9,12 +9,12 @@ from typing import Any
 
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.configuration import LIGHT_GAIN
-from tactile_depth.registers.axil_port import LATE_CLOCKS, Response, response, strobed_bits
-from tactile_depth.registers.axil_registers import RECORD, AxilRegisters, Build, Events, Live
-from tactile_depth.registers.event_registers import EVENTS, LEVELS
-from tactile_depth.registers.register_map import MAP, REGISTERS, WORD
-from tactile_depth.registers.table_banks import CAPTURES
+from tactile_depth.chip.configuration import LIGHT_GAIN
+from tactile_depth.chip.registers.axil_port import LATE_CLOCKS, Response, response, strobed_bits
+from tactile_depth.chip.registers.axil_registers import RECORD, AxilRegisters, Build, Events, Live
+from tactile_depth.chip.registers.event_registers import EVENTS, LEVELS
+from tactile_depth.chip.registers.register_map import MAP, REGISTERS, WORD
+from tactile_depth.chip.registers.table_banks import CAPTURES
 from tb import axil, pins, structs
 from tb.axil import OFFSET
 from tb.registers import axil_pins

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""axil_port against tactile_depth.registers.axil_port, every output in every cycle."""
+"""axil_port against tactile_depth.chip.registers.axil_port, every output in every cycle."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.registers.axil_port import Response, offset_of, response, strobed_bits
-from tactile_depth.registers.register_map import ADDRESS_WIDTH
+from tactile_depth.chip.registers.axil_port import Response, offset_of, response, strobed_bits
+from tactile_depth.chip.registers.register_map import ADDRESS_WIDTH
 from tb.axil import present, read, take, write, write_beats
 from tb.cases import on_bench
 from tb.registers.axil_pins import INPUTS, PortChecker, expected, pins, reset

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""axil_registers against tactile_depth.registers.axil_registers, every output in every cycle.
+"""axil_registers against tactile_depth.chip.registers.axil_registers, every output in every cycle.
 
 The cores inside have their own testbenches. The tests here check that together they implement the register map.
 """
@@ -13,13 +13,13 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge, gather
 
-from tactile_depth.registers.axil_port import BYTES, Response, strobed_bits
-from tactile_depth.registers.axil_registers import GAINS, RECORD, Build
-from tactile_depth.registers.event_registers import COUNTERS, EVENT_COUNTERS, EVENTS, INTERRUPT_STATUS, STATUS
-from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS, TABLES, WORD
-from tactile_depth.registers.setting_registers import SETTINGS
-from tactile_depth.registers.table_access import PORTS
-from tactile_depth.registers.table_banks import CAPTURES, COMMIT
+from tactile_depth.chip.registers.axil_port import BYTES, Response, strobed_bits
+from tactile_depth.chip.registers.axil_registers import GAINS, RECORD, Build
+from tactile_depth.chip.registers.event_registers import COUNTERS, EVENT_COUNTERS, EVENTS, INTERRUPT_STATUS, STATUS
+from tactile_depth.chip.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS, TABLES, WORD
+from tactile_depth.chip.registers.setting_registers import SETTINGS
+from tactile_depth.chip.registers.table_access import PORTS
+from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
 from tb import structs
 from tb.axil import OFFSET, master_of, read, response_of, take, value_of, write_beats
 from tb.axil import write as write_at

@@ -9,7 +9,7 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.chip.registers.register_map import REGISTERS
 from tb.axil import OFFSET, present, value_of, write
 from tb.stream import CLOCK_NS
 

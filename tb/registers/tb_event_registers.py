@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""event_registers against tactile_depth.registers.event_registers, every output in every cycle."""
+"""event_registers against tactile_depth.chip.registers.event_registers, every output in every cycle."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.registers.event_registers import (
+from tactile_depth.chip.registers.event_registers import (
     COUNTERS,
     EVENT_COUNTERS,
     EVENTS,
@@ -20,7 +20,7 @@ from tactile_depth.registers.event_registers import (
     STICKY_EVENTS,
     EventRegisters,
 )
-from tactile_depth.registers.register_map import WORD
+from tactile_depth.chip.registers.register_map import WORD
 from tb import structs
 from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""setting_registers against tactile_depth.registers.setting_registers, every output in every cycle."""
+"""setting_registers against tactile_depth.chip.registers.setting_registers, every output in every cycle."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from tactile_depth.registers.register_map import REGISTERS, WORD
-from tactile_depth.registers.setting_registers import MASKS, RESETS, SETTINGS, SettingRegisters
+from tactile_depth.chip.registers.register_map import REGISTERS, WORD
+from tactile_depth.chip.registers.setting_registers import MASKS, RESETS, SETTINGS, SettingRegisters
 from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
 from tb.stream import parametrize

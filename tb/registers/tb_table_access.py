@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""table_access against tactile_depth.registers.table_access, every output in every cycle."""
+"""table_access against tactile_depth.chip.registers.table_access, every output in every cycle."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-from tactile_depth.registers.register_map import TABLES, WORD
-from tactile_depth.registers.table_access import HIGH, INDEX, LOW, PORTS, SIZE, TableAccess
+from tactile_depth.chip.registers.register_map import TABLES, WORD
+from tactile_depth.chip.registers.table_access import HIGH, INDEX, LOW, PORTS, SIZE, TableAccess
 from tb import structs
 from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""table_banks against tactile_depth.registers.table_banks, every output in every cycle."""
+"""table_banks against tactile_depth.chip.registers.table_banks, every output in every cycle."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-from tactile_depth.registers.register_map import TABLES, WORD
-from tactile_depth.registers.table_banks import CAPTURES, COMMIT, TableBanks
+from tactile_depth.chip.registers.register_map import TABLES, WORD
+from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT, TableBanks
 from tb import structs
 from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench

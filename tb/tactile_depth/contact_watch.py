@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.configuration import Configuration
-from tactile_depth.contact.contact_events import ContactEvents, Settings, record
-from tactile_depth.contact.threshold_comparator import ThresholdComparator
-from tactile_depth.latency import last_pixel_to_first_depth
-from tactile_depth.registers.register_map import MAP, REGISTERS
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.contact.contact_events import ContactEvents, Settings, record
+from tactile_depth.chip.contact.threshold_comparator import ThresholdComparator
+from tactile_depth.chip.latency import last_pixel_to_first_depth
+from tactile_depth.chip.registers.register_map import MAP, REGISTERS
 from tb.pins import unsigned
 from tb.register_mirror import RegisterMirror
 

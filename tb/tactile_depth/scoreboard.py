@@ -11,16 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from tactile_depth.built_in import synthetic
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration
-from tactile_depth.gradient.flat_field import ratios
-from tactile_depth.gradient.light_gains import Light, LightFilter
-from tactile_depth.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.tactile_depth import slope_codes, solve, zeroed
-from tactile_depth.video.frame_guard import Frame, frame_guard
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.flat_field import ratios
+from tactile_depth.chip.gradient.light_gains import Light, LightFilter
+from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.chip.tactile_depth import slope_codes, solve, zeroed
+from tactile_depth.chip.video.frame_guard import Frame, frame_guard
+from tactile_depth.sensor.built_in import synthetic
 from tb.axil import RegisterClient
 from tb.axis import AxisMonitor
 from tb.pixels import unpack

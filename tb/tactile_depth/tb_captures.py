@@ -7,12 +7,12 @@ from typing import Any
 import cocotb
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.depth.zero_capture import captured_zero
-from tactile_depth.gradient.flat_field import captured_gains
-from tactile_depth.latency import first_depth_latency
-from tactile_depth.registers.axil_port import Response
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.table_entries import one_word, reference_entries
+from tactile_depth.chip.depth.zero_capture import captured_zero
+from tactile_depth.chip.gradient.flat_field import captured_gains
+from tactile_depth.chip.latency import first_depth_latency
+from tactile_depth.chip.registers.axil_port import Response
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.chip.table_entries import one_word, reference_entries
 from tb.axis import broken, video
 from tb.pixels import pack, unpack
 from tb.selection import Level, case

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from tactile_depth.registers.register_map import WORD
-from tactile_depth.video.frame_guard import FAULTS
+from tactile_depth.chip.registers.register_map import WORD
+from tactile_depth.chip.video.frame_guard import FAULTS
 from tb.axis import broken
 from tb.selection import Level, case, named, up_to
 from tb.stream import parametrize

@@ -7,10 +7,10 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.configuration import COLUMNS
-from tactile_depth.latency import first_depth_latency
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.tactile_depth import default_parameters, top_parameters
+from tactile_depth.chip.configuration import COLUMNS
+from tactile_depth.chip.latency import first_depth_latency
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.chip.tactile_depth import default_parameters, top_parameters
 from tb.axis import PROFILES
 from tb.selection import Level, case, up_to
 from tb.settings import RUN
@@ -50,7 +50,7 @@ async def the_configuration_is_that_of_the_models(dut: Any) -> None:
 
 @case(Level.FIRST, whole_rows=True)
 async def one_frame(dut: Any) -> None:
-    """Send one frame: it drains without a successor, with the latencies of tactile_depth.latency."""
+    """Send one frame: it drains without a successor, with the latencies of tactile_depth.chip.latency."""
     pipeline = await started(dut)
     await pipeline.send(pipeline.frame())
     await pipeline.check()

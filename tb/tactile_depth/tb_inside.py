@@ -3,7 +3,7 @@
 
 from typing import Any
 
-from tactile_depth.latency import first_depth_latency
+from tactile_depth.chip.latency import first_depth_latency
 from tb.selection import case
 from tb.tactile_depth.bench import started
 

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from tactile_depth.registers.axil_port import Response
-from tactile_depth.registers.axil_registers import GAINS
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.video.frame_guard import Word
+from tactile_depth.chip.registers.axil_port import Response
+from tactile_depth.chip.registers.axil_registers import GAINS
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.chip.video.frame_guard import Word
 from tb.axis import broken, video
 from tb.pixels import pack, unpack
 from tb.selection import Level, case

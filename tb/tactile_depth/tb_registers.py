@@ -7,9 +7,9 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.configuration import Configuration
-from tactile_depth.registers.axil_port import Response, strobed_bits
-from tactile_depth.registers.register_map import MAP, REGISTERS, TABLES
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.registers.axil_port import Response, strobed_bits
+from tactile_depth.chip.registers.register_map import MAP, REGISTERS, TABLES
 from tb.axil import OFFSET, present, read, take, write
 from tb.axis import broken, video
 from tb.pixels import pack

@@ -7,8 +7,8 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles
 
-from tactile_depth.latency import first_depth_latency
-from tactile_depth.registers.register_map import MAP
+from tactile_depth.chip.latency import first_depth_latency
+from tactile_depth.chip.registers.register_map import MAP
 from tb.axis import broken, profile
 from tb.selection import Level, case, up_to
 from tb.stream import parametrize

@@ -8,10 +8,10 @@ import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles
 
-from tactile_depth.configuration import Configuration
-from tactile_depth.registers.axil_port import Response
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.table_entries import one_word, reference_entries
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.registers.axil_port import Response
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.chip.table_entries import one_word, reference_entries
 from tb.selection import Level, case, named, up_to
 from tb.stream import MANY, REGRESS, configuration, parametrize
 from tb.tactile_depth.bench import HEAD_CLOCKS, SKID_WORDS, Pipeline, started

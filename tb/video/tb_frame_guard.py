@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""frame_guard against tactile_depth.video.frame_guard: frames, marks and faults of the words seen at the input.
+"""frame_guard against tactile_depth.chip.video.frame_guard: frames, marks and faults of the words seen at the input.
 
 tests/video/test_frame_guard.py checks the frames and faults of the model.
 """
@@ -13,7 +13,7 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.video.frame_guard import FAULTS, frame_guard
+from tactile_depth.chip.video.frame_guard import FAULTS, frame_guard
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSource, broken, faults_of, positions, profile, spoiled, video
 from tb.cases import on_bench
 from tb.pins import by_name, unsigned

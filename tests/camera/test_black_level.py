@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from formal.entries import FULL_WIDTH, Proof
-from tactile_depth.camera.black_level import black_level
-from tactile_depth.camera.pixel_format import pixel_format
-from tactile_depth.camera_configuration import FORMATS, CameraConfiguration
+from tactile_depth.chip.camera.black_level import black_level
+from tactile_depth.chip.camera.pixel_format import pixel_format
+from tactile_depth.chip.camera_configuration import FORMATS, CameraConfiguration
 from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from formal.entries import Proof
-from tactile_depth.camera.block_totals import block_areas, block_totals
-from tactile_depth.camera.row_sums import red_columns, row_sums
+from tactile_depth.chip.camera.block_totals import block_areas, block_totals
+from tactile_depth.chip.camera.row_sums import red_columns, row_sums
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.camera.block_weights import block_weights, pixels_of
+from tactile_depth.chip.camera.block_weights import block_weights, pixels_of
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 
 from formal.entries import FULL_WIDTH, Proof
-from tactile_depth.camera.camera_front_end import camera_settings
-from tactile_depth.camera.camera_registers import CameraRegisters, camera_registers_parameters
-from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.registers.register_map import CAMERA_MAP, MAP
+from tactile_depth.chip.camera.camera_front_end import camera_settings
+from tactile_depth.chip.camera.camera_registers import CameraRegisters, camera_registers_parameters
+from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.registers.register_map import CAMERA_MAP, MAP
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 

@@ -8,8 +8,9 @@ import pytest
 
 from formal.entries import Proof
 from formal.tables import camera_list
-from tactile_depth.camera.camera_setup import CameraSetup, Kind
-from tactile_depth.camera.register_lists import (
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.camera.camera_setup import CameraSetup, Kind
+from tactile_depth.chip.camera.register_lists import (
     CAMERAS,
     OV5640_LINE,
     OV5640_LINES,
@@ -19,7 +20,6 @@ from tactile_depth.camera.register_lists import (
     setup_parameters,
     write_list,
 )
-from tactile_depth.errors import InputError
 from tb.camera.sccb_camera import SccbCamera
 from tb.camera.tb_camera_setup import LISTS
 from tb.structures import BOTH, ICARUS, Mutants, Structure

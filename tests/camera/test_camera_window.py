@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 from formal.entries import Proof
-from tactile_depth.camera.camera_window import Settings, Watched, camera_window
-from tactile_depth.video.frame_guard import Word
+from tactile_depth.chip.camera.camera_window import Settings, Watched, camera_window
+from tactile_depth.chip.video.frame_guard import Word
 from tb.axis import BREAKS, SILENT, WITHOUT_START, broken, positions, video
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from formal.entries import FULL_WIDTH, Proof
-from tactile_depth.camera.pixel_format import CHROMA_OFFSET, photograph, pixel_format, pixel_format_parameters
-from tactile_depth.camera_configuration import FORMATS, PHASES, CameraConfiguration
-from tactile_depth.registers.register_map import CAMERA_REGISTERS
+from tactile_depth.chip.camera.pixel_format import CHROMA_OFFSET, photograph, pixel_format, pixel_format_parameters
+from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraConfiguration
+from tactile_depth.chip.registers.register_map import CAMERA_REGISTERS
 from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.camera.round_divide import WHITE, round_divide
+from tactile_depth.chip.camera.round_divide import WHITE, round_divide
 from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.camera.row_sums import red_columns, row_sums, sums_over_blocks
+from tactile_depth.chip.camera.row_sums import red_columns, row_sums, sums_over_blocks
 from tb.structures import BOTH, ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -17,8 +17,8 @@ from commands.hardware.gate_power import CLOCK, INTERNAL, LEAKAGE, SWITCHING, po
 from commands.hardware.gate_sim import Activity, Macro, Stimulus
 from commands.hardware.gates import Instance, Netlist, clock_pin, from_yosys, verilog
 from commands.hardware.liberty import Cell, Pin, functions, groups_of, read, truth
-from tactile_depth.configuration import Configuration
-from tactile_depth.errors import InputError
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.configuration import Configuration
 
 LATENCY = 4  # of td_dot_product
 

@@ -13,9 +13,9 @@ from commands.common.variables import Mismatch
 from commands.study import baseline_methods, baseline_throughput, baselines, report
 from commands.study.baseline_methods import METHODS, Method, Prepared
 from commands.study.baselines import WARM_UPS
-from tactile_depth.configuration import Configuration
-from tactile_depth.errors import InputError
-from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth
 
 
 @pytest.mark.parametrize("threads", [1, 2])

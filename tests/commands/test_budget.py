@@ -15,11 +15,11 @@ from commands.study.budget import DrawnSensor, Request
 from commands.study.budget_steps import BACK, FRONT, MEASURES, Exact, framed
 from commands.study.drawn_sensor import PLACES
 from commands.study.presses import measured
-from tactile_depth import reference
-from tactile_depth.camera_configuration import CameraChoice
-from tactile_depth.errors import InputError
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.presses import GridPresses, PressPictures, to_grid
+from tactile_depth.base.errors import InputError
+from tactile_depth.calibrate.presses import GridPresses, PressPictures, to_grid
+from tactile_depth.chip.camera_configuration import CameraChoice
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.depth import reference
 
 STILL = DrawnSensor(camera=(120, 160), drift=0, white=0)
 SMALL = Request(drawn=replace(STILL, drift=0.05, white=0.02), presses=10, bodies=2)

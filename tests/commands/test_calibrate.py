@@ -13,10 +13,10 @@ import pytest
 
 from commands.run import draw
 from commands.run.calibrate import parse, run
-from tactile_depth.built_in import load
-from tactile_depth.calibration_file import FOLDER
-from tactile_depth.fitting import fit_presses
-from tactile_depth.frames import read_picture
+from tactile_depth.calibrate.fitting import fit_presses
+from tactile_depth.pictures.frames import read_picture
+from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.calibration_file import FOLDER
 from tests.ball_presses import CAMERA, PITCH, read, real_folder, table_rows, write_folder, write_table
 
 

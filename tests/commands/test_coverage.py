@@ -21,7 +21,7 @@ from commands.verify.coverage import (
     read,
     table,
 )
-from tactile_depth.video.frame_guard import FAULTS
+from tactile_depth.chip.video.frame_guard import FAULTS
 from tb.axis import positions
 from tb.functional_coverage import PLACES, bins, impossible, place_of
 

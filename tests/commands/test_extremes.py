@@ -13,9 +13,9 @@ from commands.study import extremes, long_state, sensor_extremes, transform_nois
 from commands.study.drawn_light import DrawnLight
 from commands.study.extremes import EXTREMES, drift, faults, largest, measure, model_drift, smallest
 from commands.study.transform_noise import compliance, transforms
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import COLUMNS, Configuration
-from tactile_depth.tactile_depth import slope_tables
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.tactile_depth import slope_tables
 
 SIZE = 16
 SOLVERS = tuple(COLUMNS)

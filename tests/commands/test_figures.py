@@ -12,7 +12,7 @@ from commands.common import recorded, repository
 from commands.hardware import synth
 from commands.hardware.targets import DEFAULT_TARGET, TARGETS
 from commands.study import figures
-from tactile_depth.errors import InputError
+from tactile_depth.base.errors import InputError
 
 WITHOUT_FIGURES = ("| variable |", "| J1 |", "| part |")  # heads of tables of settings and of pins
 

@@ -13,8 +13,8 @@ import pytest
 from commands.common import repository
 from commands.common import simulator as simulation
 from commands.hardware import ecp5, fpga, synthesis, yosys
-from tactile_depth.configuration import Configuration
-from tactile_depth.errors import InputError
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.configuration import Configuration
 
 A_WIDTH, B_WIDTH = 27, 18
 

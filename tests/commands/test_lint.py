@@ -11,7 +11,7 @@ import pytest
 from commands.common import repository, simulator
 from commands.verify import items, lint
 from commands.verify.slang_lint import WAIVERS, findings, instantiated, waiver
-from tactile_depth.configuration import Configuration
+from tactile_depth.chip.configuration import Configuration
 from tb.settings import RUN
 from tests.conftest import chosen_structures
 

@@ -10,7 +10,7 @@ import pytest
 
 from commands.common import repository
 from commands.hardware import fpga, nexus
-from tactile_depth.errors import InputError
+from tactile_depth.base.errors import InputError
 
 FULL = "Info: \t MULT18_CORE:     64/     56   114%\n"
 

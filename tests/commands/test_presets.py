@@ -14,11 +14,11 @@ from commands.common import repository, run_request, wrapper
 from commands.hardware import fpga, synth, synthesis
 from commands.run import sim
 from commands.study import tune
-from tactile_depth.built_in import load
-from tactile_depth.errors import InputError
-from tactile_depth.pipeline import Pipeline
-from tactile_depth.presets import CHIP, PRESETS, SENSOR
-from tactile_depth.tactile_depth import default_parameters, top_parameters
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.tactile_depth import default_parameters, top_parameters
+from tactile_depth.depth.pipeline import Pipeline
+from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.presets import CHIP, PRESETS, SENSOR
 from tests.drawn_light import no_contact
 
 SIZES: dict[str, tuple[int, int]] = {

@@ -8,7 +8,7 @@ import pytest
 
 import tactile_depth as td
 from commands.study.presses import in_light, measured, run
-from tactile_depth.presses import GridPress, PressPictures, camera_pitch_mm, gather
+from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather
 from tests.ball_presses import write_folder
 
 

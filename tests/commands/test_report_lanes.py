@@ -5,11 +5,11 @@ import json
 from pathlib import Path
 
 from commands.common import run_request
+from commands.cost.cost import cost
 from commands.study import report_lanes, sweep
 from commands.study.rows import Row
-from tactile_depth.configuration import Configuration
-from tactile_depth.cost import cost
-from tactile_depth.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
 
 
 def row(columns: int, lanes: int) -> Row:

@@ -20,8 +20,8 @@ from commands.common import variables
 from commands.common.repository import ROOT
 from commands.run import bench, sim
 from commands.run.compare import compare, warnings
-from tactile_depth import files
-from tactile_depth.configuration import Configuration
+from tactile_depth.base import files
+from tactile_depth.chip.configuration import Configuration
 
 SMALL = ["N=16", "SIM=icarus"]
 NAMES = ["depth.npy", "depth.png", "report.json"]

@@ -18,7 +18,7 @@ import pytest
 
 from commands.common import signals, variables
 from commands.common.repository import ROOT
-from tactile_depth import interruption
+from tactile_depth.base import interruption
 
 ENDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated by SIGTERM", signal.SIGHUP: "terminated by SIGHUP"}
 LONG = ["N=64", "SIM=icarus", "REPEAT=1000"]  # minutes

@@ -11,16 +11,16 @@ from PIL import Image
 
 from commands.common import run_request
 from commands.run import sim
-from tactile_depth import reference
-from tactile_depth.accuracy import errors
-from tactile_depth.built_in import load
-from tactile_depth.camera_configuration import FORMATS, CameraChoice, CameraConfiguration
-from tactile_depth.configuration import Configuration
-from tactile_depth.contact.threshold_comparator import LATENCY
-from tactile_depth.errors import InputError
-from tactile_depth.frames import SCENE_PICTURE, load_frames, on_grid
-from tactile_depth.latency import last_word_to_first_depth
-from tactile_depth.scenes import render
+from commands.study.accuracy import errors
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.camera_configuration import FORMATS, CameraChoice, CameraConfiguration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.contact.threshold_comparator import LATENCY
+from tactile_depth.chip.latency import last_word_to_first_depth
+from tactile_depth.depth import reference
+from tactile_depth.pictures.frames import SCENE_PICTURE, load_frames, on_grid
+from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.scenes import render
 
 PICTURE = (36, 48)  # rows and columns
 ARGUMENTS = ("SOLVER=tridiagonal", "N=16", "SIM=icarus", "CALIBRATION=synthetic")

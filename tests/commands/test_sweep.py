@@ -18,13 +18,12 @@ from typing import Any
 import pytest
 
 from commands.common import published, repository, run_request
+from commands.cost.cost import cost
 from commands.run import sim
-from commands.study import sweep
+from commands.study import accuracy, sweep
 from commands.study.rows import line
-from tactile_depth import accuracy
-from tactile_depth.configuration import COLUMNS, Configuration
-from tactile_depth.cost import cost
-from tactile_depth.latency import first_depth_latency, last_pixel_to_last_depth
+from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_last_depth
 
 SMALL = [{"columns": 16, "solver": solver, "data_width": width} for solver in COLUMNS for width in (12, 18, 24) * 1] + [
     {"columns": 16, "neumann": True}

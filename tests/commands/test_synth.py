@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from commands.common import repository
+from commands.cost.cost import cost
 from commands.hardware import synth
 from commands.hardware.fpga_memory import Memory, memories, path_of
-from tactile_depth.built_in import synthetic
-from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.configuration import Configuration
-from tactile_depth.cost import cost
+from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.sensor.built_in import synthetic
 
 TINY = Configuration(columns=16, rows=8, solver="tridiagonal", bits_per_channel=1)
 XCZU7EV = synth.TARGETS["xczu7ev"]

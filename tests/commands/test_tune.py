@@ -14,15 +14,15 @@ import pytest
 
 import tactile_depth as td
 from commands.common import published, run_request
+from commands.cost.cost import cost
 from commands.run import sim
 from commands.study import tune
 from commands.study.tune_search import WORST_FRAME, Limits, Search, Widths
-from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
-from tactile_depth.cost import cost
-from tactile_depth.frames import load_frames
-from tactile_depth.latency import last_pixel_to_last_depth
-from tactile_depth.presets import CHIP
-from tactile_depth.presses import gather
+from tactile_depth.calibrate.presses import gather
+from tactile_depth.chip.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
+from tactile_depth.chip.latency import last_pixel_to_last_depth
+from tactile_depth.pictures.frames import load_frames
+from tactile_depth.sensor.presets import CHIP
 from tests import ball_presses
 
 NONE = math.inf

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from commands.common import variables
-from tactile_depth.errors import Argument, InputError, InputWarning
+from tactile_depth.base.errors import Argument, InputError, InputWarning
 
 
 def test_given() -> None:

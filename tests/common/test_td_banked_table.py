@@ -10,8 +10,8 @@ import pytest
 from cocotb_tools.runner import as_sv_literal
 
 from formal.entries import WORD_FREE, Proof
-from tactile_depth.common.td_banked_table import BankedTable
-from tactile_depth.rom_files import write_words
+from tactile_depth.chip.common.td_banked_table import BankedTable
+from tactile_depth.chip.rom_files import write_words
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from formal.entries import Proof
-from tactile_depth.common.td_block_sum import block_sum
+from tactile_depth.chip.common.td_block_sum import block_sum
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import WORD_FREE, Proof
-from tactile_depth.common.td_delay_line import delay_line
+from tactile_depth.chip.common.td_delay_line import delay_line
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.common import td_divide
-from tactile_depth.common.td_divide import divide
+from tactile_depth.chip.common import td_divide
+from tactile_depth.chip.common.td_divide import divide
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

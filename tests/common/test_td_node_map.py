@@ -8,8 +8,8 @@ import pytest
 
 from formal.entries import Proof
 from formal.tables import node_rom
-from tactile_depth.common.td_node_map import entries_per_node, latency, side, table_entries
-from tactile_depth.rom_files import write_nodes
+from tactile_depth.chip.common.td_node_map import entries_per_node, latency, side, table_entries
+from tactile_depth.chip.rom_files import write_nodes
 from tb.nodes import first_words
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl

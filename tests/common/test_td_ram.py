@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from commands.common.repository import ROOT
 from commands.hardware.ecp5 import write_slices
 from formal.entries import WORD_FREE, Proof
-from tactile_depth.common.td_ram import ram
-from tactile_depth.rom_files import write_words
+from tactile_depth.chip.common.td_ram import ram
+from tactile_depth.chip.rom_files import write_words
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 

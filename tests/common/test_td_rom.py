@@ -5,8 +5,8 @@ import random
 from pathlib import Path
 from typing import Any
 
-from tactile_depth.common.td_rom import rom
-from tactile_depth.rom_files import pack, write_words
+from tactile_depth.chip.common.td_rom import rom
+from tactile_depth.chip.rom_files import pack, write_words
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 

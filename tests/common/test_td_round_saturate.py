@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import FULL_WIDTH, Proof
-from tactile_depth.bounds import Responses
-from tactile_depth.common.td_round_saturate import Monitor, round_half_even, round_saturate
+from tactile_depth.chip.bounds import Responses
+from tactile_depth.chip.common.td_round_saturate import Monitor, round_half_even, round_saturate
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -4,7 +4,7 @@
 from typing import Any
 
 from formal.entries import Proof
-from tactile_depth.common.td_table_port import answered
+from tactile_depth.chip.common.td_table_port import answered
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.contact.beat_sums import beat_sums
+from tactile_depth.chip.contact.beat_sums import beat_sums
 from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import ROUNDING, Proof
-from tactile_depth.contact import centroid
-from tactile_depth.contact.centroid import FRACTION, mean
+from tactile_depth.chip.contact import centroid
+from tactile_depth.chip.contact.centroid import FRACTION, mean
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from formal.entries import Proof
-from tactile_depth.contact.contact_sums import ContactSums, Sums
+from tactile_depth.chip.contact.contact_sums import ContactSums, Sums
 from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.contact.record_packets import RecordPackets
+from tactile_depth.chip.contact.record_packets import RecordPackets
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from formal.entries import ROUNDING, Proof
-from tactile_depth.configuration import Configuration
-from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tb.structures import BOTH, ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 

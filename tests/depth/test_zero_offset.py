@@ -8,13 +8,13 @@ import pytest
 
 from formal.entries import ROUNDING, Proof
 from formal.tables import zero_rom
-from tactile_depth.common.td_node_map import node_map, side
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration
-from tactile_depth.depth.zero_capture import captured_zero
-from tactile_depth.depth.zero_offset import exact_zero, no_zero, zero_offset
-from tactile_depth.depth.zero_offset import latency as zero_offset_latency
-from tactile_depth.rom_files import write_zero
+from tactile_depth.chip.common.td_node_map import node_map, side
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.depth.zero_capture import captured_zero
+from tactile_depth.chip.depth.zero_offset import exact_zero, no_zero, zero_offset
+from tactile_depth.chip.depth.zero_offset import latency as zero_offset_latency
+from tactile_depth.chip.rom_files import write_zero
 from tb.stream import places
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl

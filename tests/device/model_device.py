@@ -21,24 +21,24 @@ from typing import Any
 
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration
-from tactile_depth.contact.contact_events import ContactEvents, Settings
-from tactile_depth.depth.zero_capture import captured_zero
-from tactile_depth.gradient.flat_field import captured_gains, pixel_gains
-from tactile_depth.gradient.light_gains import Light, LightFilter
-from tactile_depth.gradient.polynomial_gradient import coefficient_map
-from tactile_depth.link import device as link
-from tactile_depth.link.device import LinkDevice
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.registers.axil_port import Response
-from tactile_depth.registers.axil_registers import AxilRegisters, Build, Events, Live
-from tactile_depth.registers.register_map import TABLES
-from tactile_depth.registers.table_banks import CAPTURES
-from tactile_depth.sensor import CUBIC
-from tactile_depth.table_entries import one_word, reference_entries
-from tactile_depth.tactile_depth import Tables, slope_codes, solve, top_parameters, zeroed
-from tactile_depth.video.frame_guard import Word
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.contact.contact_events import ContactEvents, Settings
+from tactile_depth.chip.depth.zero_capture import captured_zero
+from tactile_depth.chip.gradient.flat_field import captured_gains, pixel_gains
+from tactile_depth.chip.gradient.light_gains import Light, LightFilter
+from tactile_depth.chip.gradient.polynomial_gradient import coefficient_map
+from tactile_depth.chip.link import device as link
+from tactile_depth.chip.link.device import LinkDevice
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.registers.axil_port import Response
+from tactile_depth.chip.registers.axil_registers import AxilRegisters, Build, Events, Live
+from tactile_depth.chip.registers.register_map import TABLES
+from tactile_depth.chip.registers.table_banks import CAPTURES
+from tactile_depth.chip.table_entries import one_word, reference_entries
+from tactile_depth.chip.tactile_depth import Tables, slope_codes, solve, top_parameters, zeroed
+from tactile_depth.chip.video.frame_guard import Word
+from tactile_depth.sensor.sensor import CUBIC
 
 SETTINGS = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
 SIGNED = 1 << 31

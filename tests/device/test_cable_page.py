@@ -10,9 +10,9 @@ import pytest
 
 import tactile_depth as td
 from commands.common.repository import ROOT
+from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName
+from tactile_depth.chip.link.rates import rate
 from tactile_depth.cli import calibrate, live
-from tactile_depth.link.depth_formats import FORMATS, DepthFormatName
-from tactile_depth.link.rates import rate
 from tests.device.cable import setup_of
 from tests.device.model_device import Setup
 

@@ -13,10 +13,10 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
+from tactile_depth.calibrate.fitting import fit_presses
+from tactile_depth.calibrate.presses import GridPresses, gather, to_grid
 from tactile_depth.cli.main import main
 from tactile_depth.cli.measure import grid_of
-from tactile_depth.fitting import fit_presses
-from tactile_depth.presses import GridPresses, gather, to_grid
 from tests import ball_presses
 from tests.device.cable import setup_of
 from tests.device.conftest import Plug

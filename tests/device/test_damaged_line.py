@@ -20,10 +20,10 @@ import pytest
 
 import tactile_depth as td
 from commands.common.repository import ROOT
-from tactile_depth.link import packets as link
-from tactile_depth.link.depth_frames import DepthFrame, DepthFrames
-from tactile_depth.link.framing import to_line
-from tactile_depth.reader import Reader
+from tactile_depth.chip.link import packets as link
+from tactile_depth.chip.link.depth_frames import DepthFrame, DepthFrames
+from tactile_depth.chip.link.framing import to_line
+from tactile_depth.pictures.reader import Reader
 from tests.device.test_rtl import small
 
 PICTURES = 8  # different ones

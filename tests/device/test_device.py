@@ -17,8 +17,8 @@ from PIL import Image
 
 import tactile_depth as td
 from commands.common.repository import ROOT
-from tactile_depth.registers.register_map import TABLES
-from tactile_depth.table_entries import table_entries
+from tactile_depth.chip.registers.register_map import TABLES
+from tactile_depth.chip.table_entries import table_entries
 from tests.device.cable import Cable
 from tests.device.conftest import GRID, Plug
 

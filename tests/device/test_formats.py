@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 import tactile_depth as td
+from tactile_depth.chip.contact.contact_events import WORDS, record
+from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormat, DepthFormatName
+from tactile_depth.chip.link.device import Build, LinkDevice
+from tactile_depth.chip.link.framing import from_line
+from tactile_depth.chip.link.packets import Kind
 from tactile_depth.cli import measure
 from tactile_depth.cli.ply import vertices_mm
-from tactile_depth.contact.contact_events import WORDS, record
 from tactile_depth.device import line
 from tactile_depth.device.transport import Pace
-from tactile_depth.link.depth_formats import FORMATS, DepthFormat, DepthFormatName
-from tactile_depth.link.device import Build, LinkDevice
-from tactile_depth.link.framing import from_line
-from tactile_depth.link.packets import Kind
 from tests.device.conftest import GRID, BuildZynq, Plug
 from tests.device.test_serial_line import RESET, require_one_error, until
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 import tactile_depth as td
-from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.chip.registers.register_map import REGISTERS
 from tests.device.cable import Cable, setup_of
 from tests.device.conftest import GRID
 

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import tactile_depth as td
-from tactile_depth.device.status import DeviceStatus
-from tactile_depth.link.depth_formats import (
+from tactile_depth.chip.link.depth_formats import (
     FORMATS,
     DepthFormatName,
     exact_shift,
@@ -17,6 +16,7 @@ from tactile_depth.link.depth_formats import (
     to_bytes,
     value_bytes,
 )
+from tactile_depth.device.status import DeviceStatus
 from tests.real_data import FOLDER, needs_real_data
 
 GRID = (16, 32)

@@ -16,10 +16,10 @@ import pytest
 import serial.tools.list_ports
 
 import tactile_depth as td
+from tactile_depth.chip.link.framing import to_line
+from tactile_depth.chip.link.packets import Status
 from tactile_depth.device import line, serial_line
 from tactile_depth.device.addresses import open_transport
-from tactile_depth.link.framing import to_line
-from tactile_depth.link.packets import Status
 from tests.device.cable import Cable
 from tests.device.conftest import GRID, Plug
 

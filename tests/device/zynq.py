@@ -16,13 +16,13 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 
 import tactile_depth as td
-from tactile_depth.contact.contact_events import Record
+from tactile_depth.chip.contact.contact_events import Record
+from tactile_depth.chip.link.depth_formats import DepthFormat, to_bytes
+from tactile_depth.chip.registers.axil_registers import Events, Live
+from tactile_depth.chip.table_entries import table_entries
 from tactile_depth.device import vdma
 from tactile_depth.device.mapped_words import MappedWords
-from tactile_depth.link.depth_formats import DepthFormat, to_bytes
-from tactile_depth.reader import Reader
-from tactile_depth.registers.axil_registers import Events, Live
-from tactile_depth.table_entries import table_entries
+from tactile_depth.pictures.reader import Reader
 from tests.device.model_device import ModelDevice, Setup
 
 PAGE = 4096

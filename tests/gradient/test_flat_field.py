@@ -8,10 +8,10 @@ import pytest
 
 from formal.entries import ROUNDING, WORD_FREE, Proof
 from formal.tables import gain_rom
-from tactile_depth.common.td_node_map import node_map
-from tactile_depth.configuration import DEVIATION, RATIO, Configuration
-from tactile_depth.fixed_point import Format
-from tactile_depth.gradient.flat_field import (
+from tactile_depth.chip.common.td_node_map import node_map
+from tactile_depth.chip.configuration import DEVIATION, RATIO, Configuration
+from tactile_depth.chip.fixed_point import Format
+from tactile_depth.chip.gradient.flat_field import (
     CODE,
     captured_gains,
     deviations,
@@ -20,7 +20,7 @@ from tactile_depth.gradient.flat_field import (
     ratios,
     unit_gains,
 )
-from tactile_depth.rom_files import write_gains
+from tactile_depth.chip.rom_files import write_gains
 from tb.nodes import Grid
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl

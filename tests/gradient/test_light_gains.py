@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from formal.entries import ROUNDING, Proof
-from tactile_depth.configuration import Configuration
-from tactile_depth.fixed_point import Format
-from tactile_depth.gradient.light_gains import Light, LightFilter, settled
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.fixed_point import Format
+from tactile_depth.chip.gradient.light_gains import Light, LightFilter, settled
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 

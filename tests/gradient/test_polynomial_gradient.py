@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from formal.entries import ROUNDING, Proof
 from formal.tables import polynomial_roms
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration
-from tactile_depth.gradient.polynomial_gradient import coefficients, gradient_parameters, slope_codes
-from tactile_depth.rom_files import write_polynomials
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.polynomial_gradient import coefficients, gradient_parameters, slope_codes
+from tactile_depth.chip.rom_files import write_polynomials
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from formal.entries import Proof
-from tactile_depth.configuration import Configuration
-from tactile_depth.gradient.reference_capture import (
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.reference_capture import (
     largest_log2_frames,
     reference_capture,
     reference_capture_parameters,

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.link.bank_choice import BankChoice
+from tactile_depth.chip.link.bank_choice import BankChoice
 from tb.structures import BOTH, Structure
 from tests.rtl import test_rtl as test_rtl
 

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.link.cobs_decode import LONGEST_PIECE, CobsDecode
-from tactile_depth.link.framing import RUN, cobs_decode, cobs_encode
+from tactile_depth.chip.link.cobs_decode import LONGEST_PIECE, CobsDecode
+from tactile_depth.chip.link.framing import RUN, cobs_decode, cobs_encode
 from tb.structures import BOTH, ICARUS, QUICK_FIRST, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.link.framing import RUN, cobs_encode
+from tactile_depth.chip.link.framing import RUN, cobs_encode
 from tb.link.tb_cobs_encode import cases, on_line
 from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl

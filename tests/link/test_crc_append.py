@@ -2,7 +2,7 @@
 """crc_append: RTL against zlib."""
 
 from formal.entries import FULL_WIDTH, Proof
-from tactile_depth.link.framing import cobs_decode, to_line
+from tactile_depth.chip.link.framing import cobs_decode, to_line
 from tb.link.tb_crc_append import with_crc
 from tb.structures import BOTH, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl

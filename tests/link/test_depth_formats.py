@@ -10,7 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from tactile_depth.link.depth_formats import DepthFormat, exact_shift, from_bytes, sent_shape, to_bytes, value_bytes
+from tactile_depth.chip.link.depth_formats import (
+    DepthFormat,
+    exact_shift,
+    from_bytes,
+    sent_shape,
+    to_bytes,
+    value_bytes,
+)
 
 
 @given(st.integers(12, 32), st.data())

@@ -12,12 +12,12 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from tactile_depth.contact.contact_events import Record
-from tactile_depth.link import packets as link
-from tactile_depth.link.depth_formats import DepthFormat, exact_shift, from_bytes, to_bytes
-from tactile_depth.link.depth_frames import DepthFrame, DepthFrames
-from tactile_depth.link.device import Build, LinkDevice
-from tactile_depth.link.framing import to_line
+from tactile_depth.chip.contact.contact_events import Record
+from tactile_depth.chip.link import packets as link
+from tactile_depth.chip.link.depth_formats import DepthFormat, exact_shift, from_bytes, to_bytes
+from tactile_depth.chip.link.depth_frames import DepthFrame, DepthFrames
+from tactile_depth.chip.link.device import Build, LinkDevice
+from tactile_depth.chip.link.framing import to_line
 
 FORMATS = tuple(DepthFormat)[1:]
 BUILD = Build(32, 48, 24, bottom_first=True)

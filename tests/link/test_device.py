@@ -6,12 +6,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactile_depth.contact.contact_events import Record
-from tactile_depth.link import packets as link
-from tactile_depth.link.depth_formats import DepthFormat
-from tactile_depth.link.depth_frames import DepthFrames
-from tactile_depth.link.device import Build, LinkDevice
-from tactile_depth.link.framing import to_line
+from tactile_depth.chip.contact.contact_events import Record
+from tactile_depth.chip.link import packets as link
+from tactile_depth.chip.link.depth_formats import DepthFormat
+from tactile_depth.chip.link.depth_frames import DepthFrames
+from tactile_depth.chip.link.device import Build, LinkDevice
+from tactile_depth.chip.link.framing import to_line
 
 BUILD = Build(16, 32, 24, bottom_first=True)
 COUNTER, REFUSED = 0x10, 0x20

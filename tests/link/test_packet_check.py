@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.link.framing import CRC_BYTES, LONGEST_BODY, cobs_decode, from_line, to_line
-from tactile_depth.link.packet_check import PacketCheck
+from tactile_depth.chip.link.framing import CRC_BYTES, LONGEST_BODY, cobs_decode, from_line, to_line
+from tactile_depth.chip.link.packet_check import PacketCheck
 from tb.structures import BOTH, QUICK_FIRST, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 

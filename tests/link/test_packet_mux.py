@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import FULL_WIDTH, Proof
-from tactile_depth.link.packet_mux import DEPTH, RECORD, PacketMux
+from tactile_depth.chip.link.packet_mux import DEPTH, RECORD, PacketMux
 from tb.structures import BOTH, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 

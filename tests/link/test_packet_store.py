@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.link.packet_store import PacketStore
+from tactile_depth.chip.link.packet_store import PacketStore
 from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from tactile_depth.contact.contact_events import Record
-from tactile_depth.errors import InputError
-from tactile_depth.link import packets as link
-from tactile_depth.link.depth_formats import DepthFormat
-from tactile_depth.link.framing import (
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.contact.contact_events import Record
+from tactile_depth.chip.link import packets as link
+from tactile_depth.chip.link.depth_formats import DepthFormat
+from tactile_depth.chip.link.framing import (
     LONGEST_BODY,
     LONGEST_ON_LINE,
     cobs_decode,

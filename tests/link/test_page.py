@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from commands.common.repository import ROOT
-from tactile_depth.contact.contact_events import WORDS, Record
-from tactile_depth.link import packets as link
-from tactile_depth.link.depth_formats import DepthFormat, exact_shift
-from tactile_depth.link.depth_frames import DepthFrames
-from tactile_depth.link.device import Build, LinkDevice
-from tactile_depth.link.framing import LONGEST_BODY, LONGEST_ON_LINE, most_on_line, to_line
-from tactile_depth.link.rates import rate
+from tactile_depth.chip.contact.contact_events import WORDS, Record
+from tactile_depth.chip.link import packets as link
+from tactile_depth.chip.link.depth_formats import DepthFormat, exact_shift
+from tactile_depth.chip.link.depth_frames import DepthFrames
+from tactile_depth.chip.link.device import Build, LinkDevice
+from tactile_depth.chip.link.framing import LONGEST_BODY, LONGEST_ON_LINE, most_on_line, to_line
+from tactile_depth.chip.link.rates import rate
 
 PAGE = (ROOT / "docs" / "link.md").read_text()
 RECORD = Record(3, 7, 1000, 256, (1, 0), 128, 1, (1, 0), (1, 0), 128, (16, 0))

@@ -5,9 +5,9 @@ from typing import Any
 
 from formal.entries import ROUNDING, Proof
 from formal.tables import thomas_roms
-from tactile_depth.configuration import Configuration
-from tactile_depth.poisson.tridiagonal_solver import solver_parameters
-from tactile_depth.rom_files import write_thomas
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
+from tactile_depth.chip.rom_files import write_thomas
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 

@@ -4,8 +4,8 @@
 from typing import Any
 
 from formal.entries import ROUNDING, Proof
-from tactile_depth.configuration import Configuration
-from tactile_depth.poisson.tridiagonal_solver import solver_parameters
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 

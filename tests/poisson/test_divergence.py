@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.poisson.divergence import divergence
+from tactile_depth.chip.poisson.divergence import divergence
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

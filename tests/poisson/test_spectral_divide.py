@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 
 from formal.entries import ROUNDING, Proof
 from formal.tables import divide_rom
-from tactile_depth import reference
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration
-from tactile_depth.poisson.spectral_divide import reciprocal_rom, reciprocals, spectral_divide
-from tactile_depth.poisson.transform.orders import bit_reversed
-from tactile_depth.rom_files import write_solver
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.spectral_divide import reciprocal_rom, reciprocals, spectral_divide
+from tactile_depth.chip.poisson.transform.orders import bit_reversed
+from tactile_depth.chip.rom_files import write_solver
+from tactile_depth.depth import reference
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 

@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tactile_depth import reference
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.poisson.spectral_solver import spectral_solver
-from tactile_depth.rom_files import write_solver
-from tactile_depth.scenes import dome, slopes_of
-from tactile_depth.tactile_depth import hdl_parameters
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.poisson.spectral_solver import spectral_solver
+from tactile_depth.chip.rom_files import write_solver
+from tactile_depth.chip.tactile_depth import hdl_parameters
+from tactile_depth.depth import reference
+from tactile_depth.sensor.scenes import dome, slopes_of
 from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
 
 

@@ -9,11 +9,11 @@ import pytest
 
 from formal.entries import Proof
 from formal.tables import thomas_roms
-from tactile_depth.configuration import Configuration
-from tactile_depth.poisson.thomas_table import thomas_table
-from tactile_depth.poisson.transform.orders import eigenvalues
-from tactile_depth.poisson.tridiagonal_solver import solver_parameters
-from tactile_depth.rom_files import write_thomas
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.thomas_table import thomas_table
+from tactile_depth.chip.poisson.transform.orders import eigenvalues
+from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
+from tactile_depth.chip.rom_files import write_thomas
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 

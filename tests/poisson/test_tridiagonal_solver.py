@@ -7,20 +7,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tactile_depth import reference
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import ULTRA, Configuration
-from tactile_depth.poisson import spectral_solver
-from tactile_depth.poisson.divergence import divergence
-from tactile_depth.poisson.tridiagonal_solver import tridiagonal_solver
-from tactile_depth.rom_files import write_solver
-from tactile_depth.scenes import dome, slopes_of
-from tactile_depth.tactile_depth import config_value, top_parameters
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import ULTRA, Configuration
+from tactile_depth.chip.poisson import spectral_solver
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.poisson.tridiagonal_solver import tridiagonal_solver
+from tactile_depth.chip.rom_files import write_solver
+from tactile_depth.chip.tactile_depth import config_value, top_parameters
+from tactile_depth.depth import reference
+from tactile_depth.sensor.scenes import dome, slopes_of
 from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
 from tests.poisson.test_spectral_solver import PEAKS
 
 CHOICES: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
-PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, models/tactile_depth/configuration.py
+PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, models/tactile_depth/chip/configuration.py
 
 
 def built(choices: Any, store: Any, **runs: Any) -> Structure:

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tactile_depth.configuration import Configuration
-from tactile_depth.poisson.tridiagonal_solver import tridiagonal_solver
-from tactile_depth.poisson.wide_solver import wide_solver
-from tactile_depth.rom_files import write_solver
-from tactile_depth.scenes import dome, slopes_of
-from tactile_depth.tactile_depth import config_value, top_parameters
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.tridiagonal_solver import tridiagonal_solver
+from tactile_depth.chip.poisson.wide_solver import wide_solver
+from tactile_depth.chip.rom_files import write_solver
+from tactile_depth.chip.tactile_depth import config_value, top_parameters
+from tactile_depth.sensor.scenes import dome, slopes_of
 from tb.structures import BOTH, ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
 from tests.poisson.test_spectral_solver import PEAKS
 from tests.poisson.test_tridiagonal_solver import divergence_codes, error_percent

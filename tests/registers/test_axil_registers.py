@@ -5,8 +5,8 @@ from collections.abc import Callable
 from typing import Any
 
 from formal.entries import FULL_WIDTH, Proof
-from tactile_depth.configuration import Configuration
-from tactile_depth.tactile_depth import config_value, default_parameters, top_parameters
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.tactile_depth import config_value, default_parameters, top_parameters
 from tb.structures import BOTH, ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
 
 

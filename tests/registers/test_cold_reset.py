@@ -8,9 +8,9 @@ import pytest
 
 from commands.common import simulator
 from commands.verify import mutants
-from tactile_depth.built_in import synthetic
-from tactile_depth.configuration import Configuration
-from tactile_depth.tactile_depth import hdl_parameters, write_roms
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
+from tactile_depth.sensor.built_in import synthetic
 from tb.structures import Structure
 
 TRIDIAGONAL: dict[str, Any] = {

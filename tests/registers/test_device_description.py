@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tactile_depth.configuration import Configuration
-from tactile_depth.registers.axil_port import Response
-from tactile_depth.registers.axil_registers import AxilRegisters, Build
-from tactile_depth.registers.device_description import (
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.registers.axil_port import Response
+from tactile_depth.chip.registers.axil_registers import AxilRegisters, Build
+from tactile_depth.chip.registers.device_description import (
     MANTISSA_BITS,
     NM_PER_MM,
     RELATIVE_ERROR,
@@ -19,8 +19,8 @@ from tactile_depth.registers.device_description import (
     gradient_lsb,
     scaled,
 )
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.tactile_depth import top_parameters
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.chip.tactile_depth import top_parameters
 
 CONFIGURATIONS = {
     "default": Configuration(),

@@ -13,9 +13,9 @@ from systemrdl.node import AddrmapNode
 
 from commands.common.repository import ROOT
 from commands.hardware import registers
-from tactile_depth.configuration import Configuration
-from tactile_depth.registers.axil_registers import RECORD, AxilRegisters, Build, Live
-from tactile_depth.registers.register_map import (
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.registers.axil_registers import RECORD, AxilRegisters, Build, Live
+from tactile_depth.chip.registers.register_map import (
     ACCESSES,
     ADDRESS_WIDTH,
     CAMERA_MAP,
@@ -25,7 +25,7 @@ from tactile_depth.registers.register_map import (
     TABLES,
     WORD_BITS,
 )
-from tactile_depth.tactile_depth import top_parameters
+from tactile_depth.chip.tactile_depth import top_parameters
 
 BUILD = Build(top_parameters(Configuration(columns=32, rows=16, solver="tridiagonal", bits_per_channel=2)))
 RECORD_WORDS = tuple(REGISTERS["RECORD_PEAK_POSITION"].pack(row=n + 2, column=n) for n in range(len(RECORD)))

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from formal.entries import Proof
-from tactile_depth.video.frame_guard import Word, frame_guard
+from tactile_depth.chip.video.frame_guard import Word, frame_guard
 from tb.axis import BREAKS, WITHOUT_START, broken, faults_of, positions, video
 from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl

@@ -14,7 +14,7 @@ from std_msgs.msg import Float32MultiArray, MultiArrayDimension
 from std_srvs.srv import Trigger
 
 import tactile_depth as td
-from tactile_depth.frames import read_picture
+from tactile_depth.pictures.frames import read_picture
 from tactile_depth_ros import conversions
 
 FRAMES = 8  # of a capture

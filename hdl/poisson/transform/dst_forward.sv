@@ -9,7 +9,7 @@
 //
 //   sign (-1)^n  ->  sdf_fft  ->  rotate by exp(-j pi k / 2N), real part
 //
-// Bit-accurate model: models/tactile_depth/poisson/transform/dst_forward.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/dst_forward.py.
 
 `default_nettype none
 

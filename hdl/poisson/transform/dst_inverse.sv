@@ -9,7 +9,7 @@
 //
 //   mode_pairs  ->  rotate C[N-k] + j C[k] by exp(j pi k / 2N) / j  ->  inverse sdf_fft  ->  sign (-1)^n
 //
-// Bit-accurate model: models/tactile_depth/poisson/transform/dst_inverse.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/dst_inverse.py.
 
 `default_nettype none
 

@@ -7,7 +7,7 @@
 // In bit-reversed order the modes of positions 2^m .. 2^(m+1) - 1 are the odd multiples of N / 2^(m+1): N - k stands in
 // the same group, counted from its other end, so its position is that of k with every bit below the leading one
 // inverted. The core waits for half a burst. A memory of one burst is enough, because each position is read before the
-// next burst reaches it. Bit-accurate model: models/tactile_depth/poisson/transform/mode_pairs.py.
+// next burst reaches it. Bit-accurate model: models/tactile_depth/chip/poisson/transform/mode_pairs.py.
 
 `default_nettype none
 

@@ -5,7 +5,7 @@
 // words, one a row, begun when the row is complete, so what follows never sees a gap.
 //   ToBurst = 1: natural order in, Makhoul order out (0, 2, 4, .., 5, 3, 1).  ToBurst = 0: the reverse.
 // Latency: 2 cycles from the last word of a row to its first word out. Two rows of memory, written and read in turn.
-// Bit-accurate model: models/tactile_depth/poisson/transform/row_reorder.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/row_reorder.py.
 
 `default_nettype none
 

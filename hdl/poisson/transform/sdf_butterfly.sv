@@ -6,7 +6,7 @@
 //
 // Stream in: bursts of Size complex words. Stream out: the same, sums of a block before its differences.
 // Latency: Delay + 2 cycles. The delay line moves with en alone, so a burst leaves without one behind it.
-// Bit-accurate model: models/tactile_depth/poisson/transform/sdf_butterfly.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/sdf_butterfly.py.
 
 `default_nettype none
 

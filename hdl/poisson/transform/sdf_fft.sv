@@ -11,7 +11,7 @@
 // Stages, forward: two butterflies and a twiddle multiplication for each block of Size, Size / 4, .. points, without
 // the multiplication for a block of 4 and with one butterfly alone for a block of 2. The inverse has the same stages
 // from the last to the first. The second butterfly of a pair in stream order rotates and halves, see sdf_butterfly; the
-// lone one halves in the inverse. Bit-accurate model: models/tactile_depth/poisson/transform/sdf_fft.py.
+// lone one halves in the inverse. Bit-accurate model: models/tactile_depth/chip/poisson/transform/sdf_fft.py.
 
 `default_nettype none
 

@@ -10,7 +10,7 @@
 // In place: column c of a frame is read in the Columns cycles before row c of the next frame can arrive, which is
 // written into the positions just read. So rows and columns of the memory change roles from the frame read last. A
 // column is read out wholly before the first word is written over it, so the order inside a column is free.
-// Bit-accurate model: models/tactile_depth/poisson/transform/transpose.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/transpose.py.
 
 `default_nettype none
 

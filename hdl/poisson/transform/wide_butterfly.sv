@@ -6,7 +6,7 @@
 //
 // Stream in: bursts of Beats beats, Paths complex words each, path 0 in the lowest bits; starts come 2 cycles before
 // the first beat. Stream out: the same. Latency: 2 cycles; bursts may have pauses between them; en low: nothing moves.
-// Bit-accurate model: models/tactile_depth/poisson/transform/wide_butterfly.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/wide_butterfly.py.
 
 `default_nettype none
 

@@ -8,7 +8,7 @@
 // Stream in: bursts of Beats beats, Paths complex words each, path 0 in the lowest bits; starts come 2 cycles before
 // the first beat. Stream out: the same. Latency: Delay cycles, and no register at the output; bursts may have pauses
 // between them; en low: nothing moves.
-// Bit-accurate model: models/tactile_depth/poisson/transform/wide_commutator.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/wide_commutator.py.
 
 `default_nettype none
 

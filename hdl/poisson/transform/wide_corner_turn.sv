@@ -12,7 +12,7 @@
 // memory for each of its words in a beat, which are 2 rows x Paths / 2 paths. Word w of these at beat t (counted from
 // the end in the second half) is in memory w ^ t, or w ^ (Paths / Beats) t if there are fewer beats than paths. So the
 // Paths words of one row that leave in a cycle are in Paths memories. Two bursts of memory, written and read in turn.
-// Bit-accurate model: models/tactile_depth/poisson/transform/wide_corner_turn.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/wide_corner_turn.py.
 
 `default_nettype none
 

@@ -8,7 +8,7 @@
 //
 //   sign (-1)^n  ->  wide_fft  ->  rotate by exp(-j pi k / 2N), real part
 //
-// Bit-accurate model: models/tactile_depth/poisson/transform/wide_dst_forward.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/wide_dst_forward.py.
 
 `default_nettype none
 

@@ -11,7 +11,7 @@
 //
 //   wide_row_pairs  ->  rotate by exp(j pi k / 2N) / j  ->  inverse wide_fft  ->  sign (-1)^n  ->  wide_corner_turn
 //
-// Bit-accurate model: models/tactile_depth/poisson/transform/wide_dst_inverse.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/wide_dst_inverse.py.
 
 `default_nettype none
 

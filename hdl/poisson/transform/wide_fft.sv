@@ -13,7 +13,7 @@
 // Before a pair of butterflies (Inverse: before its twiddle multiplication) commutators move it to the bits of the
 // pair: down from the top bits (Inverse: up from the lowest ones). So with 4 paths or more a quarter of the factors are
 // always 1. One path is sdf_fft, with 7 cycles for a twiddle stage, and 2 more because its starts come with the words.
-// Bit-accurate model: models/tactile_depth/poisson/transform/wide_fft.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/wide_fft.py.
 
 `default_nettype none
 

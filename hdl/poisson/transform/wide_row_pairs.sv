@@ -9,7 +9,7 @@
 // one beat. in_alone: row a alone, b counts as 0. Stream out: bursts of 2 Beats beats, Paths complex words each, path l
 // of beat t at p = t Paths + l. Starts of both come 2 cycles before the first beat.
 // Latency: Beats + 2 cycles; bursts may have pauses between them; en low: nothing moves.
-// Bit-accurate model: models/tactile_depth/poisson/transform/wide_row_pairs.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/wide_row_pairs.py.
 
 `default_nettype none
 

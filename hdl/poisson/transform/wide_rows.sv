@@ -5,7 +5,7 @@
 // Columns / Paths beats, one a row, begun when the row is complete, path 0 in the lowest bits; starts come 2 cycles
 // before the first beat. Path l has in beat t the word at position l Beats + t in Makhoul order (0, 2, 4, .., 5, 3, 1).
 // Latency: out_start comes with the last word of a row. Two rows of memory, written and read in turn.
-// Bit-accurate model: models/tactile_depth/poisson/transform/wide_rows.py.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/wide_rows.py.
 
 `default_nettype none
 

@@ -6,7 +6,7 @@
 // Stream in: bursts of Beats beats, Paths complex words each, path 0 in the lowest bits; starts come 2 cycles before
 // the first beat. Stream out: the same. Latency: 5 cycles; bursts may have pauses between them; en low: nothing moves.
 // A path whose bit of Ones is 1 has the factor 1 in every beat, which is 2^(CoeffWidth-1) - 1: a subtraction takes the
-// place of its multipliers. Bit-accurate model: models/tactile_depth/poisson/transform/wide_twiddle.py.
+// place of its multipliers. Bit-accurate model: models/tactile_depth/chip/poisson/transform/wide_twiddle.py.
 
 `default_nettype none
 

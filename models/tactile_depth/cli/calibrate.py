@@ -9,15 +9,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from tactile_depth import files
-from tactile_depth.cli.measure import DEVICE, address_of, grid_of, measure
-from tactile_depth.cli.options import add_build_arguments, add_light_and_zero_arguments, build_choices, size
-from tactile_depth.errors import Argument, InputError, InputWarning, warn
-from tactile_depth.fitting import DEFAULT_BITS, Fit, check_arguments, fit_presses, pixel_size
-from tactile_depth.frames import read_pictures
-from tactile_depth.pipeline import Pipeline
-from tactile_depth.press_folder import BACKGROUND, TABLE, background_path
-from tactile_depth.presses import (
+from tactile_depth.base import files
+from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
+from tactile_depth.calibrate.fitting import DEFAULT_BITS, Fit, check_arguments, fit_presses, pixel_size
+from tactile_depth.calibrate.press_folder import BACKGROUND, TABLE, background_path
+from tactile_depth.calibrate.presses import (
     SMALLEST_GRID,
     BallPress,
     GridPresses,
@@ -27,7 +23,11 @@ from tactile_depth.presses import (
     gather,
     to_grid,
 )
-from tactile_depth.sensor import MODELS
+from tactile_depth.cli.measure import DEVICE, address_of, grid_of, measure
+from tactile_depth.cli.options import add_build_arguments, add_light_and_zero_arguments, build_choices, size
+from tactile_depth.depth.pipeline import Pipeline
+from tactile_depth.pictures.frames import read_pictures
+from tactile_depth.sensor.sensor import MODELS
 
 NAME = "calibrate"
 HELP = "Fit a calibration to ball presses; load it into a device and measure it there, if one is named."

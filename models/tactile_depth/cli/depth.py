@@ -13,13 +13,13 @@ import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
+from tactile_depth.base.files import new_files
 from tactile_depth.cli.options import add_pipeline_arguments, choose_sensor, make_pipeline, read_reference
 from tactile_depth.cli.overview import draw_overview
 from tactile_depth.cli.ply import write_ply
-from tactile_depth.files import new_files
-from tactile_depth.frames import read_pictures
-from tactile_depth.pipeline import Pipeline
-from tactile_depth.result import Result
+from tactile_depth.depth.pipeline import Pipeline
+from tactile_depth.depth.result import Result
+from tactile_depth.pictures.frames import read_pictures
 
 NAME = "depth"
 HELP = "Write the height maps of pictures: arrays, pictures, meshes and a report."

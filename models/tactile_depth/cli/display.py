@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
+from tactile_depth.base.errors import InputError
 from tactile_depth.cli.failure import Failure
 from tactile_depth.cli.overview import colours
 from tactile_depth.cli.ply import triangles, vertices_mm
 from tactile_depth.cli.source import INSTALL
+from tactile_depth.depth.result import Result
 from tactile_depth.device.frame import DeviceFrame
-from tactile_depth.errors import InputError
-from tactile_depth.result import Result
 
 APPLICATION = "tactile-depth"
 TIMELINE = "frame"

@@ -8,16 +8,16 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from tactile_depth.checks.blocks import Rest
-from tactile_depth.checks.doubts import UnusablePicture
-from tactile_depth.checks.picture_check import check_picture
+from tactile_depth.base.errors import InputError
 from tactile_depth.cli.source import Counts, Frame
+from tactile_depth.depth.pipeline import Pipeline
+from tactile_depth.depth.result import Result
 from tactile_depth.device.device import Device
 from tactile_depth.device.frame import DeviceFrame
-from tactile_depth.errors import InputError
-from tactile_depth.pipeline import Pipeline
-from tactile_depth.reader import Reader
-from tactile_depth.result import Result
+from tactile_depth.pictures.blocks import Rest
+from tactile_depth.pictures.doubts import UnusablePicture
+from tactile_depth.pictures.picture_check import check_picture
+from tactile_depth.pictures.reader import Reader
 
 
 class Shot(NamedTuple):

@@ -15,10 +15,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from tactile_depth.built_in import load
-from tactile_depth.checks.doubts import UnusablePicture
-from tactile_depth.checks.picture_check import check_picture
-from tactile_depth.checks.reference_check import STEADY
+from tactile_depth.base.errors import InputError, InputWarning
+from tactile_depth.chip.link.depth_formats import FORMATS, NAMES, DepthFormat
 from tactile_depth.cli.display import Display, load_rerun
 from tactile_depth.cli.feed import CameraFeed, Feed, PackageFeed, SentFeed, Shot, capture_of_camera
 from tactile_depth.cli.keys import pressed_keys
@@ -31,13 +29,15 @@ from tactile_depth.cli.options import (
     read_reference,
 )
 from tactile_depth.cli.source import Counts, Frame, Source
+from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.device.addresses import SIM
 from tactile_depth.device.device import Device
-from tactile_depth.errors import InputError, InputWarning
-from tactile_depth.frames import GREY
-from tactile_depth.link.depth_formats import FORMATS, NAMES, DepthFormat
-from tactile_depth.pipeline import Pipeline
-from tactile_depth.sensor import Sensor
+from tactile_depth.pictures.doubts import UnusablePicture
+from tactile_depth.pictures.frames import GREY
+from tactile_depth.pictures.picture_check import check_picture
+from tactile_depth.pictures.reference_check import STEADY
+from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.sensor import Sensor
 
 NAME = "live"
 HELP = "Show depth of a camera, a video, a folder of pictures or a device as it comes, or record it."

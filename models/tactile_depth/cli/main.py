@@ -16,12 +16,12 @@ from contextlib import contextmanager
 from importlib.metadata import version
 from typing import NoReturn
 
-from tactile_depth import interruption
+from tactile_depth.base import interruption
+from tactile_depth.base.errors import Argument, InputError, InputWarning
+from tactile_depth.base.files import cause
 from tactile_depth.cli import calibrate, depth, live
 from tactile_depth.cli.failure import Failure
 from tactile_depth.device.errors import DeviceError
-from tactile_depth.errors import Argument, InputError, InputWarning
-from tactile_depth.files import cause
 
 PROGRAM = "tactile-depth"
 BAD_INPUT, FAILED = 2, 3

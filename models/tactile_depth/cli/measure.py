@@ -9,16 +9,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tactile_depth.built_in import synthetic
+from tactile_depth.base.errors import InputError, InputWarning
+from tactile_depth.calibrate.presses import GridPresses, PressPictures, View
+from tactile_depth.depth.pipeline import Pipeline
+from tactile_depth.depth.result import Result
 from tactile_depth.device.addresses import SIM, open_channel
 from tactile_depth.device.device import Device
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.frame import DeviceFrame
-from tactile_depth.errors import InputError, InputWarning
-from tactile_depth.frames import read_picture
-from tactile_depth.pipeline import Pipeline
-from tactile_depth.presses import GridPresses, PressPictures, View
-from tactile_depth.result import Result
+from tactile_depth.pictures.frames import read_picture
+from tactile_depth.sensor.built_in import synthetic
 
 DEVICE = "device:"
 SENT = 4  # times that each press is sent, so that the light gains have settled at the last

@@ -9,14 +9,14 @@ from typing import Any, get_args
 
 import numpy as np
 
-from tactile_depth.built_in import identify, load
-from tactile_depth.calibration_file import BUILT_IN
-from tactile_depth.configuration import GRADIENT_MODELS, Configuration
-from tactile_depth.errors import InputError
-from tactile_depth.frames import read_stack
-from tactile_depth.pipeline import ARITHMETICS, Pipeline
-from tactile_depth.presets import SENSOR, Boundary, Solver
-from tactile_depth.sensor import Sensor
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.configuration import GRADIENT_MODELS, Configuration
+from tactile_depth.depth.pipeline import ARITHMETICS, Pipeline
+from tactile_depth.pictures.frames import read_stack
+from tactile_depth.sensor.built_in import identify, load
+from tactile_depth.sensor.calibration_file import BUILT_IN
+from tactile_depth.sensor.presets import SENSOR, Boundary, Solver
+from tactile_depth.sensor.sensor import Sensor
 
 
 def size(text: str) -> tuple[int, int]:

@@ -8,7 +8,7 @@ import math
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from tactile_depth.result import Result
+from tactile_depth.depth.result import Result
 
 PANEL_WIDTH, GAP, MARGIN, BAR = 480, 96, 24, 16  # pixels
 TITLE, LABEL = 20, 16  # sizes of letters

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from tactile_depth.base.errors import InputError
+from tactile_depth.base.npy import is_file
 from tactile_depth.cli.failure import Failure
-from tactile_depth.errors import InputError
-from tactile_depth.frames import PICTURE_SUFFIXES, read_pictures
-from tactile_depth.npy import is_file
+from tactile_depth.pictures.frames import PICTURE_SUFFIXES, read_pictures
 
 QUEUED = 4  # frames that wait between the reader and the pipeline
 DEAD_AFTER = 30  # failed reads in a row of a camera

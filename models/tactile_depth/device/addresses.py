@@ -3,15 +3,15 @@
 
 from __future__ import annotations
 
+from tactile_depth.base.errors import Argument, InputError
+from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormat, DepthFormatName
+from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.line import Line
 from tactile_depth.device.serial_line import SerialLine, port_of
 from tactile_depth.device.simulator import Simulator
 from tactile_depth.device.transport import Transport
 from tactile_depth.device.uio import DEFAULT, Uio
-from tactile_depth.errors import Argument, InputError
-from tactile_depth.link.depth_formats import FORMATS, DepthFormat, DepthFormatName
-from tactile_depth.pipeline import Pipeline
 
 BAUD = 3_000_000
 SERIAL, SIM, PINS, UIO = "serial", "sim", "pins", "uio"

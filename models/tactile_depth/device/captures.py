@@ -10,18 +10,18 @@ from contextlib import contextmanager, nullcontext, suppress
 import numpy as np
 import numpy.typing as npt
 
-from tactile_depth.configuration import LIGHT_GAIN, Configuration
-from tactile_depth.cores import fastest
+from tactile_depth.chip.configuration import LIGHT_GAIN, Configuration
+from tactile_depth.chip.gradient.flat_field import pixel_gains
+from tactile_depth.chip.poisson.cores import fastest
+from tactile_depth.chip.registers.axil_registers import GAINS
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.chip.registers.table_banks import CAPTURES
+from tactile_depth.chip.tactile_depth import Tables, light_of
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import CAMERA_S, Exchange
 from tactile_depth.device.registers import read_words, write_words
 from tactile_depth.device.tables import wait_in_use
-from tactile_depth.gradient.flat_field import pixel_gains
-from tactile_depth.registers.axil_registers import GAINS
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.registers.table_banks import CAPTURES
-from tactile_depth.tactile_depth import Tables, light_of
 
 ATTEMPTS = 3
 LIGHT = REGISTERS["LIGHT"]

@@ -9,8 +9,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from tactile_depth.link.depth_frames import DepthFrame
-from tactile_depth.link.packets import Status
+from tactile_depth.chip.link.depth_frames import DepthFrame
+from tactile_depth.chip.link.packets import Status
 
 
 class Arrival(NamedTuple):

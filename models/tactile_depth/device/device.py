@@ -11,12 +11,16 @@ from typing import cast
 import numpy as np
 import numpy.typing as npt
 
-from tactile_depth.checks.blocks import Rest
-from tactile_depth.checks.doubts import UnusablePicture
-from tactile_depth.checks.picture_check import check_picture
-from tactile_depth.checks.reference_check import check_reference
-from tactile_depth.contact.contact_events import Settings
-from tactile_depth.depth.zero_capture import LARGEST_LOG2
+from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
+from tactile_depth.base.npy import is_array
+from tactile_depth.chip.contact.contact_events import Settings
+from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
+from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gains, require_light
+from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
+from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.depth.pipeline import PICTURES, Pipeline
+from tactile_depth.depth.result import Recorder
 from tactile_depth.device import captures
 from tactile_depth.device.addresses import open_channel
 from tactile_depth.device.channel import Arrival, Channel
@@ -26,17 +30,13 @@ from tactile_depth.device.frame import DeviceFrame
 from tactile_depth.device.registers import Registers, read_words, write_words
 from tactile_depth.device.status import COUNTERS, DeviceStatus
 from tactile_depth.device.tables import load_tables, require_same, wait_in_use
-from tactile_depth.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
-from tactile_depth.frames import GREY
-from tactile_depth.gradient.flat_field import captured_gains, reference_gains, require_light
-from tactile_depth.gradient.reference_capture import largest_log2_frames
-from tactile_depth.link.depth_formats import FORMATS, DepthFormatName, span_of
-from tactile_depth.npy import is_array
-from tactile_depth.pictures import Picture, Pictures
-from tactile_depth.pipeline import PICTURES, Pipeline
-from tactile_depth.reader import Reader, power_of_two_of
-from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.result import Recorder
+from tactile_depth.pictures.blocks import Rest
+from tactile_depth.pictures.doubts import UnusablePicture
+from tactile_depth.pictures.frames import GREY
+from tactile_depth.pictures.picture_check import check_picture
+from tactile_depth.pictures.pictures import Picture, Pictures
+from tactile_depth.pictures.reader import Reader, power_of_two_of
+from tactile_depth.pictures.reference_check import check_reference
 
 CAPTURED = 8
 """Pictures of the device's camera that a capture takes the mean of."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from tactile_depth.errors import _Message
+from tactile_depth.base.errors import _Message
 
 
 class DeviceError(_Message, RuntimeError):

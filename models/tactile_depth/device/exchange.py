@@ -10,10 +10,10 @@ from contextlib import AbstractContextManager
 import numpy as np
 import numpy.typing as npt
 
+from tactile_depth.chip.link.depth_frames import NUMBERS
 from tactile_depth.device.channel import Arrival, Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.registers import read_words
-from tactile_depth.link.depth_frames import NUMBERS
 
 MISSED = 5  # pictures without depth in a row after which the line is given up
 CAMERA_S = 2.0  # the slowest camera gives a picture in this time

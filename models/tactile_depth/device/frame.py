@@ -10,10 +10,10 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from tactile_depth.by_value import ByValue
-from tactile_depth.contact.contact_events import Record
-from tactile_depth.link.depth_formats import FORMATS, DepthFormatName, span_of
-from tactile_depth.result import Contact, Recorder, Result
+from tactile_depth.base.by_value import ByValue
+from tactile_depth.chip.contact.contact_events import Record
+from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
+from tactile_depth.depth.result import Contact, Recorder, Result
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from tactile_depth.chip.link.depth_formats import DepthFormat, from_bytes, value_bytes
 from tactile_depth.device import mapped_words
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.mapped_words import MappedFile, name_of, number_in
 from tactile_depth.device.vdma import STORES
-from tactile_depth.link.depth_formats import DepthFormat, from_bytes, value_bytes
 
 CLASSES = ("u-dma-buf", "udmabuf")  # in sysfs: of now, and of versions before 2.0
 ALIGNED = 64  # bytes: no burst of a VDMA without data realignment begins elsewhere

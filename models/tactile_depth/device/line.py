@@ -13,14 +13,11 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from tactile_depth.device.channel import Arrival
-from tactile_depth.device.errors import DeviceError
-from tactile_depth.device.transport import Transport
-from tactile_depth.errors import InputError
-from tactile_depth.link.depth_formats import DepthFormat, exact_shift
-from tactile_depth.link.depth_frames import DepthFrames
-from tactile_depth.link.framing import to_line
-from tactile_depth.link.packets import (
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.link.depth_formats import DepthFormat, exact_shift
+from tactile_depth.chip.link.depth_frames import DepthFrames
+from tactile_depth.chip.link.framing import to_line
+from tactile_depth.chip.link.packets import (
     LARGEST_SHIFT,
     MOST_ACCESSES,
     MOST_PIXELS,
@@ -35,7 +32,10 @@ from tactile_depth.link.packets import (
     Write,
     WriteReply,
 )
-from tactile_depth.link.rates import rate
+from tactile_depth.chip.link.rates import rate
+from tactile_depth.device.channel import Arrival
+from tactile_depth.device.errors import DeviceError
+from tactile_depth.device.transport import Transport
 
 KEPT = 8  # frames that wait for the program; the oldest is dropped and counted
 READ_S = 0.1

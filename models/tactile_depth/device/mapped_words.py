@@ -11,8 +11,8 @@ import stat
 import sys
 from pathlib import Path
 
+from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.device.errors import DeviceError
-from tactile_depth.errors import Argument, InputError
 
 SYSFS = Path("/sys/class")
 WORD_BYTES = 4

@@ -7,10 +7,10 @@ import difflib
 from collections.abc import Callable, Iterator, MutableMapping, Sequence
 from contextlib import AbstractContextManager
 
+from tactile_depth.base.errors import Argument, InputError
+from tactile_depth.chip.registers.register_map import REGISTERS, WORD, Field, Register
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
-from tactile_depth.errors import Argument, InputError
-from tactile_depth.registers.register_map import REGISTERS, WORD, Field, Register
 
 VALUE = "value"  # the field of a register that holds a single number
 

@@ -7,11 +7,11 @@ import contextlib
 import errno
 from typing import Any
 
+from tactile_depth.base.errors import Argument, InputError
+from tactile_depth.chip.link.framing import LONGEST_ON_LINE
+from tactile_depth.chip.link.rates import BITS_A_BYTE
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.transport import Pace
-from tactile_depth.errors import Argument, InputError
-from tactile_depth.link.framing import LONGEST_ON_LINE
-from tactile_depth.link.rates import BITS_A_BYTE
 
 INSTALL = "pip install '.[serial]' in the repository"
 REPEAT_S, LIMIT_S, LOOK_S = 0.05, 1.0, 0.1

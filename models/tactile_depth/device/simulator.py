@@ -12,10 +12,10 @@ import threading
 from pathlib import Path
 
 import tactile_depth
-from tactile_depth import files
+from tactile_depth.base import files
+from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.transport import Pace
-from tactile_depth.pipeline import Pipeline
 
 COMMAND = "commands.run.device_sim"
 PINS = "--pins"

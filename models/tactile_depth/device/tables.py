@@ -8,16 +8,16 @@ from collections.abc import Callable
 
 import numpy as np
 
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.registers.axil_registers import Build
+from tactile_depth.chip.registers.register_map import REGISTERS, TABLES, Field
+from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
+from tactile_depth.chip.table_entries import ONE_WORD, table_entries
+from tactile_depth.chip.tactile_depth import top_parameters
+from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.registers import read_words, write_words
-from tactile_depth.errors import InputError
-from tactile_depth.pipeline import Pipeline
-from tactile_depth.registers.axil_registers import Build
-from tactile_depth.registers.register_map import REGISTERS, TABLES, Field
-from tactile_depth.registers.table_banks import CAPTURES, COMMIT
-from tactile_depth.table_entries import ONE_WORD, table_entries
-from tactile_depth.tactile_depth import top_parameters
 
 DESCRIPTION = ("GRID", "FORMAT", "DEVICE", "DEPTH_UNIT", "SLOPE_UNIT")
 BUSY = tuple(capture.name for capture in CAPTURES.values())

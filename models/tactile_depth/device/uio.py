@@ -9,20 +9,20 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from tactile_depth.contact.contact_events import Record, record
+from tactile_depth.chip.contact.contact_events import Record, record
+from tactile_depth.chip.link.depth_formats import DepthFormat
+from tactile_depth.chip.link.depth_frames import NUMBERS, RESETS, DepthFrame
+from tactile_depth.chip.link.packets import LARGEST_GRID, Status
+from tactile_depth.chip.registers.axil_registers import BY_OFFSET, RECORD
+from tactile_depth.chip.registers.register_map import REGISTERS, TABLES, WORD_BITS
+from tactile_depth.chip.registers.table_access import HIGH, INDEX, LOW, PORTS, SIZE
+from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
 from tactile_depth.device.channel import Arrival
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import CAMERA_S
 from tactile_depth.device.frame_stores import FrameStores
 from tactile_depth.device.mapped_words import WORD_BYTES, MappedWords
 from tactile_depth.device.vdma import SPAN, STORES, Vdma
-from tactile_depth.link.depth_formats import DepthFormat
-from tactile_depth.link.depth_frames import NUMBERS, RESETS, DepthFrame
-from tactile_depth.link.packets import LARGEST_GRID, Status
-from tactile_depth.registers.axil_registers import BY_OFFSET, RECORD
-from tactile_depth.registers.register_map import REGISTERS, TABLES, WORD_BITS
-from tactile_depth.registers.table_access import HIGH, INDEX, LOW, PORTS, SIZE
-from tactile_depth.registers.table_banks import CAPTURES, COMMIT
 
 DEFAULT = ("/dev/uio0", "/dev/uio1", "/dev/udmabuf0")
 """Registers, VDMA and buffer."""

@@ -9,10 +9,10 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.poisson.transform.dst_forward import dst_forward
-from tactile_depth.poisson.transform.dst_forward import latency as dst_forward_latency
-from tactile_depth.poisson.transform.dst_inverse import dst_inverse
-from tactile_depth.poisson.transform.dst_inverse import latency as dst_inverse_latency
+from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
+from tactile_depth.chip.poisson.transform.dst_forward import latency as dst_forward_latency
+from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.chip.poisson.transform.dst_inverse import latency as dst_inverse_latency
 from tb.stream import MANY, check_bursts, extremes, parameters, parametrize, sample, uniform, with_and_without_en
 
 CORES: dict[str, tuple[Any, Any]] = {

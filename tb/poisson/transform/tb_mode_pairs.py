@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""mode_pairs against tactile_depth.poisson.transform.mode_pairs: codes, latency; gaps, pauses, reset."""
+"""mode_pairs against tactile_depth.chip.poisson.transform.mode_pairs: codes, latency; gaps, pauses, reset."""
 
 from typing import Any
 
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.mode_pairs import latency as mode_pairs_latency
-from tactile_depth.poisson.transform.mode_pairs import mode_pairs
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.mode_pairs import latency as mode_pairs_latency
+from tactile_depth.chip.poisson.transform.mode_pairs import mode_pairs
 from tb.stream import check_bursts, parameters, parametrize, uniform
 
 

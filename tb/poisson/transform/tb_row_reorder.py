@@ -6,7 +6,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.poisson.transform.row_reorder import LATENCY, row_reorder
+from tactile_depth.chip.poisson.transform.row_reorder import LATENCY, row_reorder
 from tb.stream import (
     Bench,
     StreamDriver,

@@ -6,9 +6,9 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.sdf_butterfly import LATENCY, sdf_butterfly
-from tactile_depth.poisson.transform.sdf_fft import Stage
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.sdf_butterfly import LATENCY, sdf_butterfly
+from tactile_depth.chip.poisson.transform.sdf_fft import Stage
 from tb.stream import check_bursts, extremes, parameters, parametrize, uniform
 
 FIELDS = ["re", "im"]

@@ -6,9 +6,9 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.sdf_fft import latency as sdf_fft_latency
-from tactile_depth.poisson.transform.sdf_fft import sdf_fft
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.sdf_fft import latency as sdf_fft_latency
+from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft
 from tb.stream import MANY, check_bursts, extremes, parameters, parametrize, uniform
 
 FIELDS = ["re", "im"]

@@ -5,7 +5,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.poisson.transform.transpose import LATENCY, transpose
+from tactile_depth.chip.poisson.transform.transpose import LATENCY, transpose
 from tb.stream import check_frame_memory, parameters, parametrize, places
 
 FRAMES = 4  # in place, rows and columns of the memory change roles with every frame

@@ -6,8 +6,13 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.twiddle_multiply import LATENCY, phase_factors, twiddle_factors, twiddle_multiply
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.twiddle_multiply import (
+    LATENCY,
+    phase_factors,
+    twiddle_factors,
+    twiddle_multiply,
+)
 from tb.settings import RUN
 from tb.stream import check_bursts, extremes, parameters, parametrize, uniform
 

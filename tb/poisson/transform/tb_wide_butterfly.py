@@ -6,8 +6,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.wide_butterfly import LATENCY, wide_butterfly
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.wide_butterfly import LATENCY, wide_butterfly
 from tb.stream import extremes, parameters, parametrize, uniform
 from tb.wide import check_wide
 

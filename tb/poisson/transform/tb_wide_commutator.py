@@ -6,8 +6,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.wide_commutator import wide_commutator
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.wide_commutator import wide_commutator
 from tb.stream import parameters, parametrize, uniform
 from tb.wide import check_wide
 

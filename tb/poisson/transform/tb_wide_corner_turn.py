@@ -6,10 +6,10 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.wide_commutator import LEAD, from_beats
-from tactile_depth.poisson.transform.wide_corner_turn import latency as wide_corner_turn_latency
-from tactile_depth.poisson.transform.wide_corner_turn import wide_corner_turn
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.wide_commutator import LEAD, from_beats
+from tactile_depth.chip.poisson.transform.wide_corner_turn import latency as wide_corner_turn_latency
+from tactile_depth.chip.poisson.transform.wide_corner_turn import wide_corner_turn
 from tb.stream import parameters, parametrize, uniform
 from tb.wide import RowPairDriver, WideMonitor, check_row_pairs
 

@@ -6,9 +6,9 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.wide_dst_forward import latency as wide_dst_forward_latency
-from tactile_depth.poisson.transform.wide_dst_forward import wide_dst_forward
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.wide_dst_forward import latency as wide_dst_forward_latency
+from tactile_depth.chip.poisson.transform.wide_dst_forward import wide_dst_forward
 from tb.stream import MANY, extremes, parameters, parametrize, sample, uniform, with_and_without_en
 from tb.wide import check_wide
 

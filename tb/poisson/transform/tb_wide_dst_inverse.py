@@ -6,12 +6,12 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.wide_commutator import LEAD
-from tactile_depth.poisson.transform.wide_corner_turn import wide_corner_turn
-from tactile_depth.poisson.transform.wide_dst_inverse import latency as wide_dst_inverse_latency
-from tactile_depth.poisson.transform.wide_dst_inverse import wide_dst_inverse
-from tactile_depth.poisson.transform.wide_row_pairs import rows_of_bursts
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.wide_commutator import LEAD
+from tactile_depth.chip.poisson.transform.wide_corner_turn import wide_corner_turn
+from tactile_depth.chip.poisson.transform.wide_dst_inverse import latency as wide_dst_inverse_latency
+from tactile_depth.chip.poisson.transform.wide_dst_inverse import wide_dst_inverse
+from tactile_depth.chip.poisson.transform.wide_row_pairs import rows_of_bursts
 from tb.stream import MANY, extremes, parameters, parametrize, sample, uniform, with_and_without_en
 from tb.wide import RowPairDriver, WideMonitor, all_stages_clip, alone, check_row_pairs
 

@@ -6,9 +6,9 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.wide_fft import latency as wide_fft_latency
-from tactile_depth.poisson.transform.wide_fft import wide_fft
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.wide_fft import latency as wide_fft_latency
+from tactile_depth.chip.poisson.transform.wide_fft import wide_fft
 from tb.stream import MANY, extremes, parameters, parametrize, uniform
 from tb.wide import all_stages_clip, check_wide
 

@@ -6,10 +6,10 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.wide_commutator import to_beats
-from tactile_depth.poisson.transform.wide_row_pairs import latency as wide_row_pairs_latency
-from tactile_depth.poisson.transform.wide_row_pairs import rows_of_bursts, wide_row_pairs
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.wide_commutator import to_beats
+from tactile_depth.chip.poisson.transform.wide_row_pairs import latency as wide_row_pairs_latency
+from tactile_depth.chip.poisson.transform.wide_row_pairs import rows_of_bursts, wide_row_pairs
 from tb.stream import check_bursts, extremes, parameters, parametrize, uniform
 from tb.wide import RowPairDriver, WideMonitor, alone
 

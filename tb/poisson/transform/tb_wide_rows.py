@@ -6,8 +6,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.poisson.transform.wide_commutator import LEAD
-from tactile_depth.poisson.transform.wide_rows import LATENCY, wide_rows
+from tactile_depth.chip.poisson.transform.wide_commutator import LEAD
+from tactile_depth.chip.poisson.transform.wide_rows import LATENCY, wide_rows
 from tb.stream import (
     Bench,
     StreamDriver,

@@ -6,11 +6,11 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.twiddle_multiply import phase_factors
-from tactile_depth.poisson.transform.wide_commutator import positions
-from tactile_depth.poisson.transform.wide_fft import wide_factors
-from tactile_depth.poisson.transform.wide_twiddle import LATENCY, wide_twiddle
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors
+from tactile_depth.chip.poisson.transform.wide_commutator import positions
+from tactile_depth.chip.poisson.transform.wide_fft import wide_factors
+from tactile_depth.chip.poisson.transform.wide_twiddle import LATENCY, wide_twiddle
 from tb.settings import RUN
 from tb.stream import extremes, parameters, parametrize, uniform
 from tb.wide import check_wide

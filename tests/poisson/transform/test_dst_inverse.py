@@ -11,13 +11,13 @@ from scipy.fft import idst
 
 from formal.entries import Proof
 from formal.tables import transform_roms
-from tactile_depth.poisson.transform.dst_forward import dst_forward
-from tactile_depth.poisson.transform.dst_inverse import dst_inverse
-from tactile_depth.poisson.transform.dst_inverse import latency as dst_inverse_latency
-from tactile_depth.poisson.transform.orders import bit_reversed, makhoul
-from tactile_depth.poisson.transform.sdf_fft import halvings, twiddle_stages
-from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
-from tactile_depth.rom_files import write_transform
+from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
+from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.chip.poisson.transform.dst_inverse import latency as dst_inverse_latency
+from tactile_depth.chip.poisson.transform.orders import bit_reversed, makhoul
+from tactile_depth.chip.poisson.transform.sdf_fft import halvings, twiddle_stages
+from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
+from tactile_depth.chip.rom_files import write_transform
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.poisson.transform.transforms import coefficient_noise, transform_parameters
 from tests.rtl import test_rtl as test_rtl
@@ -40,7 +40,7 @@ STRUCTURES = (
 MUTANTS = Mutants("bursts", columns_are="Size", flat=False)
 PROOFS = (
     Proof(
-        "start and frame_start leave with their burst, at the latency of models/tactile_depth/latency.py",
+        "start and frame_start leave with their burst, at the latency of models/tactile_depth/chip/latency.py",
         "the smallest transform, every core of a longer one is in it",
         {"Size": 8, "Latency": dst_inverse_latency(8)},
         depth=60,

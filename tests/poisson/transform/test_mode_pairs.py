@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from formal.entries import ONE_ORDER, WORD_FREE, Proof
-from tactile_depth.poisson.transform.mode_pairs import mode_pairs
-from tactile_depth.poisson.transform.orders import bit_reversed, mirror
+from tactile_depth.chip.poisson.transform.mode_pairs import mode_pairs
+from tactile_depth.chip.poisson.transform.orders import bit_reversed, mirror
 from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from formal.entries import ONE_ORDER, WORD_FREE, Proof
-from tactile_depth.poisson.transform.row_reorder import row_reorder
+from tactile_depth.chip.poisson.transform.row_reorder import row_reorder
 from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import ROUNDING, Proof
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.sdf_butterfly import sdf_butterfly
-from tactile_depth.poisson.transform.sdf_fft import Stage
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.sdf_butterfly import sdf_butterfly
+from tactile_depth.chip.poisson.transform.sdf_fft import Stage
 from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

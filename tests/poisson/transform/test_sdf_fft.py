@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from formal.entries import Proof
 from formal.tables import transform_roms
-from tactile_depth.poisson.transform.orders import bit_reversed
-from tactile_depth.poisson.transform.sdf_fft import halvings, sdf_fft, twiddle_stages
-from tactile_depth.poisson.transform.sdf_fft import latency as sdf_fft_latency
-from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
-from tactile_depth.rom_files import write_transform
+from tactile_depth.chip.poisson.transform.orders import bit_reversed
+from tactile_depth.chip.poisson.transform.sdf_fft import halvings, sdf_fft, twiddle_stages
+from tactile_depth.chip.poisson.transform.sdf_fft import latency as sdf_fft_latency
+from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
+from tactile_depth.chip.rom_files import write_transform
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.poisson.transform.transforms import coefficient_noise
 from tests.rtl import test_rtl as test_rtl
@@ -47,7 +47,7 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "start and frame_start leave with their burst, at the latency of models/tactile_depth/latency.py",
+        "start and frame_start leave with their burst, at the latency of models/tactile_depth/chip/latency.py",
         "the smallest transform: pair, twiddle and lone butterfly; longer ones chain more of these",
         {"Size": 8, "Inverse": inverse, "Latency": sdf_fft_latency(8)},
         depth=60,

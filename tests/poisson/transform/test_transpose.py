@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from formal.entries import ONE_ORDER, WORD_FREE, Proof
-from tactile_depth.poisson.transform.orders import makhoul
-from tactile_depth.poisson.transform.transpose import transpose
+from tactile_depth.chip.poisson.transform.orders import makhoul
+from tactile_depth.chip.poisson.transform.transpose import transpose
 from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -10,16 +10,16 @@ from hypothesis import strategies as st
 
 from formal.entries import ROUNDING, Proof
 from formal.tables import factor_rom
-from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.orders import bit_reversed
-from tactile_depth.poisson.transform.twiddle_multiply import (
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.orders import bit_reversed
+from tactile_depth.chip.poisson.transform.twiddle_multiply import (
     coefficient,
     coefficient_gain,
     phase_factors,
     twiddle_factors,
     twiddle_multiply,
 )
-from tactile_depth.rom_files import write_factors
+from tactile_depth.chip.rom_files import write_factors
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 

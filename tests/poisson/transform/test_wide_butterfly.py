@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from formal.entries import ROUNDING, Proof
-from tactile_depth.poisson.transform.sdf_butterfly import Stage, sdf_butterfly
-from tactile_depth.poisson.transform.wide_butterfly import wide_butterfly
-from tactile_depth.poisson.transform.wide_commutator import to_beats
+from tactile_depth.chip.poisson.transform.sdf_butterfly import Stage, sdf_butterfly
+from tactile_depth.chip.poisson.transform.wide_butterfly import wide_butterfly
+from tactile_depth.chip.poisson.transform.wide_commutator import to_beats
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from formal.entries import ONE_ORDER, WORD_FREE, Proof
-from tactile_depth.poisson.transform.wide_commutator import from_beats, positions, to_beats, wide_commutator
+from tactile_depth.chip.poisson.transform.wide_commutator import from_beats, positions, to_beats, wide_commutator
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -8,12 +8,12 @@ import pytest
 
 from formal.entries import Proof
 from formal.tables import wide_roms
-from tactile_depth.poisson.transform.dst_forward import dst_forward
-from tactile_depth.poisson.transform.orders import makhoul
-from tactile_depth.poisson.transform.wide_dst_forward import latency as wide_dst_forward_latency
-from tactile_depth.poisson.transform.wide_dst_forward import wide_dst_forward
-from tactile_depth.poisson.transform.wide_rows import wide_rows
-from tactile_depth.rom_files import write_direction
+from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
+from tactile_depth.chip.poisson.transform.orders import makhoul
+from tactile_depth.chip.poisson.transform.wide_dst_forward import latency as wide_dst_forward_latency
+from tactile_depth.chip.poisson.transform.wide_dst_forward import wide_dst_forward
+from tactile_depth.chip.poisson.transform.wide_rows import wide_rows
+from tactile_depth.chip.rom_files import write_direction
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 

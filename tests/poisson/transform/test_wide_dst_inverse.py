@@ -8,10 +8,10 @@ import pytest
 
 from formal.entries import Proof
 from formal.tables import wide_roms
-from tactile_depth.poisson.transform.dst_inverse import dst_inverse
-from tactile_depth.poisson.transform.wide_dst_inverse import latency as wide_dst_inverse_latency
-from tactile_depth.poisson.transform.wide_dst_inverse import wide_dst_inverse
-from tactile_depth.rom_files import write_direction
+from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.chip.poisson.transform.wide_dst_inverse import latency as wide_dst_inverse_latency
+from tactile_depth.chip.poisson.transform.wide_dst_inverse import wide_dst_inverse
+from tactile_depth.chip.rom_files import write_direction
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 

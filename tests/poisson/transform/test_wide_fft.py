@@ -8,10 +8,10 @@ import pytest
 
 from formal.entries import Proof
 from formal.tables import transform_roms, wide_roms
-from tactile_depth.poisson.transform.sdf_fft import sdf_fft
-from tactile_depth.poisson.transform.wide_fft import latency as wide_fft_latency
-from tactile_depth.poisson.transform.wide_fft import wide_fft
-from tactile_depth.rom_files import write_direction
+from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft
+from tactile_depth.chip.poisson.transform.wide_fft import latency as wide_fft_latency
+from tactile_depth.chip.poisson.transform.wide_fft import wide_fft
+from tactile_depth.chip.rom_files import write_direction
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 

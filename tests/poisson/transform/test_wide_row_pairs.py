@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from formal.entries import ONE_ORDER, Proof
-from tactile_depth.poisson.transform.orders import mirror
-from tactile_depth.poisson.transform.wide_row_pairs import rows_of_bursts, up_positions, wide_row_pairs
+from tactile_depth.chip.poisson.transform.orders import mirror
+from tactile_depth.chip.poisson.transform.wide_row_pairs import rows_of_bursts, up_positions, wide_row_pairs
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from formal.entries import ONE_ORDER, WORD_FREE, Proof
-from tactile_depth.poisson.transform.orders import makhoul
-from tactile_depth.poisson.transform.wide_rows import wide_rows
+from tactile_depth.chip.poisson.transform.orders import makhoul
+from tactile_depth.chip.poisson.transform.wide_rows import wide_rows
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 

@@ -6,11 +6,11 @@ import pytest
 
 from formal.entries import ROUNDING, Proof
 from formal.tables import wide_factor_rom
-from tactile_depth.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors, twiddle_multiply
-from tactile_depth.poisson.transform.wide_commutator import positions, to_beats
-from tactile_depth.poisson.transform.wide_fft import twiddle_window, wide_factors
-from tactile_depth.poisson.transform.wide_twiddle import ones, wide_twiddle
-from tactile_depth.rom_files import write_wide_factors
+from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors, twiddle_multiply
+from tactile_depth.chip.poisson.transform.wide_commutator import positions, to_beats
+from tactile_depth.chip.poisson.transform.wide_fft import twiddle_window, wide_factors
+from tactile_depth.chip.poisson.transform.wide_twiddle import ones, wide_twiddle
+from tactile_depth.chip.rom_files import write_wide_factors
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Multipliers, memories, LUTs, power and latency of a configuration, on two devices."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+from commands.cost.devices import ECP5, XCZU7EV, Device
+from commands.cost.luts import luts
+from commands.cost.parts import Memory, Multiplier, parts
+from tactile_depth.base.errors import Argument, one_of
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
+from tactile_depth.chip.tactile_depth import top_parameters
+
+__all__ = ["ECP5", "KINDS", "XCZU7EV", "CameraCost", "Cost", "camera_cost", "cost"]
+
+KINDS = ("frame stores", "delay lines", "tables", "row buffers")
+CAMERAS = Path(__file__).with_name("cameras.json")
+CLOCK_MHZ = 166.0  # of the power
+MACRO_BITS = 1024  # a larger memory is a macro, a smaller one is flip-flops or gates
+ACCESS_PJ, WORD_BITS = 5.3, 64
+"""Energy of reading or writing a word of a macro at 45 nm and 1.1 V, see commands/hardware/memory_model.py."""
+PRODUCT_UW, LUT_UW = 3.94, 3.07
+"""Power of the logic for each bit of a product (bits of one operand times bits of the other) and for each LUT of the
+XCZU7EV. The first is multipliers' part of the power: 674 of 1,050 mW at 0.18 um (docs/hardware.md). Both are then
+scaled to the two figures at 45 nm, 89.5 and 181.5 mW of logic with 128 x 128, tridiagonal and spectral, which they
+meet within 7 %."""
+
+
+class CameraCost(NamedTuple):
+    """Multipliers, block memories and LUTs of the camera front end."""
+
+    multipliers: int
+    blocks: int
+    luts: int
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Resources and latency of a configuration.
+
+    Attributes
+    ----------
+    multipliers : list of Multiplier
+    memories : list of Memory
+    first_depth_cycles, last_pixel_cycles : int
+        Cycles from the first and from the last pixel of a frame to its first depth.
+    map_cycles : int
+        Cycles from the last pixel of a frame to its last depth.
+    parameters : mapping
+        Numbers of the RTL, as `top_parameters` returns them.
+    """
+
+    multipliers: list[Multiplier]
+    memories: list[Memory]
+    first_depth_cycles: int
+    last_pixel_cycles: int
+    map_cycles: int
+    parameters: Mapping[str, int]
+
+    @cached_property
+    def tiles(self) -> int:
+        """Number of multipliers of 27 x 18 bits."""
+        return self.multipliers_of(XCZU7EV)
+
+    def multipliers_of(self, device: Device) -> int:
+        """Return the number of multipliers of a device."""
+        return sum(device.multipliers(multiplier.a, multiplier.b) for multiplier in self.multipliers)
+
+    def blocks_of(self, device: Device) -> float:
+        """Return the number of block memories of a device, in halves of a BRAM36, beside its UltraRAMs."""
+        return sum(self._memories_of(device, "block"))
+
+    def ultras_of(self, device: Device) -> float:
+        """Return the number of UltraRAMs of a device."""
+        return sum(self._memories_of(device, "ultra"))
+
+    def _memories_of(self, device: Device, kind: str) -> list[float]:
+        return [device.memories(each.words, each.width, each.style, each.rom)[kind] for each in self.memories]
+
+    def luts_of(self, device: Device) -> int:
+        """Return the number of LUTs of a device, within the error that docs/hardware.md states."""
+        if device not in self._luts:  # it takes as long as all the rest of a cost
+            self._luts[device] = luts(self.parameters, device)
+        return self._luts[device]
+
+    @cached_property
+    def _luts(self) -> dict[Device, int]:
+        return {}
+
+    @cached_property
+    def power_mw(self) -> float:
+        """Power at 45 nm and 166 MHz, without wires and clock tree, in mW; see LOGIC_UW."""
+        product_bits = sum(multiplier.a * multiplier.b for multiplier in self.multipliers)
+        logic_uw = PRODUCT_UW * product_bits + LUT_UW * self.luts_of(XCZU7EV)
+        return (logic_uw + ACCESS_PJ / WORD_BITS * CLOCK_MHZ * self.accessed_bits) / 1e3
+
+    @cached_property
+    def accessed_bits(self) -> float:
+        """Bits that memories of more than a kilobit read and write per clock; of two banks of a table one is read."""
+        large = [memory for memory in self.memories if memory.bits > MACRO_BITS]
+        return sum(memory.width * (1 if memory.rom else 0.5 if memory.banked else 2) for memory in large)
+
+    @cached_property
+    def memory_bits(self) -> int:
+        return sum(memory.bits for memory in self.memories)
+
+    def bits_of(self, kind: str) -> int:
+        return sum(memory.bits for memory in self.memories if memory.kind == kind)
+
+    def by_core(self) -> dict[str, tuple[int, int]]:
+        """Return multipliers of 27 x 18 bits and memory bits of each core, in the order of the data."""
+        counts: dict[str, tuple[int, int]] = {}
+        for part in parts(self.parameters):
+            tiles, bits = counts.get(part.core, (0, 0))
+            if isinstance(part, Multiplier):
+                tiles += XCZU7EV.multipliers(part.a, part.b)
+            else:
+                bits += part.bits
+            counts[part.core] = tiles, bits
+        return counts
+
+
+@lru_cache(maxsize=4096)  # a search asks for the same ones again and again
+def cost(config: Configuration) -> Cost:
+    """Count the multipliers and memories in the RTL of a configuration."""
+    parameters = top_parameters(config)
+    found = parts(parameters)
+    return Cost(
+        [part for part in found if isinstance(part, Multiplier)],
+        [part for part in found if isinstance(part, Memory)],
+        first_depth_latency(config),
+        last_pixel_to_first_depth(config),
+        last_pixel_to_last_depth(config),
+        parameters,
+    )
+
+
+def camera_cost(pixel_format: str, device: Device) -> CameraCost:
+    """Return the cost of the camera front end for pictures of 640 x 480, as `make synth` maps it (cameras.json).
+
+    Raises InputError for a pixel format that is not measured.
+    """
+    measured = json.loads(CAMERAS.read_text())[device.name]
+    one_of(Argument("pixel_format", pixel_format), tuple(measured))
+    return CameraCost(*measured[pixel_format])

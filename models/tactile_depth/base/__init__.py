@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Base of every room: errors, files, interruption, arrays."""

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Objects that numpy takes as arrays, and checks of a file before it is read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, BinaryIO, Protocol
+
+import numpy as np
+
+from tactile_depth.base.errors import InputError
+
+
+class HasArray(Protocol):
+    """Object that numpy takes as an array."""
+
+    def __array__(self) -> Any: ...
+
+
+class HasInterface(Protocol):
+    """Object that numpy takes as an array, such as a PIL image."""
+
+    @property
+    def __array_interface__(self) -> dict[str, Any]: ...
+
+
+def is_array(value: object) -> bool:
+    """Return True if numpy takes an object as an array."""
+    return hasattr(value, "__array__") or hasattr(value, "__array_interface__")
+
+
+def is_file(path: Path) -> bool:
+    """Return True if a path is a file; raise InputError if the system does not accept the path."""
+    try:
+        return path.is_file()
+    except OSError as error:  # the path is too long, or its folder may not be read
+        raise InputError(f"{path}: {error.strerror}: give the path of a file") from error
+
+
+def read_header(file: BinaryIO) -> tuple[tuple[int, ...], bool, np.dtype]:
+    """Return shape, order and type from the header of a .npy, and leave the file at the start of its data."""
+    version = np.lib.format.read_magic(file)
+    if version == (1, 0):
+        return np.lib.format.read_array_header_1_0(file)
+    raise ValueError(f"version {version[0]}.{version[1]}, which arrays of numbers do not need")

@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measures a calibration on ball presses of known diameter, through the bit-accurate models."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from tactile_depth.base.by_value import ByValue
+from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
+from tactile_depth.calibrate.presses import (
+    BACKGROUND,
+    NOTHING_TOUCHES,
+    PITCHES_AGREE,
+    BallPress,
+    GridPresses,
+    View,
+    gather,
+    to_grid,
+)
+from tactile_depth.chip.poisson.cores import fastest
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.tactile_depth import light_of, slope_codes, slope_tables, solve
+from tactile_depth.pictures.pictures import Picture
+from tactile_depth.pictures.reference_check import check_reference
+from tactile_depth.sensor.sensor import HeightError, Sensor
+
+BALLS_AGREE = 0.03  # largest relative difference between the heights of balls
+
+
+@dataclass(frozen=True)
+class Score:
+    """Score of a gradient model on one press.
+
+    Attributes
+    ----------
+    height_rms_mm : float
+        Standard deviation of depth from the ball in the contact.
+    cap_height : float
+        Recovered over true height of the ball's cap.
+    rest_slope, rest_mm : float
+        RMS slope where nothing touches, and RMS of the depth, less its mean; NaN where the contact fills the grid.
+    """
+
+    height_rms_mm: float
+    cap_height: float
+    rest_slope: float
+    rest_mm: float
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation(ByValue):
+    """Scores of a calibration press by press; `str` returns a table of them, the `notes` and the `summary`.
+
+    Attributes
+    ----------
+    presses : tuple of str
+        Names of the presses.
+    diameters_mm : tuple of float
+        Of the balls.
+    central : tuple of bool
+        The contact lies wholly in the picture's middle square.
+    scores : mapping of str to tuple of Score
+        Scores of the presses, by gradient model.
+    notes : tuple of str
+        One line for each press that was left out.
+    """
+
+    presses: tuple[str, ...]
+    diameters_mm: tuple[float, ...]
+    central: tuple[bool, ...]
+    scores: Mapping[str, tuple[Score, ...]]
+    notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        left_out = f", {len(self.notes)} left out" if self.notes else ""
+        return f"Evaluation({len(self.presses)} presses{left_out}: {', '.join(self.scores)})"
+
+    def values(self, model: str, name: str) -> np.ndarray:
+        """Return one number of the scores of each press, float64 (presses,)."""
+        return np.array([getattr(score, name) for score in self.scores[model]])
+
+    def height_error(self, model: str) -> HeightError:
+        """Return mean and standard deviation of recovered over true height in the middle square, else of all."""
+        central = np.array(self.central)
+        ratios = self.values(model, "cap_height")[central if central.any() else ~central]
+        return HeightError(float(ratios.mean()), float(ratios.std()), len(ratios))
+
+    @property
+    def best_model(self) -> str:
+        """The model with the smallest error of heights in the contacts."""
+        return min(self.scores, key=lambda model: float(self.values(model, "height_rms_mm").mean()))
+
+    @property
+    def summary(self) -> str:
+        """The mean errors in the middle square and beside it, and what the balls say of the scale."""
+        lines = []
+        for model in self.scores:
+            rms, cap, *rest = (
+                self.values(model, name) for name in ("height_rms_mm", "cap_height", "rest_slope", "rest_mm")
+            )
+            for where, among in (("in the middle", np.array(self.central)), ("at the sides", ~np.array(self.central))):
+                if among.any():
+                    flat = among & ~np.isnan(rest[0] + rest[1])
+                    slope, depth = (each[flat].mean() for each in rest) if flat.any() else (math.nan, math.nan)
+                    lines.append(
+                        f"{model}, {among.sum()} presses {where}: height RMS in the contact "
+                        f"{1000 * rms[among].mean():.1f} um; caps {cap[among].mean():.3f} of their height, RMS error "
+                        f"{np.sqrt(((cap[among] - 1) ** 2).mean()):.3f}; RMS where nothing touches: slope {slope:.3f}, "
+                        f"depth {1000 * depth:.1f} um"
+                    )
+            lines += self._of_balls(model)
+        return "\n".join(lines)
+
+    def _of_balls(self, model: str) -> list[str]:
+        """Return the ratio of each ball, if there are several, and whether they contradict each other."""
+        caps, diameters = self.values(model, "cap_height"), np.array(self.diameters_mm)
+        ratios = {ball: float(caps[diameters == ball].mean()) for ball in sorted(set(self.diameters_mm))}
+        if len(ratios) < 2:
+            return []
+        apart = max(ratios.values()) / min(ratios.values()) - 1
+        doubt = f"; the scale is not known better than these {100 * apart:.0f} %" if apart > BALLS_AGREE else ""
+        return [f"{model}, caps by ball: {', '.join(f'{b:g} mm {r:.3f}' for b, r in ratios.items())}{doubt}"]
+
+    def __str__(self) -> str:
+        label = f"{'press':<22}"
+        lines = [
+            " " * len(label) + "".join(f"{model:>24}" for model in self.scores),
+            label + f"{'RMS, um':>12}{'cap height':>12}" * len(self.scores),
+        ]
+        for index, (name, is_central) in enumerate(zip(self.presses, self.central, strict=True)):
+            rows = [scores[index] for scores in self.scores.values()]
+            cells = "".join(f"{1000 * row.height_rms_mm:>12.1f}{row.cap_height:>12.3f}" for row in rows)
+            lines.append(f"{name[-21:]:<22}{cells}{'' if is_central else '  at the side'}")
+        return "\n".join([*lines, *self.notes, self.summary])
+
+
+def evaluation_of(
+    presses: GridPresses, views: Sequence[View], scores: Mapping[str, tuple[Score, ...]], notes: tuple[str, ...] = ()
+) -> Evaluation:
+    """Return the evaluation of presses whose scores are known."""
+    names = tuple(view.press.name for view in views)
+    central = tuple(view.press.is_central(presses.grid) for view in views)
+    return Evaluation(names, tuple(view.diameter_mm for view in views), central, scores, presses.notes + notes)
+
+
+def evaluate(
+    sensor: Sensor,
+    presses: str | Path | Sequence[BallPress],
+    background: Picture | None = None,
+    *,
+    find_circles: bool = False,
+) -> Evaluation:
+    """Measure each gradient model of a calibration on presses of balls.
+
+    Depth is computed as by the hardware with zero slope at the edge, on the grid that covers the pictures. A press that
+    the edge of the picture cuts is left out, with a warning.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        See `load` and `fit`.
+    presses, background, find_circles
+        See `fit`. The pixel pitch is that of the sensor.
+
+    Returns
+    -------
+    Evaluation
+
+    Raises
+    ------
+    InputError
+        The pictures do not fit the sensor's camera, or no complete press is left.
+    """
+    pictures = gather(presses, background)
+    rows, columns = pictures.background.shape[:2]
+    pitch = sensor.pixel_pitch_mm / sensor.zoom((rows, columns), BACKGROUND)
+    by_balls = float(np.median(pictures.pitches)) if pictures.pitches else pitch
+    if abs(by_balls / pitch - 1) > PITCHES_AGREE:
+        raise InputError(
+            f"{sensor.name} has {pitch:.4g} mm/pixel, which contradicts {pictures.name}, whose ball radii give "
+            f"{by_balls:.4g}: give presses of that sensor, or correct ball_radius_px"
+        )
+    sensor.require_reference(True)
+    check_reference(sensor, pictures.background[None])
+    on_grid = to_grid(pictures, pitch, find_circles, aspect=sensor.pixel_aspect)
+    measured = [view for view in on_grid.views if view.is_whole]
+    cut = [view.press.name for view in on_grid.views if not view.is_whole]
+    notes = tuple(f"{name}: the edge of the picture cuts the contact: left out" for name in cut)
+    if not measured:
+        first = (*on_grid.notes, *notes)[:1]
+        problem = f": none of {len(pictures.presses)} can be used{''.join(f': {note}' for note in first)}"
+        raise InputError(Argument("presses"), problem)
+    for note in on_grid.notes:
+        warn(InputWarning(note))
+    if cut:
+        count = f"{len(cut)} of {len(pictures.presses)} presses are left out: the edge of the picture cuts the contact"
+        warn(InputWarning(f"{count}: {', '.join(cut)}", remedy="press nearer to the middle"))
+    scores = {model: scores_of(sensor, on_grid, measured, model) for model in sensor.models}
+    return evaluation_of(on_grid, measured, scores, notes)
+
+
+def scores_of(sensor: Sensor, presses: GridPresses, views: Sequence[View], model: str) -> tuple[Score, ...]:
+    """Return the scores of a gradient model on presses."""
+    slopes, depths = slopes_and_depths(sensor, presses, views, model)
+    pitch_mm = presses.grid_pitch_mm
+    maps = zip(views, slopes, depths, strict=True)
+    return tuple(_score(view, slope, depth, pitch_mm) for view, slope, depth in maps)
+
+
+def slopes_and_depths(
+    sensor: Sensor, presses: GridPresses, views: Iterable[View], model: str
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return slopes and depths of presses as the hardware computes them, with zero slope at the edge.
+
+    Returns
+    -------
+    float64 arrays (presses, rows, columns, 2), pixels per pixel, and (presses, rows, columns), grid pixels
+    """
+    on_grid = replace(sensor, pixel_pitch_mm=presses.grid_pitch_mm, reference=presses.background_on_grid)
+    rows, columns = presses.grid
+    config = on_grid.configuration(model, columns=columns, rows=rows, solver="tridiagonal", neumann=True)
+    frames, tables = np.stack([view.frame for view in views]), slope_tables(on_grid, config)
+    codes = slope_codes(frames, on_grid, config, tables=tables, light=light_of(frames, tables, config, cores=fastest()))
+    depth = solve(divergence(codes, config.neumann), config, cores=fastest())[:, ::-1]
+    return codes * config.gradient_lsb, depth * config.depth_lsb_px
+
+
+def _score(view: View, slopes: np.ndarray, depth: np.ndarray, pitch_mm: float) -> Score:
+    outside = view.press.distance(view.grid) > NOTHING_TOUCHES
+    slope = math.sqrt((slopes[outside] ** 2).mean()) if outside.any() else math.nan
+    far = view.press.untouched(view.grid)
+    rest_mm = float(depth[far].std()) * pitch_mm if far.any() else math.nan
+    return Score(view.press.height_rms(depth) * pitch_mm, view.press.recovered(depth), slope, rest_mm)

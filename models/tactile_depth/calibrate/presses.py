@@ -1,0 +1,456 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Ball presses: pictures of balls of known diameter pressed into a gel, on the grid, with true slopes and depth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.ndimage import map_coordinates
+
+from tactile_depth.base.errors import Argument, InputError, Part
+from tactile_depth.calibrate.ball_press import BallPress, Circle
+from tactile_depth.calibrate.circles import find_circle, require_circle_finder
+from tactile_depth.calibrate.press_folder import background_path, read_presses
+from tactile_depth.chip.camera_configuration import FORMATS, CameraChoice
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.flat_field import captured_gains, flat_codes, ratios, require_light
+from tactile_depth.chip.gradient.light_gains import Light, settled
+from tactile_depth.pictures.frames import read_picture
+from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler, picture_grid
+from tactile_depth.pictures.pictures import Picture
+
+SMALLEST_GRID = 16  # columns
+PITCHES_AGREE = 0.02  # largest relative difference between the given pitch and the pitch from the balls' radii
+FITTED_SHARE = 0.9  # fraction of the contact's radius: beyond it the gel leaves the ball
+NOTHING_TOUCHES = 2.0  # distance from the centre in contact radii: beyond it the gel is flat
+AT_REST = 2.5  # distance from the centre in contact radii: beyond it depth is that of untouched gel
+LARGEST_CONTACT = 0.999  # fraction of the ball's radius: slopes grow without bound towards 1
+LARGEST_CIRCLE = 0.8  # largest circle that is searched for, as a fraction of the ball's radius
+BACKGROUND = Argument("background")
+TOP_PX = 2  # radius of the top of a cap, in grid pixels
+# Standard deviation of the colours in the contacts, second over first principal axis. Colour pictures of 45 real
+# presses: 0.58; the same pictures in grey: 0.
+ALIKE = 0.1
+# Width over height of found contacts, less 1. Real presses: 0.04, by the light; pixels 8 % narrower than high: 0.08.
+STRETCHED, FEWEST_STRETCHES = 0.06, 4
+
+
+@dataclass(frozen=True)
+class GridPress:
+    """Geometry of a press on a grid; x counts along the columns, y down the rows, and the radii in heights of a pixel.
+
+    A depth map is shifted by half a pixel up and to the left (divergence.py): it shows the centre at x + 0.5, y + 0.5.
+    `aspect` is the width of a pixel over its height.
+    """
+
+    name: str
+    x: float
+    y: float
+    contact_radius: float
+    ball_radius: float
+    aspect: float = 1.0
+
+    @property
+    def cap_height(self) -> float:
+        """Height of the ball's cap above its contact circle."""
+        return self.ball_radius - math.sqrt(self.ball_radius**2 - self.contact_radius**2)
+
+    @property
+    def largest_slope(self) -> float:
+        """Slope of the ball at the contact circle."""
+        return self.contact_radius / math.sqrt(self.ball_radius**2 - self.contact_radius**2)
+
+    def margin(self, grid: tuple[int, int]) -> float:
+        """Return the distance from the contact circle to the nearest edge of a grid; negative if it is cut."""
+        rows, columns = grid
+        across, down = min(self.x, columns - 1 - self.x), min(self.y, rows - 1 - self.y)
+        return min(across * self.aspect, down) - self.contact_radius
+
+    def is_central(self, grid: tuple[int, int]) -> bool:
+        """Return True if the contact lies completely in the middle square of a grid."""
+        side = min(grid)
+        top, left = ((length - side) / 2 for length in grid)
+        return replace(self, x=self.x - left, y=self.y - top).margin((side, side)) >= 0
+
+    def distance(self, grid: tuple[int, int]) -> np.ndarray:
+        """Return the distance of each pixel from the centre in contact radii, float64 (rows, columns)."""
+        rows, columns = np.indices(grid)
+        return np.hypot((columns - self.x) * self.aspect, rows - self.y) / self.contact_radius
+
+    def slopes(self, grid: tuple[int, int]) -> np.ndarray:
+        """Return the change of the depth from pixel to pixel, float64 (rows, columns, 2), in heights of a pixel.
+
+        It is that of the ball in the contact, 0 elsewhere. Of square pixels it is the slope.
+        """
+        rows, columns = np.indices(grid, dtype=np.float64)
+        offset = np.stack(((columns - self.x) * self.aspect, rows - self.y), axis=-1)
+        squared = (offset**2).sum(axis=-1)
+        touches = squared < self.contact_radius**2
+        drop = np.sqrt(np.where(touches, self.ball_radius**2 - squared, 1))
+        return np.where(touches[..., None], -offset * (self.aspect, 1) / drop[..., None], 0)
+
+    def _squared(self, grid: tuple[int, int]) -> np.ndarray:
+        """Return the squared distance of each depth of a map from the centre."""
+        rows, columns = np.indices(grid)
+        return ((columns - self.x - 0.5) * self.aspect) ** 2 + (rows - self.y - 0.5) ** 2
+
+    def depth(self, grid: tuple[int, int]) -> np.ndarray:
+        """Return the depth of the ball above the contact circle, float64 (rows, columns), NaN outside."""
+        squared = self._squared(grid)
+        height = np.sqrt(np.maximum(self.ball_radius**2 - squared, 0)) - (self.ball_radius - self.cap_height)
+        return np.where(squared < self.contact_radius**2, height, np.nan)
+
+    def untouched(self, grid: tuple[int, int]) -> np.ndarray:
+        """Return the depths of a map that are so far from the contact that the gel is at rest, bool (rows, columns)."""
+        return self._squared(grid) > (AT_REST * self.contact_radius) ** 2
+
+    def edge(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return points of the contact circle in a depth map: columns, rows, float64 (360,) each."""
+        angle = np.linspace(0, 2 * np.pi, 360, endpoint=False)
+        return (
+            self.x + 0.5 + self.contact_radius / self.aspect * np.cos(angle),
+            self.y + 0.5 + self.contact_radius * np.sin(angle),
+        )
+
+    def edge_depth(self, depth: np.ndarray) -> float:
+        """Return the mean of a depth map (rows, columns) on the contact circle."""
+        x, y = self.edge()
+        return float(map_coordinates(depth, [y, x], order=1, mode="nearest").mean())
+
+    def recovered(self, depth: np.ndarray) -> float:
+        """Return the ratio of recovered to true height of the cap, from a depth map (rows, columns) in grid pixels.
+
+        A height is the mean depth within `TOP_PX` of the centre minus that on the contact circle, of the map and of the
+        ball alike.
+        """
+        grid = (len(depth), depth.shape[1])
+        top = self._squared(grid) <= TOP_PX**2
+        return float((depth[top].mean() - self.edge_depth(depth)) / np.nanmean(self.depth(grid)[top]))
+
+    def height_rms(self, depth: np.ndarray) -> float:
+        """Return the standard deviation of a depth map (rows, columns) from the ball in the contact, in grid pixels."""
+        return float(np.nanstd(depth - self.depth((len(depth), depth.shape[1]))))
+
+
+@dataclass(frozen=True)
+class View:
+    """A press on the grid: its geometry, its picture, and the colours from the hardware's flat field.
+
+    Attributes
+    ----------
+    press : GridPress
+    diameter_mm : float
+    frame, codes : uint8 array (rows, columns, 3)
+    deviations : int64 array (rows, columns, 3), in units of `DEVIATION.lsb`, with light gains
+    """
+
+    press: GridPress
+    diameter_mm: float
+    frame: np.ndarray
+    codes: np.ndarray
+    deviations: np.ndarray
+
+    @property
+    def grid(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return len(self.frame), self.frame.shape[1]
+
+    @property
+    def is_whole(self) -> bool:
+        """True if the contact lies completely on the grid."""
+        return self.press.margin(self.grid) >= 0
+
+
+@dataclass(frozen=True)
+class PressPictures:
+    """Presses before resampling, and the picture without contact.
+
+    Attributes
+    ----------
+    name : str
+    presses : tuple of BallPress
+        Presses with distinct names.
+    background : uint8 array (rows, columns, 3)
+    notes : tuple of str
+        One line for each column or line of presses.csv that was left out.
+    """
+
+    name: str
+    presses: tuple[BallPress, ...]
+    background: np.ndarray
+    notes: tuple[str, ...] = ()
+
+    @property
+    def pitches(self) -> list[float]:
+        """Millimetres per pixel, from each ball whose radius in pixels is known."""
+        return [press.diameter_mm / 2 / press.ball_radius_px for press in self.presses if press.ball_radius_px]
+
+
+@dataclass(frozen=True)
+class GridPresses:
+    """Presses on the grid.
+
+    Attributes
+    ----------
+    name : str
+    views : tuple of View
+    background : uint8 array (rows, columns, 3)
+        Picture of the sensor without contact, in camera pixels.
+    background_on_grid : uint8 array (rows, columns, 3)
+    pitch_mm : float
+        Millimetres per camera pixel.
+    scale : float
+        Camera pixels per grid pixel.
+    notes : tuple of str
+        One line for each press, column or line that was left out.
+    agreement : float64 array (n, 3)
+        Detected minus given circles in camera pixels: x, y, radius.
+    pixel_format : str
+        Pixel format of the camera that the pictures were converted for.
+    aspect : float
+        Width of a pixel over its height.
+    """
+
+    name: str
+    views: tuple[View, ...]
+    background: np.ndarray
+    background_on_grid: np.ndarray
+    pitch_mm: float
+    scale: float
+    notes: tuple[str, ...]
+    agreement: np.ndarray
+    pixel_format: str = "rgb888"
+    aspect: float = 1.0
+
+    @property
+    def grid(self) -> tuple[int, int]:
+        """Rows and columns of the grid."""
+        return len(self.background_on_grid), self.background_on_grid.shape[1]
+
+    @property
+    def field_of_view(self) -> str:
+        """The size of the gel in the picture by the pitch, which balls of known diameter cannot check."""
+        rows, columns = self.background.shape[:2]
+        return (
+            f"{self.pitch_mm:.3g} mm per pixel: the picture shows {columns * self.pitch_mm * self.aspect:.1f} x "
+            f"{rows * self.pitch_mm:.1f} mm of the gel. Check that with a ruler: balls fit any pitch, and an error of "
+            "the pitch changes heights by twice as much"
+        )
+
+    @property
+    def grid_pitch_mm(self) -> float:
+        """Millimetres per grid pixel."""
+        return self.pitch_mm * self.scale
+
+
+def gather(presses: str | Path | Sequence[BallPress], background: Picture | None = None) -> PressPictures:
+    """Return presses from a folder or from memory.
+
+    Parameters
+    ----------
+    presses : path of a folder, or sequence of BallPress
+        A folder holds pictures, presses.csv (press_folder.py) and background.png or .jpg.
+    background : uint8 array (rows, columns, 3), PIL image or path, optional
+        Picture without contact; by default that of the folder.
+
+    Raises
+    ------
+    InputError
+    """
+    notes: list[str] = []
+    if isinstance(presses, (str, Path)):
+        folder = Path(presses)
+        if background is None:
+            background = background_path(folder)
+        listed, notes = read_presses(folder)
+        name = folder.resolve().name
+    else:
+        is_sequence: bool = isinstance(presses, Sequence)
+        if not is_sequence or not all(isinstance(press, BallPress) for press in presses):
+            raise InputError(Argument("presses"), accepted=("the path of a folder", "or a sequence of BallPress"))
+        if background is None:
+            remedy = "give a picture of the sensor without contact"
+            raise InputError(BACKGROUND, " is missing", remedy=remedy)
+        name = "fitted"
+        numbered = [f"press {n}" if isinstance(p.image, np.ndarray) else str(p.image) for n, p in enumerate(presses, 1)]
+        listed = [replace(press, name=press.name or other) for press, other in zip(presses, numbered, strict=True)]
+    names = [press.name for press in listed]
+    if repeated := next((one for one in names if names.count(one) > 1), None):
+        problem = f": the name {repeated} stands twice"
+        raise InputError(Argument("presses"), problem, remedy="give each press a name of its own")
+    return PressPictures(name, tuple(listed), _picture(background, BACKGROUND), tuple(notes))
+
+
+def camera_pitch_mm(pictures: PressPictures, pitch_mm: float | None) -> float:
+    """Return millimetres per camera pixel: `pitch_mm`, or the pitch from the balls' radii in pixels.
+
+    Raises
+    ------
+    InputError
+        Both are missing, or they disagree.
+    """
+    if not pictures.pitches:
+        if pitch_mm is None:
+            raise InputError(
+                Argument("pitch_mm"),
+                " is needed: mm per camera pixel, which presses without ball_radius_px do not give",
+            )
+        return pitch_mm
+    by_balls = float(np.median(pictures.pitches))
+    if pitch_mm is None:
+        return float(f"{by_balls:.3g}")  # diameters and radii have no more digits
+    if abs(by_balls / pitch_mm - 1) > PITCHES_AGREE:
+        raise InputError(
+            *(Argument("pitch_mm", pitch_mm), f" contradicts {pictures.name}, whose ball radii give {by_balls:.4g} "),
+            *("mm/pixel. Omit ", Argument("pitch_mm"), " or correct ball_radius_px."),
+        )
+    return pitch_mm
+
+
+def to_grid(
+    pictures: PressPictures,
+    pitch_mm: float,
+    find_circles: bool = False,
+    compare_circles: bool = False,
+    choice: CameraChoice | None = None,
+    aspect: float = 1.0,
+    grid: tuple[int, int] | None = None,
+) -> GridPresses:
+    """Resample presses to a grid; `notes` names the presses left out and why.
+
+    Parameters
+    ----------
+    pitch_mm : float
+        Millimetres per camera pixel, down the rows.
+    find_circles : bool
+        Detect circles in the pictures even if circles are given, and use the detected circles.
+    compare_circles : bool
+        Detect circles, use the given circles, and return the differences.
+    choice : CameraChoice, optional
+        Pictures are converted to what this camera sends, and then taken as its hardware takes them.
+    aspect : float
+        Width of a pixel over its height.
+    grid : (rows, columns), optional
+        By default `picture_grid`, which covers the pictures.
+
+    Raises
+    ------
+    InputError
+        The background is too small or too dark, the colours of all pictures change alike, or scikit-image is needed and
+        missing.
+    """
+    background = pictures.background
+    camera = background.shape[:2]
+    least = 1 if choice is None else FORMATS[choice.pixel_format].least_ratio
+    grid = grid or picture_grid((camera[0], camera[1]), least_ratio=least)
+    if min(grid) < SMALLEST_GRID:
+        raise InputError(BACKGROUND, f": {camera[0]} x {camera[1]} pixels", accepted=f"{SMALLEST_GRID} x or more")
+    if find_circles or compare_circles or any(press.circle is None for press in pictures.presses):
+        require_circle_finder()
+    shape: dict[str, Any] = {"columns": grid[1], "rows": grid[0], "solver": "tridiagonal"}
+    config = Configuration(**shape, flat_field=True, gradient_model="cubic", light_gains=True)
+    sampler = grid_sampler(BACKGROUND, (camera[0], camera[1]), grid, choice)
+    rest = sampler.frame(background)
+    gains = captured_gains(rest[None], config)
+    require_light(gains, config, BACKGROUND)
+    notes, agreement, stretches = list(pictures.notes), [], []
+    geometry: list[tuple[GridPress, float]] = []
+    frames: list[np.ndarray] = []
+    for press in pictures.presses:
+        try:
+            image = _press_image(press, background)
+            ball = press.diameter_mm / 2 / pitch_mm
+            seen = None
+            if find_circles or compare_circles or press.circle is None:
+                largest = min(LARGEST_CIRCLE * ball, min(camera) / 2)
+                found = find_circle(image, background, largest, aspect)
+                seen = None if found is None else found.circle
+                stretches += [] if found is None else [found.stretch]
+            given = None if press.circle is None else Circle(*press.circle)
+            at = _grid_press(press.name, seen if find_circles else given or seen, ball, sampler, grid, aspect)
+        except InputError as error:
+            notes.append(str(InputError(f"{error}: left out")))
+            continue
+        if given and seen:
+            agreement.append(np.subtract(seen, given))
+        geometry.append((at, press.diameter_mm))
+        frames.append(sampler.frame(image))
+    stack = np.array(frames, np.uint8).reshape(-1, *grid, 3)
+    codes, relative, light = flat_codes(stack, gains, config), ratios(stack, gains, config), Light.of(config)
+    colours = light.deviations(relative, settled(relative, light)[:, None, None])
+    views = tuple(View(*at, *parts) for at, *parts in zip(geometry, stack, codes, colours, strict=True))
+    _require_colours(views, pictures.name)
+    notes += _stretched(stretches)
+    differences = np.array(agreement).reshape(-1, 3)
+    presses = GridPresses(pictures.name, views, background, rest, pitch_mm, sampler.scale, tuple(notes), differences)
+    form = presses.pixel_format if choice is None else choice.pixel_format
+    return replace(presses, pixel_format=form, aspect=aspect)
+
+
+def _require_colours(views: Sequence[View], name: str) -> None:
+    """Raise InputError if all colours change alike in all contacts, as in grey pictures: they show no direction."""
+    if not views:
+        return
+    colours = np.concatenate([view.deviations[view.press.distance(view.grid) < FITTED_SHARE] for view in views])
+    first, second, _ = np.sqrt(np.linalg.eigvalsh(np.cov(colours.T.astype(np.float64)))[::-1].clip(0))
+    if second < ALIKE * first:
+        remedy = "give colour pictures of a gel that is lit in several colours"
+        raise InputError(f"{name}: the colours of all presses change alike, as in grey pictures", remedy=remedy)
+
+
+def _stretched(stretches: Sequence[float]) -> list[str]:
+    """Return a line if contacts of balls are ellipses."""
+    if len(stretches) < FEWEST_STRETCHES or abs(stretch := float(np.median(stretches)) - 1) < STRETCHED:
+        return []
+    wider = "wider" if stretch > 0 else "narrower"
+    return [
+        f"contacts are {100 * abs(stretch):.0f} % {wider} than high, and those of balls are circles: if pixels are not "
+        "square, give pitch_mm=(height, width) of a pixel"
+    ]
+
+
+def _grid_press(
+    name: str, circle: Circle | None, ball: float, sampler: GridSampler, grid: tuple[int, int], aspect: float
+) -> GridPress:
+    """Return the geometry of a circle and a ball's radius in camera pixels; raise InputError if it cannot be used."""
+    if circle is None:
+        raise InputError(f"{name}: no circle to be seen")
+    if circle.radius >= LARGEST_CONTACT * ball:
+        raise InputError(f"{name}: a contact of {circle.radius:.1f} pixels does not lie on a ball of {ball:.1f}")
+    top, left = sampler.origin
+    press = GridPress(
+        name,
+        (circle.x - left + 0.5) / sampler.scale - 0.5,
+        (circle.y - top + 0.5) / sampler.scale - 0.5,
+        circle.radius / sampler.scale,
+        ball / sampler.scale,
+        aspect,
+    )
+    if not (press.distance(grid) < FITTED_SHARE).any():
+        raise InputError(f"{name}: the press is outside the picture")
+    return press
+
+
+def _press_image(press: BallPress, background: np.ndarray) -> np.ndarray:
+    image = _picture(press.image, press.name)
+    if image.shape != background.shape:
+        raise InputError(
+            f"{press.name}: {image.shape[0]} x {image.shape[1]} pixels, but the background has "
+            f"{background.shape[0]} x {background.shape[1]}"
+        )
+    return image
+
+
+def _picture(image: Picture, name: Part) -> np.ndarray:
+    """Return the pixels of a picture, from an array, a PIL image or a path."""
+    if isinstance(image, str | Path):
+        return read_picture(Path(image))
+    image = np.asarray(image)
+    if image.dtype != np.uint8 or image.ndim != 3 or image.shape[-1] != 3 or not image.size:
+        raise InputError(name, f": {image.dtype} {image.shape}", accepted="uint8 (rows, columns, 3), RGB")
+    return image

@@ -1,0 +1,490 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The configuration of a pipeline, the only source of its numbers.
+
+Every fixed-point format, HDL parameter and expected latency is derived here from a few choices. Formats
+follow from two bounds: no slope exceeds `gradient_limit`, no depth exceeds `depth_range_px`. Every step from
+slope to depth is linear, so the largest value of a node is an L1 norm. The norm is computed by the
+bit-accurate model, run on unit vectors of floats (models/tactile_depth/chip/common/td_round_saturate.py).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tactile_depth.base.errors import Argument, InputError, former_names, one_of, power_of_two, within
+from tactile_depth.chip.bounds import Bounds, bounds, difference_bounds
+from tactile_depth.chip.fixed_point import Format
+from tactile_depth.chip.poisson.transform.sdf_fft import twiddle_stages
+from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
+
+GUARD_BITS = 3  # bits of the arithmetic below a stored word: a DSP48E2 multiplies 27 bits at the cost of 24
+DEPTH_HEADROOM = 9 / 8  # full scale of the depth code over the depth range: margin for depth errors
+DEEPEST = 0.67  # largest depth over N pixels for slopes up to 1 (L1 norm of the linear map), as a fraction of N
+COARSEST_LSB = 1 / 32  # of a mode's word, as a fraction of the deepest depth: coarser words lose the shape
+SMALLEST_DEPTH_RANGE_PX = 1 / 16
+
+# Styles of td_ram.sv for a frame store. A store as large as two UltraRAMs or more takes UltraRAM, which is cheaper.
+BLOCK, ULTRA = 1, 2
+ULTRA_WORDS, ULTRA_WIDTH = 4096, 72
+
+COLUMNS = {"spectral": (16, 512), "tridiagonal": (16, 1024)}
+ROWS = (8, 1024)
+EXACT_LENGTHS = (8, 4096)  # rows and columns of a grid in double precision
+MOST_LANES = 64
+COLUMNS_PER_LANE = 2  # at least: the second row of a pair comes so many clocks after the first
+ZERO_OFFSET_COLUMNS_PER_LANE = 4  # at least: the capture of the zero offset adds in three clocks, td_block_sum.sv
+DATA_WIDTHS = (12, 32)
+COEFFICIENT_WIDTHS = (10, 24)
+GRADIENT_MODELS = ("lut", "quadratic", "cubic")
+GRADIENT_LIMITS = (2.0**-6, 2.0**6)
+
+# Flat-fielding. The reference is smooth, as the lighting is. A grid of 16 block means across the picture causes no
+# visible error in the gradients of real presses; a grid of 8 does.
+REFERENCE_NODES = 16
+SMALLEST_BLOCK = 2
+PIXEL_WIDTH = 8
+GAIN_WIDTHS = (16, 24)  # of an unsigned gain word
+DARKEST_LOG2 = 3  # a reference of 8 grey levels gives the full scale of a gain
+
+
+def gain_fraction(gain_width: int) -> int:
+    """Return the fraction bits of a gain, 1 / reference, of so many bits."""
+    return gain_width + DARKEST_LOG2
+
+
+def most_lanes(columns: int, zero_offset: bool = False) -> int:
+    """Return the largest number of lanes of the tridiagonal solver."""
+    return min(columns // (ZERO_OFFSET_COLUMNS_PER_LANE if zero_offset else COLUMNS_PER_LANE), MOST_LANES)
+
+
+DEVIATION = Format(17, 15)
+"""Format of a colour relative to the reference, I / ref - 1.
+
+It is so fine that rounding does not tilt a gel of one colour, which has the same error in every pixel.
+"""
+RATIO = Format(17, 15)
+"""Format of a colour relative to the reference, I / ref, unsigned, before the light gains."""
+LIGHT_GAIN = Format(16, 15)
+"""Format of the gain of a colour that follows the light, unsigned."""
+POLYNOMIAL = Format(32, 28)
+"""Format of a coefficient of the polynomial models along the raster, as wide as a register of the AXI4-Lite map; with a
+larger `coefficient_limit` it has fewer fraction bits."""
+FINE_BITS = (4, 128)
+"""Fraction bits of the words of third degree beyond those of the others, and the largest side of a grid with so many:
+3 more for each doubling of the side, because these words add up to its third power."""
+CORRECTION_BITS, CORRECTION_WIDTH = 4, 8
+"""Top bits of each colour that index the corrections of the model `cubic`, and bits of a correction."""
+COLOUR_COEFFICIENT = Format(18, 14)
+"""Format of the upper bits of a coefficient, which are multiplied, as wide as the narrow port of a DSP48E2."""
+COEFFICIENT_LIMITS = (POLYNOMIAL.limit, 2.0**8)
+
+
+@former_names(auto_zero="zero_offset")
+@dataclass(frozen=True)
+class Configuration:
+    """The choices that define a pipeline, and the numbers that follow from them.
+
+    Raises InputError if the pipeline cannot be built.
+
+    Attributes
+    ----------
+    columns : int
+        Columns of the grid, a power of two.
+    rows : int
+        Rows of the grid; 0: as many as columns. Only the tridiagonal solver accepts a different number.
+    solver : str
+        `spectral` or `tridiagonal`.
+    neumann : bool
+        Zero slope at the frame's edge instead of zero depth.
+    data_width, coefficient_width : int
+        Bits of a stored word and of a coefficient.
+    depth_range_px : float
+        Largest depth that formats are sized for, in grid pixels; None: a quarter of the grid.
+    gradient_limit : float
+        Largest slope, a power of two.
+    coefficient_limit : float
+        Models of polynomials: no coefficient reaches it, a power of two. Faint colours need large coefficients.
+    bits_per_channel : int
+        Bits of each colour that index the gradient table.
+    flat_field : bool
+        Colours are taken relative to a reference frame.
+    gain_width : int
+        Bits of a gain of the flat field.
+    gradient_model : str
+        `lut`, a table of colours; `quadratic` or `cubic`, polynomials of the position, which need `flat_field`.
+    light_gains : bool
+        A gain for each colour follows the light; needs polynomials.
+    zero_offset : bool
+        The depth that is read without contact is subtracted.
+    lanes : int
+        Depth values per clock, a power of two. Only the tridiagonal solver has more than one.
+    """
+
+    columns: int = 128
+    rows: int = 0
+    solver: str = "spectral"
+    neumann: bool = False
+    data_width: int = 24
+    coefficient_width: int = 18
+    depth_range_px: float | None = None
+    gradient_limit: float = 1.0
+    coefficient_limit: float = POLYNOMIAL.limit
+    bits_per_channel: int = 4
+    flat_field: bool = False
+    gradient_model: str = "lut"
+    zero_offset: bool = False
+    lanes: int = 1
+    gain_width: int = 24
+    light_gains: bool = False
+
+    def __post_init__(self) -> None:
+        model, solver = Argument("gradient_model", self.gradient_model), Argument("solver", self.solver)
+        columns, data_width = Argument("columns", self.columns), Argument("data_width", self.data_width)
+        one_of(model, GRADIENT_MODELS)
+        if self.polynomials and not self.flat_field:
+            raise InputError(model, " without a reference: it takes colours relative to one", remedy="give one")
+        if self.light_gains and not self.polynomials:
+            raise InputError(
+                *(Argument("light_gains", True), " with ", model, ": they act on colours relative to a reference, "),
+                "which a table has as 8 bits",
+                remedy=("set ", Argument("gradient_model", "cubic"), " or ", Argument("light_gains", False)),
+            )
+        one_of(solver, COLUMNS)
+        if not self.rows:
+            object.__setattr__(self, "rows", self.columns)
+        self._check_grid()
+        if self.solver == "spectral" and self.rows != self.columns:
+            raise InputError(
+                *(solver, " with ", Argument("rows", self.rows), " and ", columns, ": it takes square grids"),
+                remedy=("set both the same, or ", Argument("solver", "tridiagonal")),
+            )
+        self._check_lanes()
+        within(data_width, *DATA_WIDTHS)
+        within(Argument("coefficient_width", self.coefficient_width), *COEFFICIENT_WIDTHS)
+        within(Argument("gain_width", self.gain_width), *GAIN_WIDTHS)
+        self._check_sums()
+        if self.depth_range_px is None:
+            object.__setattr__(self, "depth_range_px", min(self.rows, self.columns) / 4)
+        if not SMALLEST_DEPTH_RANGE_PX <= self.depth_limit_px / DEPTH_HEADROOM < math.inf:
+            raise InputError(
+                f"a depth range of {self.depth_range_px:g} pixels: accepted are {SMALLEST_DEPTH_RANGE_PX:g} "
+                f"pixels and more"
+            )
+        lowest, highest = GRADIENT_LIMITS
+        if not lowest <= self.gradient_limit <= highest or math.log2(self.gradient_limit) % 1:
+            raise InputError(
+                f"the largest slope of the calibration is near {self.gradient_limit:g}: accepted are "
+                f"{lowest:g} to {highest:g} pixels per pixel: correct its unit"
+            )
+        self._check_formats(columns, data_width)
+
+    def _check_grid(self) -> None:
+        columns = Argument("columns", self.columns)
+        within(columns, *COLUMNS[self.solver])
+        power_of_two(columns)
+        within(Argument("rows", self.rows), *ROWS)
+
+    def _check_formats(self, columns: Argument, data_width: Argument) -> None:
+        """Refuse a pipeline whose words are too short."""
+        lowest, highest = COEFFICIENT_LIMITS
+        if not lowest <= self.coefficient_limit <= highest or math.log2(self.coefficient_limit) % 1:
+            raise InputError(
+                f"the coefficients of the calibration are near {self.coefficient_limit:g}: accepted are up to "
+                f"{highest:g}: colours that change so little with the slope do not show it: use more light"
+            )
+        deepest = min(
+            self.depth_limit_px / DEPTH_HEADROOM, DEEPEST * min(self.rows, self.columns) * self.gradient_limit
+        )
+        modes = self.column_inverse if self.solver == "spectral" else self.elimination_store
+        step = modes.lsb * self.depth_limit_px
+        if step > COARSEST_LSB * deepest:
+            enough = self.data_width + math.ceil(math.log2(step / (COARSEST_LSB * deepest)))
+            wider = (Argument("data_width", enough), " or ") if enough <= DATA_WIDTHS[1] else ()
+            raise InputError(
+                *(data_width, " cannot hold the formats of ", columns),
+                f" and a depth range of {self.depth_range_px:g} pixels (the step of a mode would be {step:.3g} pixels, "
+                f"the largest depth is {deepest:.3g})",
+                remedy=("try ", *wider, "a smaller depth range"),
+            )
+        for node, (bound, form) in self.bounds_within_range().items():
+            if bound > form.limit - form.lsb:
+                raise InputError(
+                    *(f"{node} of ", columns, ", ", data_width),
+                    f" holds up to {form.limit:g} and a depth within the range of {self.depth_range_px:g} pixels can "
+                    f"ask for {bound:.4g}",
+                    remedy="a fault in the derivation of formats, please report it",
+                )
+
+    def _check_lanes(self) -> None:
+        most = most_lanes(self.columns, self.zero_offset)
+        lanes = Argument("lanes", self.lanes)
+        if self.solver != "tridiagonal" and self.lanes != 1:
+            raise InputError(
+                *(lanes, " with ", Argument("solver", self.solver), ": it puts out one depth value per clock"),
+                remedy=("set ", Argument("lanes", 1), ", or ", Argument("solver", "tridiagonal")),
+            )
+        if not 1 <= self.lanes <= most:
+            zero = (" and ", Argument("zero_offset", True)) if self.zero_offset else ()
+            raise InputError(lanes, " with ", Argument("columns", self.columns), *zero, accepted=range(1, most + 1))
+        power_of_two(lanes)
+
+    def _check_sums(self) -> None:
+        """Refuse gains that a capture cannot sum blocks in."""
+        least = PIXEL_WIDTH + 2 * self.reference_block_log2
+        if self.flat_field and self.gain_width < least:
+            block = 1 << self.reference_block_log2
+            raise InputError(
+                *(Argument("gain_width", self.gain_width), " with ", Argument("columns", self.columns)),
+                f": a capture of the reference sums blocks of {block} x {block} pixels in words of that width",
+                remedy=("set ", Argument("gain_width", least), " or more"),
+            )
+
+    # Widths.
+
+    @property
+    def gain_fraction(self) -> int:
+        """Fraction bits of a gain of the flat field."""
+        return gain_fraction(self.gain_width)
+
+    @property
+    def arithmetic_width(self) -> int:
+        """Bits inside the transforms and the divide."""
+        return self.data_width + GUARD_BITS
+
+    @property
+    def depth_limit_px(self) -> float:
+        """Full scale of the depth code, in grid pixels."""
+        assert self.depth_range_px is not None
+        return DEPTH_HEADROOM * self.depth_range_px
+
+    @property
+    def depth_limit_log2(self) -> int:
+        """Full scale of the depth code, in units of `unit_px`, as a power of two."""
+        return math.ceil(math.log2(self.depth_limit_px)) if self.solver == "tridiagonal" else 0
+
+    @property
+    def unit_px(self) -> float:
+        """Unit of length of slopes, divergence and forward modes, in grid pixels.
+
+        The spectral divide changes units. The tridiagonal solver cannot, so slopes already have the unit of its depth.
+        """
+        return self.depth_limit_px / 2.0**self.depth_limit_log2 if self.solver == "tridiagonal" else 1.0
+
+    @property
+    def reference_block_log2(self) -> int:
+        """Base-2 logarithm of the rows and columns of a block of pixels that share a gain."""
+        block = min(max(self.columns // REFERENCE_NODES, SMALLEST_BLOCK), self.rows)
+        return block.bit_length() - 1
+
+    @property
+    def reference_nodes(self) -> tuple[int, int]:
+        """Rows and columns of the grid of gains; an incomplete last row of blocks has no gains of its own."""
+        return self.rows >> self.reference_block_log2, self.columns >> self.reference_block_log2
+
+    @property
+    def down_words(self) -> int:
+        """Modes per clock on the way down, at most the square root of those on the way up, but at least 2.
+
+        More would cost more, and fewer would delay the last row, on which the whole map waits.
+        """
+        return max(2, 1 << (self.lanes.bit_length() - 1) // 2)
+
+    @property
+    def store_style(self) -> int:
+        """Style of a memory of a frame store, BLOCK or ULTRA; with several lanes the store has several memories."""
+        memories = 1 if self.lanes == 1 else self.lanes // min(self.down_words, self.lanes // 2)
+        bits = self.rows * self.columns * self.data_width // memories
+        return ULTRA if bits >= 2 * ULTRA_WORDS * ULTRA_WIDTH else BLOCK
+
+    @property
+    def words_per_row(self) -> int:
+        """Stored words side by side in a row of the tridiagonal solver's frame store: as many as fit an UltraRAM's row.
+
+        The rows of a block RAM are as wide as one word. The spectral solver stores one word in a row, because it reads
+        columns.
+        """
+        return ULTRA_WIDTH // self.data_width if self.store_style == ULTRA and self.solver == "tridiagonal" else 1
+
+    # Formats, in the order of the stream. Slopes, divergence and forward modes have the unit `unit_px`; all values
+    # after the solve along the columns have the unit `depth_limit_px`.
+
+    @cached_property
+    def row_forward(self) -> Format:
+        return Format.holding(self._bounds.row_forward * self.gradient_limit / self.unit_px, self.arithmetic_width)
+
+    @property
+    def polynomials(self) -> bool:
+        """True for a gradient model of polynomials of the position."""
+        return self.gradient_model != "lut"
+
+    @property
+    def gradient(self) -> Format:
+        """Format of a slope, with the fraction bits of the row transform, so that no bits are dropped between them."""
+        fraction = self.row_forward.fraction
+        largest = self.gradient_limit / self.gradient_lsb
+        return Format(math.ceil(math.log2(largest)) + 1, fraction)
+
+    @property
+    def gradient_lsb(self) -> float:
+        """Slope of code 1. For the tridiagonal solver it compensates the gain of the coefficients."""
+        gain = self.transform_gain if self.solver == "tridiagonal" else 1.0
+        return self.row_forward.lsb * self.unit_px * gain
+
+    @property
+    def polynomial(self) -> Format:
+        """Format of a coefficient along the raster, in units of `coefficient_unit`."""
+        return Format(POLYNOMIAL.width, POLYNOMIAL.fraction - self._coefficient_log2)
+
+    @property
+    def colour_coefficient(self) -> Format:
+        """Format of the upper bits of a coefficient, in units of `coefficient_unit`."""
+        return Format(COLOUR_COEFFICIENT.width, COLOUR_COEFFICIENT.fraction - self._coefficient_log2)
+
+    @property
+    def coefficient_unit(self) -> float:
+        """Slope of a coefficient of 1."""
+        return self.gradient_lsb * 2.0**self.gradient.fraction
+
+    @property
+    def _coefficient_log2(self) -> int:
+        return round(math.log2(self.coefficient_limit / POLYNOMIAL.limit))
+
+    @property
+    def divergence(self) -> Format:
+        return Format(self.gradient.width + 2, self.gradient.fraction)
+
+    @cached_property
+    def row_modes(self) -> Format:
+        """Format of the first frame store."""
+        return Format.holding(self._bounds.row_modes * self.gradient_limit, self.data_width)
+
+    @cached_property
+    def column_forward(self) -> Format:
+        return Format.holding(self._bounds.column_forward * self.gradient_limit, self.arithmetic_width)
+
+    @cached_property
+    def column_inverse(self) -> Format:
+        return Format.holding(self._bounds.column_inverse / DEPTH_HEADROOM, self.arithmetic_width)
+
+    @cached_property
+    def depth_modes(self) -> Format:
+        """Format of the second frame store."""
+        return Format.holding(self._bounds.depth_modes / DEPTH_HEADROOM, self.data_width)
+
+    @cached_property
+    def elimination(self) -> Format:
+        """Format of the running rows of the tridiagonal solver, and of the modes at its input."""
+        return Format.holding(max(self._elimination_bounds.values()), self.arithmetic_width)
+
+    @property
+    def elimination_store(self) -> Format:
+        """Format of the frame store of the tridiagonal solver."""
+        return Format(self.data_width, self.elimination.fraction - GUARD_BITS)
+
+    @property
+    def moment_drop(self) -> int:
+        """Fraction bits that rows * mean drops before the division by rows (Neumann)."""
+        return (self.rows - 1).bit_length()
+
+    @cached_property
+    def row_inverse(self) -> Format:
+        return Format.holding(self._row_inverse_bound / DEPTH_HEADROOM, self.arithmetic_width)
+
+    @property
+    def depth(self) -> Format:
+        return Format(self.data_width, self.data_width - 1)
+
+    @property
+    def depth_lsb_px(self) -> float:
+        """Depth of code 1, in grid pixels."""
+        return self.depth.lsb * self.depth_limit_px
+
+    # HDL parameters.
+
+    def transform_parameters(self) -> dict[str, int]:
+        """Return the HDL parameters that both solvers share."""
+        return {"Columns": self.columns, "Width": self.arithmetic_width, "CoeffWidth": self.coefficient_width}
+
+    def transform_arguments(self) -> dict[str, Any]:
+        """Return the arguments of the models of the transforms that both solvers share."""
+        return {
+            "width": self.arithmetic_width,
+            "coefficient_width": self.coefficient_width,
+            "alternate": not self.neumann,
+        }
+
+    # Gain.
+
+    @property
+    def transform_gain(self) -> float:
+        """Gain of the coefficients over all forward and inverse transforms, slightly below 1."""
+        transforms = 4 if self.solver == "spectral" else 2
+        return coefficient_gain(self.coefficient_width) ** (transforms * (twiddle_stages(self.columns) + 1))
+
+    # Bounds.
+
+    @property
+    def _bounds(self) -> Bounds:
+        return bounds(self.columns, self.neumann)
+
+    @property
+    def _row_inverse_bound(self) -> float:
+        """Bound of the inverse row transform, which takes two rows at a time where several depths leave in a clock."""
+        return self._bounds.row_inverse if self.lanes == 1 else self._bounds.row_pair
+
+    @property
+    def _elimination_bounds(self) -> dict[str, float]:
+        """Bounds of the nodes with format `elimination`, where z is at most the largest depth mode.
+
+        |d| = |z[i] + c z[i+1]| and |e| = |z[i] - c c' z[i+2]| are at most twice it, as is a sum of modes of two rows.
+        """
+        by_slopes, by_depths = difference_bounds(self.rows, self.columns, self.neumann)
+        slope = self.gradient_limit / self.depth_limit_px
+        difference = float(np.minimum(by_slopes * slope, by_depths / DEPTH_HEADROOM).max())
+        depth = self._bounds.depth_modes / DEPTH_HEADROOM
+        return {
+            "forward_elimination.difference": difference,
+            "forward_elimination.state": 2 * depth,
+            "back_substitution": depth,
+        }
+
+    def bounds_within_range(self) -> dict[str, tuple[float, Format]]:
+        """Return the largest magnitude at each group of nodes for inputs within gradient limit and depth range."""
+        steep, deep = self.gradient_limit / self.unit_px, 1 / DEPTH_HEADROOM
+        found = {
+            "row_forward": (self._bounds.row_forward * steep, self.row_forward),
+            "row_inverse": (self._row_inverse_bound * deep, self.row_inverse),
+            "row_inverse.output": (deep, self.depth),
+        }
+        if self.solver == "tridiagonal":
+            running = {node: (bound, self.elimination) for node, bound in self._elimination_bounds.items()}
+            stored = (self._elimination_bounds["forward_elimination.state"], self.elimination_store)
+            return found | running | {"forward_elimination.store": stored}
+        return found | {
+            "row_forward.phase.re": (self._bounds.row_modes * steep, self.row_modes),
+            "column_forward": (self._bounds.column_forward * steep, self.column_forward),
+            "spectral_divide": (self._bounds.column_inverse * deep, self.column_inverse),
+            "column_inverse.output": (self._bounds.depth_modes * deep, self.depth_modes),
+        }
+
+
+class ExactConfiguration(Configuration):
+    """Choices for double precision, which takes any grid and has no formats."""
+
+    def _check_grid(self) -> None:
+        for length in (Argument("rows", self.rows), Argument("columns", self.columns)):
+            within(length, *EXACT_LENGTHS)
+
+    def _check_formats(self, columns: Argument, data_width: Argument) -> None:
+        """Accept all: there are none."""
+
+
+def is_grid_of_hardware(rows: int, columns: int, solver: str) -> bool:
+    """Return True for a grid that the hardware can have with a solver."""
+    fewest, most = COLUMNS.get(solver, (1, 0))
+    return fewest <= columns <= most and columns.bit_count() == 1 and ROWS[0] <= rows <= ROWS[1]

@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/gradient/flat_field.sv: colours relative to the reference frame.
+
+The reference (the frame without contact) is kept as gains, 1 / reference, on a coarse grid of block means. The gains
+are interpolated between the centres of the blocks (td_node_map). Lighting is smooth, so the interpolation causes no
+visible error. A pixel takes one multiplication for each colour and no division. All words are integers:
+
+    pixel       8 bits unsigned
+    gain        unsigned, 2**(W + 3) / reference in a word of W bits, by default 24; at the nodes, and at the pixels
+    code        8 bits unsigned, 128 I / ref, for the table: 128 equals the reference, saturated at 255
+    deviation   17 bits signed, 15 fraction bits, I / ref - 1, for the models of polynomials, saturated at 2
+    ratio       17 bits unsigned, 15 fraction bits, I / ref, for the light gains, saturated at 4
+
+A pixel is dark where all its colours are below `dark_level` (0: no pixel is), or where the reference of any colour is
+below 16 grey levels, which sets the top bit of its gain. The output of a dark pixel repeats the output of the pixel
+before it in its row; a dark first pixel of a row reads flat, or as ratios of 0. Every dark pixel is counted.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactile_depth.base.errors import Argument, InputError, Part
+from tactile_depth.chip.common import td_node_map
+from tactile_depth.chip.common.td_block_sum import block_sum
+from tactile_depth.chip.common.td_node_map import node_map
+from tactile_depth.chip.common.td_round_saturate import Monitor, round_half_even, round_saturate
+from tactile_depth.chip.configuration import DARKEST_LOG2, DEVIATION, RATIO, Configuration
+from tactile_depth.chip.fixed_point import Format
+from tactile_depth.sensor.sensor import Sensor
+
+LATENCY = td_node_map.latency(1, 1) + 3
+
+FLAT_CODE = 128
+CODE_WIDTH = 8
+CODE = Format(CODE_WIDTH, FLAT_CODE.bit_length() - 1)
+"""Format of a code, unsigned."""
+REFERENCE = Argument("reference")
+
+
+def unit_gains(config: Configuration) -> np.ndarray:
+    """Return the gains at power-up, those of a reference of 128 everywhere: codes equal the pixels.
+
+    Returns
+    -------
+    int64 array (node rows, node columns, 3)
+    """
+    return np.full((*config.reference_nodes, 3), (1 << config.gain_fraction) // FLAT_CODE, np.int64)
+
+
+def flat_field_parameters(config: Configuration, output: Format) -> dict[str, int]:
+    """Parameters of hdl/gradient/flat_field.sv, whose output is `CODE`, `DEVIATION` or `RATIO`."""
+    return {
+        "Rows": config.rows,
+        "Columns": config.columns,
+        "BlockLog2": config.reference_block_log2,
+        "GainWidth": config.gain_width,
+        "Drop": config.gain_fraction - output.fraction,
+        "Offset": 1 << output.fraction if output == DEVIATION else 0,
+        "OutWidth": output.width,
+        "Flat": FLAT_CODE if output == CODE else 0,
+    }
+
+
+def reference_gains(calibration: Sensor, config: Configuration) -> np.ndarray:
+    """Return the gains of a calibration's reference frame, int64 (node rows, node columns, 3)."""
+    if calibration.reference is None:
+        return unit_gains(config)
+    return captured_gains(calibration.reference.reshape(-1, *calibration.reference.shape[-3:]), config)
+
+
+def captured_gains(frames: np.ndarray, config: Configuration) -> np.ndarray:
+    """Return the gains from frames without contact.
+
+    A gain is 2**gain_fraction over the mean of a block over all frames, rounded with ties up, and saturated.
+
+    Parameters
+    ----------
+    frames : uint8 array (2**k, rows, columns, 3)
+
+    Returns
+    -------
+    int64 array (node rows, node columns, 3)
+    """
+    count = len(frames)
+    assert count.bit_count() == 1, "a power of two of frames"
+    log2 = config.reference_block_log2
+    total = block_sum(frames.astype(np.int64), log2).sum(axis=0)
+    dividend = np.int64(2 * count << (config.gain_fraction + 2 * log2))
+    quotient = (dividend // np.maximum(total, 1) + 1) >> 1
+    return np.minimum(quotient, (1 << config.gain_width) - 1)
+
+
+@dataclass(frozen=True)
+class PixelGains:
+    """Gains of every pixel, computed once by `pixel_gains` for all frames that use the same nodes.
+
+    Attributes
+    ----------
+    gains : int64 array (rows, columns, 3)
+    dead : bool array (rows, columns)
+        True where the reference of any colour is too dark, so that the pixel is dark in every frame.
+    """
+
+    gains: np.ndarray
+    dead: np.ndarray
+
+
+def pixel_gains(gains: np.ndarray, config: Configuration) -> PixelGains:
+    """Interpolate the gains of the nodes (node rows, node columns, 3), and find the dead pixels."""
+    interpolated = node_map(gains, config)
+    return PixelGains(interpolated, np.bitwise_or.reduce(interpolated, axis=-1) >> (config.gain_width - 1) != 0)
+
+
+def dark_pixels(
+    frames: np.ndarray, gains: np.ndarray | PixelGains, config: Configuration, dark_level: int = 0
+) -> np.ndarray:
+    """Return the dark pixels, which repeat the pixel before them: bool (..., rows, columns)."""
+    dead = _at_pixels(gains, config).dead
+    if not dark_level:  # no colour is below 0
+        return np.broadcast_to(dead, frames.shape[:-1])
+    return np.logical_or((frames < dark_level).all(axis=-1), dead)
+
+
+def require_light(gains: np.ndarray, config: Configuration, name: Part = REFERENCE) -> None:
+    """Raise InputError, which names the reference, if it is too dark for more than half of the pixels."""
+    dark = dark_pixels(np.full((config.rows, config.columns, 3), 255, np.uint8), gains, config)
+    if 2 * np.count_nonzero(dark) > dark.size:
+        raise InputError(
+            *(name, f": under {1 << (DARKEST_LOG2 + 1)} grey levels in a colour at {100 * dark.mean():.0f} % of the "),
+            "pixels, from which nothing can be read",
+            remedy="take it with the lights on and with a longer exposure",
+        )
+
+
+def _at_pixels(gains: np.ndarray | PixelGains, config: Configuration) -> PixelGains:
+    return gains if isinstance(gains, PixelGains) else pixel_gains(gains, config)
+
+
+# The functions below take the gains of the nodes (node rows, node columns, 3) or the result of `pixel_gains`.
+
+
+def flat_codes(
+    frames: np.ndarray,
+    gains: np.ndarray | PixelGains,
+    config: Configuration,
+    dark_level: int = 0,
+    monitor: Monitor | None = None,
+) -> np.ndarray:
+    """Return the codes 128 I / ref of frames: uint8 (..., rows, columns, 3) to uint8 of the same shape."""
+    return _relative(frames, gains, config, dark_level, monitor, CODE, FLAT_CODE).astype(np.uint8)
+
+
+def ratios(
+    frames: np.ndarray,
+    gains: np.ndarray | PixelGains,
+    config: Configuration,
+    dark_level: int = 0,
+    monitor: Monitor | None = None,
+) -> np.ndarray:
+    """Return the codes of I / ref, `RATIO`, of frames: uint8 (..., rows, columns, 3) to int64, same shape."""
+    return _relative(frames, gains, config, dark_level, monitor, RATIO, 0)
+
+
+def _relative(
+    frames: np.ndarray,
+    gains: np.ndarray | PixelGains,
+    config: Configuration,
+    dark_level: int,
+    monitor: Monitor | None,
+    output: Format,
+    flat: int,
+) -> np.ndarray:
+    """Return unsigned codes of I / ref."""
+    gains = _at_pixels(gains, config)
+    code = round_half_even(frames * gains.gains, config.gain_fraction - output.fraction)
+    dark = dark_pixels(frames, gains, config, dark_level)
+    largest = (1 << output.width) - 1
+    if monitor is not None:
+        monitor.clipped("flat_field", int(np.count_nonzero((code > largest) & ~dark[..., None])))
+    return hold_dark(np.minimum(code, largest), dark, flat)
+
+
+def deviations(
+    frames: np.ndarray,
+    gains: np.ndarray | PixelGains,
+    config: Configuration,
+    dark_level: int = 0,
+    monitor: Monitor | None = None,
+) -> np.ndarray:
+    """Return the codes of I / ref - 1, `DEVIATION`, of frames: uint8 (..., rows, columns, 3) to int64, same shape."""
+    gains = _at_pixels(gains, config)
+    dark = dark_pixels(frames, gains, config, dark_level)
+    lit = np.where(dark[..., None], 0, frames)  # saturation is not counted at dark pixels
+    ratio = lit * gains.gains
+    ratio -= 1 << config.gain_fraction
+    code = round_saturate(ratio, config.gain_fraction - DEVIATION.fraction, DEVIATION.width, monitor, "flat_field")
+    return hold_dark(code, dark, 0)
+
+
+def hold_dark(codes: np.ndarray, dark: np.ndarray, flat: int) -> np.ndarray:
+    """Replace each dark pixel by the last pixel before it in its row that is not dark, or by `flat` if all are dark."""
+    if not dark.any():
+        return codes
+    columns = np.arange(dark.shape[-1])
+    last = np.maximum.accumulate(np.where(dark, -1, columns), axis=-1)[..., None]
+    return np.where(last < 0, flat, np.take_along_axis(codes, np.maximum(last, 0), axis=-2))

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/gradient/gradient_lookup.sv, and the contents of its table."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.sensor.sensor import Sensor
+
+LATENCY = 4
+
+
+def gradient_codes(calibration: Sensor, config: Configuration) -> np.ndarray:
+    """Return the slope codes gx, gy by bin {red, green, blue}, int64 (bins, 2); slope = code * config.gradient_lsb."""
+    slopes = calibration.table.reshape(-1, 2)
+    return np.rint(slopes / config.gradient_lsb).astype(np.int64)
+
+
+def gradient_lookup(frames: np.ndarray, codes: np.ndarray, bits_per_channel: int) -> np.ndarray:
+    """Return the slope codes of frames: uint8 (..., rows, cols, 3) RGB to int64 (..., rows, cols, 2)."""
+    top = frames.astype(np.int64) >> (8 - bits_per_channel)
+    index = (top[..., 0] << bits_per_channel | top[..., 1]) << bits_per_channel | top[..., 2]
+    return codes[index]

@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/gradient/polynomial_gradient.sv: slopes, linear in the deviations, and a correction.
+
+    slope of an axis = sum over red, green, blue of C[axis][colour](column, row) * deviation[colour] + correction[axis]
+
+Every C is a polynomial of third degree in column c and row r, of second degree in the model `quadratic`. It is kept as
+ten words, the differences at a frame's first pixel, 32 bits signed:
+
+    C = A + B c + D c2 + T c3 + E r + F r2 + U r3 + H c r + G c r2 + W c2 r    x2 = x (x - 1) / 2, x3 = x2 (x - 2) / 3
+
+so that the hardware computes C along the raster by additions only. T, U, G and W, which add up most, have 32 fraction
+bits up to a side of 128 pixels, more on larger grids (`fine_bits`), the others 28; sums have as many. The upper 18 bits
+of C (14 fraction bits) are multiplied. A includes half of the last bit that is kept, so that dropping the lower bits
+rounds. Corrections, of the model `cubic`, come from a table by colour (`gradient_lookup`); their unit is 1/256 of the
+configuration's largest slope. The sum of the three products, 37 bits with 29 fraction bits, and the correction is
+rounded half to even and saturated to the gradient's format (`Configuration.gradient`), whose unit the words have. This
+module, not the hardware, checks that the words fit, and C stays within its range over the whole grid. Faint colours
+need coefficients of 8 and more: all these fraction bits are then fewer (`Configuration.coefficient_limit`).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
+from tactile_depth.chip.configuration import (
+    COLOUR_COEFFICIENT,
+    CORRECTION_BITS,
+    CORRECTION_WIDTH,
+    DEVIATION,
+    FINE_BITS,
+    POLYNOMIAL,
+    Configuration,
+)
+from tactile_depth.chip.gradient.gradient_lookup import gradient_lookup
+from tactile_depth.sensor.sensor import Sensor, samples
+
+UNIT_BITS = 12  # of the unit of a correction, from its first: a correction is right within 2**-12 of itself
+LATENCY = 12
+
+TERMS = ("A", "B", "D", "T", "E", "F", "H", "U", "G", "W")
+DEGREES = ((0, 0), (1, 0), (2, 0), (3, 0), (0, 1), (0, 2), (1, 1), (0, 3), (1, 2), (2, 1))  # of column and row, by term
+IS_FINE = np.array([sum(degree) == 3 for degree in DEGREES])  # terms with `fine_bits` more fraction bits
+
+
+def polynomial_words(calibration: Sensor, config: Configuration) -> np.ndarray:
+    """Return the words of a calibration's polynomials on its grid.
+
+    Returns
+    -------
+    int64 array (2, 3, 10): dz/dx, dz/dy by red, green, blue by `TERMS`
+
+    Raises
+    ------
+    InputError
+        The calibration does not have the model, or its words do not fit.
+    """
+    # The coefficients on the grid, in units of a word's last bit, as differences: those of third degree are rounded
+    # first, and each lower degree takes up, in least squares over the grid, what the degrees above have left.
+    row, column = samples(config)
+    basis = np.stack([_falling(column, across) * _falling(row, down) for across, down in DEGREES], axis=-1)
+    form = config.polynomial
+    wanted = calibration.grid_coefficients(config) / config.coefficient_unit
+    basis = basis.reshape(-1, len(TERMS))
+    largest = np.abs(basis).max(axis=0)
+    words = np.zeros((*wanted.shape[:2], len(TERMS)), np.int64)
+    left = wanted.reshape(-1, basis.shape[0]).T
+    scale = np.where(IS_FINE, 2.0 ** (form.fraction + fine_bits(config)), 2.0**form.fraction)
+    flat = words.reshape(-1, len(TERMS))
+    for degree in (3, 2, 1, 0):
+        upto = [n for n, power in enumerate(DEGREES) if sum(power) <= degree]
+        exact = np.linalg.lstsq(basis[:, upto] / largest[upto], left, rcond=None)[0] / largest[upto, None]
+        for n in (n for n in upto if sum(DEGREES[n]) == degree):
+            flat[:, n] = np.rint(exact[upto.index(n)] * scale[n])
+            left = left - np.outer(basis[:, n], flat[:, n] / scale[n])
+    flat[:, 0] += 1 << (form.fraction - config.colour_coefficient.fraction - 1)
+    limit = form.limit * 2.0**form.fraction
+    reached = max(np.abs(words).max(), np.abs(wanted).max() * 2.0**form.fraction)
+    if not reached < limit:
+        raise InputError(
+            f"{calibration.name}: the coefficients of {config.gradient_model} reach "
+            f"{reached / limit * form.limit:.3g} on a grid of {config.rows} x {config.columns} pixels: "
+            f"accepted is less than {form.limit:g}"
+        )
+    return words
+
+
+def fine_bits(config: Configuration) -> int:
+    """Return the fraction bits of words of third degree beyond those of the others."""
+    least, side = FINE_BITS
+    return least + 3 * math.ceil(math.log2(max(config.rows, config.columns, side) / side))
+
+
+def _falling(x: np.ndarray, degree: int) -> np.ndarray:
+    """Return x (x - 1) .. / degree!, which has differences of 1."""
+    return np.prod([(x - k) / (k + 1) for k in range(degree)], axis=0) if degree else np.ones_like(x)
+
+
+def coefficient_map(words: np.ndarray, config: Configuration) -> np.ndarray:
+    """Return the coefficients that multiply each pixel, int64 (2, 3, rows, columns), format
+    `Configuration.colour_coefficient`."""
+    widths = (POLYNOMIAL.width, fine_bits(config), COLOUR_COEFFICIENT.width)
+    return coefficients(words, config.rows, config.columns, *widths)
+
+
+def coefficients(words: np.ndarray, rows: int, columns: int, word_width: int, fine_bits: int, width: int) -> np.ndarray:
+    """Return the upper `width` bits of the polynomials modulo 2**(word_width + fine_bits): (2, 3, rows, columns)."""
+    total = word_width + fine_bits
+    half = np.int64(1) << (total - 1)
+    wrapped = ((_evaluate(words, rows, columns, fine_bits) + half) & (2 * half - 1)) - half  # as in the registers
+    return wrapped >> (total - width)
+
+
+def _evaluate(words: np.ndarray, rows: int, columns: int, fine_bits: int) -> np.ndarray:
+    """Return the values of the polynomials over the grid modulo 2**64: (2, 3, rows, columns)."""
+    aligned = np.where(IS_FINE, words, words << fine_bits)
+    c, r = np.arange(columns), np.arange(rows)[:, None]
+    c2, r2 = c * (c - 1) // 2, r * (r - 1) // 2
+    falling_c, falling_r = (1, c, c2, c2 * (c - 2) // 3), (1, r, r2, r2 * (r - 2) // 3)
+    with np.errstate(over="ignore"):
+        return np.sum(
+            [
+                aligned[..., n, None, None] * (falling_c[across] * falling_r[down] * np.ones((rows, columns), np.int64))
+                for n, (across, down) in enumerate(DEGREES)
+            ],
+            axis=0,
+        )
+
+
+def corrections_of(deviation: np.ndarray, table: np.ndarray) -> np.ndarray:
+    """Return the corrections of pixels by colour: int64 (..., 3) of `DEVIATION` to int64 (..., 2), in units.
+
+    Parameters
+    ----------
+    table : int64 array (2**(3 b), 2)
+        Entries by the top b bits of red, green and blue.
+    """
+    bits = (len(table).bit_length() - 1) // 3
+    return gradient_lookup(correction_codes(deviation), table, bits)
+
+
+def correction_codes(deviation: np.ndarray) -> np.ndarray:
+    """Return 8-bit codes of colours for the table, whose middle entry has deviation 0 at its centre."""
+    half_entry = 1 << DEVIATION.fraction - CORRECTION_BITS
+    return (
+        ((deviation + (1 << DEVIATION.fraction) + half_entry) >> DEVIATION.fraction - 7).clip(0, 255).astype(np.uint8)
+    )
+
+
+def correction_entries(calibration: Sensor, config: Configuration) -> np.ndarray | None:
+    """Return the entries of the table of corrections, int64 (2**(3 b), 2); None unless the model is `cubic`."""
+    if config.gradient_model != "cubic":
+        return None
+    assert calibration.corrections is not None
+    return correction_units(calibration.corrections, config.gradient_limit).reshape(-1, 2)
+
+
+def correction_units(corrections: np.ndarray, gradient_limit: float) -> np.ndarray:
+    """Return corrections in slope as whole units, which reach half of the largest slope: int64 (...)."""
+    limit = 1 << CORRECTION_WIDTH - 1
+    return np.rint(corrections / correction_unit(gradient_limit)).clip(-limit, limit - 1).astype(np.int64)
+
+
+def correction_unit(gradient_limit: float) -> float:
+    """Return the slope of a correction of 1."""
+    return gradient_limit * 2.0**-CORRECTION_WIDTH
+
+
+def polynomial_gradient(
+    deviation: np.ndarray,
+    words: np.ndarray,
+    config: Configuration,
+    monitor: Monitor | None = None,
+    table: np.ndarray | None = None,
+) -> np.ndarray:
+    """Return slope codes: int64 (..., rows, columns, 3) of `DEVIATION` to int64 (..., rows, columns, 2).
+
+    Slope codes have the format `config.gradient`.
+
+    Parameters
+    ----------
+    words : int64 array (2, 3, 10) of `polynomial_words`, or (2, 3, rows, columns) of `coefficient_map`
+    table : int64 array (2**(3 b), 2), optional
+        Corrections, of `correction_entries`.
+    """
+    parameters = gradient_parameters(config)
+    coefficients = words if words.ndim == 4 else coefficient_map(words, config)
+    added = None if table is None else corrections_of(deviation, table) * parameters["CorrectionUnit"]
+    return slope_codes(deviation, coefficients, parameters["Drop"], config.gradient.width, monitor, added)
+
+
+def slope_codes(
+    deviation: np.ndarray,
+    coefficients: np.ndarray,
+    drop: int,
+    width: int,
+    monitor: Monitor | None = None,
+    added: np.ndarray | None = None,
+) -> np.ndarray:
+    """Return slope codes from deviations and coefficients (2, 3, rows, columns) of any word lengths.
+
+    `added`, int64 (..., rows, columns, 2), is added to the sums of the products.
+    """
+    red, green, blue = np.moveaxis(deviation, -1, 0)
+    slopes = np.empty((2, *deviation.shape[:-1]), np.int64)
+    for slope, (of_red, of_green, of_blue) in zip(slopes, coefficients, strict=True):
+        np.multiply(red, of_red, out=slope)
+        slope += green * of_green
+        slope += blue * of_blue
+    if added is not None:
+        slopes += np.moveaxis(added, -1, 0)
+    return round_saturate(np.moveaxis(slopes, 0, -1), drop, width, monitor, "polynomial_gradient")
+
+
+def gradient_parameters(config: Configuration) -> dict[str, int]:
+    """Parameters of hdl/gradient/polynomial_gradient.sv."""
+    drop = DEVIATION.fraction + config.colour_coefficient.fraction - config.gradient.fraction
+    unit = correction_unit(config.gradient_limit) / config.gradient_lsb * 2.0**drop
+    log2 = max(math.floor(math.log2(unit)) - UNIT_BITS + 1, 0)
+    return {
+        "Width": config.gradient.width,
+        "DeviationWidth": DEVIATION.width,
+        "CoeffWidth": COLOUR_COEFFICIENT.width,
+        "WordWidth": POLYNOMIAL.width,
+        "FineBits": fine_bits(config),
+        "CorrectionWidth": CORRECTION_WIDTH,
+        "CorrectionUnit": round(unit / 2.0**log2) << log2,
+        "Drop": drop,
+    }

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes what the hardware of a configuration needs: parameters, $readmemh files, and a C header that loads tables."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from tactile_depth.base.files import new_files
+from tactile_depth.chip import c_header
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.tactile_depth import config_value, top_parameters, write_roms
+from tactile_depth.sensor.sensor import Sensor
+
+PARAMETERS = "parameters.json"
+
+
+def write_hardware(
+    folder: Path,
+    sensor: Sensor,
+    config: Configuration,
+    zero: np.ndarray,
+    gains: np.ndarray,
+    thresholds: Mapping[str, int],
+) -> Path:
+    """Write the files of a configuration into a folder, and return the path of `PARAMETERS` there.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        Calibration on the grid of the configuration.
+    zero, gains
+        See `tactile_depth.chip.tactile_depth`.
+    thresholds : mapping
+        Depth code of each register of a threshold, by the name of the register.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written, or the calibration and the configuration do not agree.
+    """
+    with new_files(folder, PARAMETERS) as unfinished:
+        write_roms(unfinished, sensor, config, zero, gains)
+        fields = top_parameters(config, sensor.pixel_pitch_mm)
+        description = {
+            "parameters": {"Config": config_value(fields)},
+            "fields": fields,
+            "registers": dict(thresholds),
+            "grid": [config.rows, config.columns],
+            "depth_lsb_mm": config.depth_lsb_px * sensor.pixel_pitch_mm,
+            "pixel_pitch_mm": sensor.pixel_pitch_mm,
+            "pixel_aspect": sensor.pixel_aspect,
+            "gradient_lsb": config.gradient_lsb,
+            "calibration": sensor.name,
+            "gradient_model": config.gradient_model,
+            "tables": sorted(path.name for path in unfinished.iterdir()),
+            "c_header": c_header.FILE,
+        }
+        (unfinished / PARAMETERS).write_text(json.dumps(description, indent=1) + "\n")
+        (unfinished / c_header.FILE).write_text(c_header.c_header(sensor, config, zero, gains, thresholds))
+    return folder / PARAMETERS

@@ -1,0 +1,335 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Compiled by numba (extra `fast`): the transforms, the two recursions and the light gains of single pictures.
+
+Each function has the arguments of the model of its name, and returns its codes and its clip counts. A monitor receives
+clip counts only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import ParamSpec, TypeVar
+
+import numpy as np
+from numba import njit
+
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.light_gains import NEAR_LOG2, ROUNDS, SETTLED, STEP_SHARE, Light
+from tactile_depth.chip.poisson.forward_elimination import coefficient_rows, stored
+from tactile_depth.chip.poisson.thomas_table import thomas_table
+from tactile_depth.chip.poisson.transform.orders import mirror, read_only
+from tactile_depth.chip.poisson.transform.sdf_fft import stages
+from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors
+
+BURSTS = 128  # bursts at most that are transformed side by side: words of one position are loops of that length
+P = ParamSpec("P")
+R = TypeVar("R")
+Graph = tuple[np.ndarray, np.ndarray]
+
+
+def compiled(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile a function on its first call; its code is kept in files for the calls of other processes."""
+    return njit(cache=True, nogil=True)(function)
+
+
+@compiled
+def _rounded(x: int, drop: int) -> int:
+    if drop > 0:
+        return (x + ((x >> drop) & 1) + ((1 << (drop - 1)) - 1)) >> drop
+    return x << -drop
+
+
+@compiled
+def _clip_all(x: np.ndarray, drop: int, width: int) -> int:
+    """Round and clip words in place, and return how many were clipped."""
+    limit, count = 1 << (width - 1), 0
+    for i in range(len(x)):
+        y = _rounded(x[i], drop)
+        clipped = min(max(y, -limit), limit - 1)
+        count += clipped != y
+        x[i] = clipped
+    return count
+
+
+@compiled
+def _fft(
+    re: np.ndarray, im: np.ndarray, inverse: bool, width: int, drop: int, graph: Graph, counts: np.ndarray
+) -> None:
+    """Transform bursts, (N, bursts) in stream order down the rows, in place; for `graph` see `_graph`."""
+    size, (table, factors) = len(re), graph
+    for index in range(len(table)):
+        block, delay, rotate, halve, first = table[index]
+        if delay == 0:
+            for p in range(size):
+                c, s = factors[first + p % block]
+                a, b = re[p], im[p]
+                for i in range(len(a)):
+                    a[i], b[i] = a[i] * c - b[i] * s, a[i] * s + b[i] * c
+                counts[index, 0] += _clip_all(a, drop, width)
+                counts[index, 1] += _clip_all(b, drop, width)
+            continue
+        for p in range(size):
+            if p & delay:
+                continue
+            a, b, c, d = re[p], im[p], re[p + delay], im[p + delay]
+            if rotate and (p + delay) % block >= 3 * block // 4:
+                for i in range(len(a)):
+                    c[i], d[i] = (-d[i], c[i]) if inverse else (d[i], -c[i])
+            for i in range(len(a)):
+                a[i], c[i] = a[i] + c[i], a[i] - c[i]
+                b[i], d[i] = b[i] + d[i], b[i] - d[i]
+            counts[index, 0] += _clip_all(a, halve, width) + _clip_all(c, halve, width)
+            counts[index, 1] += _clip_all(b, halve, width) + _clip_all(d, halve, width)
+
+
+@cache
+def _graph(size: int, inverse: bool, coefficient_width: int) -> Graph:
+    """Return the stages of an FFT, int64 (stages, 5): the fields of `Stage`, first factor; and all factors (.., 2)."""
+    table, factors = [], [np.zeros((0, 2), np.int64)]
+    for stage in stages(size, inverse):
+        table.append((stage.block, stage.delay, stage.rotate, stage.halve, sum(map(len, factors))))
+        if not stage.delay:
+            factors.append(twiddle_factors(stage.block, inverse, coefficient_width))
+    return read_only(np.array(table, np.int64)), read_only(np.concatenate(factors))
+
+
+@compiled
+def _forward(
+    x: np.ndarray,
+    alternate: bool,
+    input_drop: int,
+    graph: Graph,
+    phase: np.ndarray,
+    output_drop: int,
+    formats: tuple[int, int, int],
+    y: np.ndarray,
+    counts: np.ndarray,
+) -> None:
+    """Transform bursts (.., N), as `dst_forward`; `counts`: input, the stages, phase."""
+    (bursts, size), (width, drop, output_width) = x.shape, formats
+    for start in range(0, bursts, BURSTS):
+        there = min(BURSTS, bursts - start)
+        re, im = np.empty((size, there), np.int64), np.zeros((size, there), np.int64)
+        for p in range(size):
+            for i in range(there):
+                re[p, i] = -x[start + i, p] if alternate and p >= size // 2 else x[start + i, p]
+            counts[0, 0] += _clip_all(re[p], input_drop, width)
+        _fft(re, im, False, width, drop, graph, counts[1:])
+        for p in range(size):
+            c, s = phase[p]
+            a, b = re[p], im[p]
+            for i in range(len(a)):
+                a[i] = a[i] * c - b[i] * s
+            counts[-1, 0] += _clip_all(a, output_drop, output_width)
+            y[start : start + there, p] = a
+
+
+@compiled
+def _inverse(
+    x: np.ndarray,
+    alternate: bool,
+    input_drop: int,
+    graph: Graph,
+    phase: Graph,
+    output_drop: int,
+    formats: tuple[int, int, int],
+    y: np.ndarray,
+    counts: np.ndarray,
+) -> None:
+    """Transform bursts (.., N), as `dst_inverse`; `counts`: phase, the stages, output."""
+    (bursts, size), (width, drop, output_width) = x.shape, formats
+    for start in range(0, bursts, BURSTS):
+        there = min(BURSTS, bursts - start)
+        re, im = np.empty((size, there), np.int64), np.empty((size, there), np.int64)
+        for p in range(size):
+            c, s = phase[0][p]
+            a, b, q = re[p], im[p], phase[1][p]
+            for i in range(there):
+                mode = x[start + i, p]
+                other = x[start + i, q] if p else 0
+                a[i], b[i] = other * c - mode * s, other * s + mode * c
+            counts[0, 0] += _clip_all(a, input_drop, width)
+            counts[0, 1] += _clip_all(b, input_drop, width)
+        _fft(re, im, True, width, drop, graph, counts[1:])
+        for p in range(size):
+            a = re[p]
+            if alternate and p >= size // 2:
+                for i in range(len(a)):
+                    a[i] = -a[i]
+            counts[-1, 0] += _clip_all(a, output_drop, output_width)
+            y[start : start + there, p] = a
+
+
+@compiled
+def _eliminate(f: np.ndarray, coefficients: np.ndarray, drop: int, width: int, d: np.ndarray) -> tuple[int, int]:
+    differences, states = 0, 0
+    frames, rows, columns = f.shape
+    state = np.zeros(columns, np.int64)
+    for frame in range(frames):
+        state[:] = 0
+        for row in range(rows):
+            for k in range(columns):
+                state[k] = f[frame, row, k] - state[k]
+            differences += _clip_all(state, 0, width)
+            for k in range(columns):
+                state[k] *= coefficients[row, k]
+            states += _clip_all(state, drop, width)
+            d[frame, row] = state
+    return differences, states
+
+
+@compiled
+def _substitute(d: np.ndarray, coefficients: np.ndarray, lift: int, drop: int, width: int, z: np.ndarray) -> int:
+    count = 0
+    frames, rows, columns = d.shape
+    state = np.zeros(columns, np.int64)
+    for frame in range(frames):
+        for row in range(rows):
+            for k in range(columns):
+                above = coefficients[row - 1, k] * state[k] if row else 0
+                state[k] = (d[frame, row, k] << (lift + drop)) - above
+            count += _clip_all(state, drop, width)
+            z[frame, row] = state
+    return count
+
+
+@compiled
+def _settle(ratios: np.ndarray, lsb: np.float32, limit: float, rounds: int, enough: float) -> np.ndarray:
+    """Return the gains of a picture; sums of deviations, multiples of 2**-24, are exact in any order."""
+    pixels, one = len(ratios), np.float32(1)
+    gains, total, net = np.ones(3), np.zeros(3), np.zeros(3, np.int64)
+    deviation = np.zeros(3, np.float32)
+    for _ in range(rounds):
+        total[:] = 0
+        net[:] = 0
+        count, change = 0, 0.0
+        for pixel in range(pixels):
+            near = True
+            for colour in range(3):
+                value = np.float32(ratios[pixel, colour]) * lsb * np.float32(gains[colour]) - one
+                deviation[colour] = value
+            if not (ratios[pixel, 0] or ratios[pixel, 1] or ratios[pixel, 2]):
+                count += 1
+                continue
+            for colour in range(3):
+                above, below = deviation[colour] >= limit, deviation[colour] <= -limit
+                net[colour] += np.int64(above) - np.int64(below)
+                near &= not (above or below)
+            if near:
+                count += 1
+                for colour in range(3):
+                    total[colour] += deviation[colour]
+        for colour in range(3):
+            before, after = gains[colour], gains[colour]
+            if abs(net[colour]) >= STEP_SHARE * pixels:
+                after = before - limit * np.sign(net[colour])
+            elif 4 * count >= pixels:
+                after = before / (1 + total[colour] / count)
+            gains[colour] = min(max(after, 0.5), 2.0)
+            change = max(change, abs(gains[colour] - before))
+        if change < enough:
+            break
+    return gains
+
+
+# The models.
+
+
+def _bursts(x: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(x).reshape(-1, x.shape[-1])
+
+
+def _give(monitor: Monitor | None, names: list[str], counts: np.ndarray) -> None:
+    """Give a monitor the clip counts (nodes, 2) of real and imaginary parts."""
+    for name, parts in zip(names, counts.tolist(), strict=True):
+        for part, count in zip((".re", ".im"), parts, strict=True):
+            if monitor is not None:
+                monitor.clipped(name if name.endswith("put") else name + part, count)
+
+
+def _nodes(node: str, first: str, last: str, graph: Graph) -> list[str]:
+    return [f"{node}.{first}", *(f"{node}.fft.stage{index}" for index in range(len(graph[0]))), f"{node}.{last}"]
+
+
+def dst_forward(
+    x: np.ndarray,
+    input_drop: int,
+    width: int,
+    coefficient_width: int,
+    output_drop: int,
+    output_width: int,
+    monitor: Monitor | None = None,
+    node: str = "dst_forward",
+    alternate: bool = True,
+) -> np.ndarray:
+    """Model poisson/transform/dst_forward.py."""
+    size, drop = x.shape[-1], coefficient_width - 1
+    graph = _graph(size, False, coefficient_width)
+    phase, nodes = phase_factors(size, False, coefficient_width), _nodes(node, "input", "phase", graph)
+    y, counts = np.empty(x.shape, np.int64), np.zeros((len(nodes), 2), np.int64)
+    formats = (width, drop, output_width)
+    _forward(_bursts(x), alternate, input_drop, graph, phase, drop + output_drop, formats, y.reshape(-1, size), counts)
+    _give(monitor, nodes, counts)
+    return y
+
+
+def dst_inverse(
+    modes: np.ndarray,
+    input_drop: int,
+    width: int,
+    coefficient_width: int,
+    output_drop: int,
+    output_width: int,
+    monitor: Monitor | None = None,
+    node: str = "dst_inverse",
+    alternate: bool = True,
+) -> np.ndarray:
+    """Model poisson/transform/dst_inverse.py."""
+    size, drop = modes.shape[-1], coefficient_width - 1
+    graph = _graph(size, True, coefficient_width)
+    phase, nodes = (phase_factors(size, True, coefficient_width), mirror(size)), _nodes(node, "phase", "output", graph)
+    y, counts = np.empty(modes.shape, np.int64), np.zeros((len(nodes), 2), np.int64)
+    formats = (width, drop, output_width)
+    _inverse(
+        _bursts(modes), alternate, drop + input_drop, graph, phase, output_drop, formats, y.reshape(-1, size), counts
+    )
+    _give(monitor, nodes, counts)
+    return y
+
+
+def forward_elimination(
+    f: np.ndarray, config: Configuration, monitor: Monitor | None = None, node: str = "forward_elimination"
+) -> np.ndarray:
+    """Model poisson/forward_elimination.py."""
+    frames = np.ascontiguousarray(f).reshape(-1, *f.shape[-2:])
+    d = np.empty_like(frames)
+    coefficients = coefficient_rows(config, f.shape[-2])
+    counts = _eliminate(frames, coefficients, config.coefficient_width - 1, config.arithmetic_width, d)
+    if monitor is not None:
+        monitor.clipped(node + ".difference", counts[0])
+        monitor.clipped(node + ".state", counts[1])
+    return stored(d.reshape(f.shape), config, monitor, node)
+
+
+def back_substitution(
+    d: np.ndarray, config: Configuration, monitor: Monitor | None = None, node: str = "back_substitution"
+) -> np.ndarray:
+    """Model poisson/back_substitution.py."""
+    frames = np.ascontiguousarray(d).reshape(-1, *d.shape[-2:])
+    z = np.empty_like(frames)
+    coefficients = np.ascontiguousarray(thomas_table(config).rows(d.shape[-2] - 1)[::-1])
+    lift = config.elimination.fraction - config.elimination_store.fraction
+    count = _substitute(frames, coefficients, lift, config.coefficient_width - 1, config.arithmetic_width, z)
+    if monitor is not None:
+        monitor.clipped(node, count)
+    return z.reshape(d.shape)
+
+
+def settled(ratios: np.ndarray, light: Light) -> np.ndarray:
+    """Model `settled` of gradient/light_gains.py."""
+    pictures = np.ascontiguousarray(ratios[..., :-1, :, :]).reshape(-1, light.pixels, 3)
+    lsb = np.float32(2.0**-light.ratio_fraction)
+    gains = np.array([_settle(picture, lsb, 2.0**-NEAR_LOG2, ROUNDS, SETTLED) for picture in pictures])
+    return light.limited(np.rint(gains.reshape(*ratios.shape[:-3], 3) * light.unity).astype(np.int64))

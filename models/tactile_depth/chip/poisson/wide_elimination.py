@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/poisson/wide_elimination.sv."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.forward_elimination import coefficient_rows, zero_mean
+
+LATENCY = 9  # from the first modes of a row to its first d, with which e of the row above leaves
+
+
+def wide_elimination(
+    f: np.ndarray, config: Configuration, monitor: Monitor | None = None, node: str = "wide_elimination"
+) -> np.ndarray:
+    """Compute d[i] = c[i] (f[i] - d[i-1]) down the rows, and e[i] = d[i] - c[i] d[i+1], which look one row ahead.
+
+    Parameters
+    ----------
+    f : int64 array (..., rows, columns), codes of `config.elimination`
+
+    Returns
+    -------
+    int64 array of the same shape, codes of `config.elimination_store`: e, and d in the last row
+    """
+    rows, width, drop = f.shape[-2], config.arithmetic_width, config.coefficient_width - 1
+    coefficients = coefficient_rows(config, rows)
+    difference, divided = node + ".difference", node + ".state"
+    f_rows = np.ascontiguousarray(np.moveaxis(f, -2, 0))
+    d_rows = np.empty_like(f_rows)
+    state = np.zeros_like(f_rows[0])
+    for row in range(rows):
+        x = round_saturate(f_rows[row] - state, 0, width, monitor, difference)
+        state = d_rows[row] = round_saturate(x * coefficients[row], drop, width, monitor, divided)
+    return ahead(np.moveaxis(d_rows, 0, -2), config, monitor, node)
+
+
+def ahead(d: np.ndarray, config: Configuration, monitor: Monitor | None, node: str) -> np.ndarray:
+    """Return the words of the frame store from the rows d (..., rows, columns) of the recursion, which may change."""
+    if config.neumann:
+        zero_mean(d, config, monitor, node)
+    drop = config.elimination.fraction - config.elimination_store.fraction
+    e = np.empty_like(d)
+    inner = coefficient_rows(config, d.shape[-2])[:-1]
+    one = 2 ** (config.coefficient_width - 1)
+    exact = d[..., :-1, :] * one - inner * d[..., 1:, :]
+    shift = config.coefficient_width - 1 + drop
+    e[..., :-1, :] = round_saturate(exact, shift, config.data_width, monitor, node + ".ahead")
+    e[..., -1, :] = round_saturate(d[..., -1, :], drop, config.data_width, monitor, node + ".store")
+    return e

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/poisson/wide_solver.sv: divergence in, depth codes out, bottom row first.
+
+All numbers of depth values per clock from 2 give the same codes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson import tridiagonal_solver
+from tactile_depth.chip.poisson.cores import NUMPY, Cores
+from tactile_depth.chip.poisson.forward_elimination import coefficient_rows
+from tactile_depth.chip.poisson.frame_stack import frame_stack
+from tactile_depth.chip.poisson.thomas_table import WideTable, ahead_rows, wide_table
+from tactile_depth.chip.poisson.transform.row_reorder import row_reorder
+from tactile_depth.chip.poisson.transform.wide_commutator import LEAD
+from tactile_depth.chip.poisson.transform.wide_dst_forward import latency as forward_latency
+from tactile_depth.chip.poisson.transform.wide_dst_inverse import latency as inverse_latency
+from tactile_depth.chip.poisson.transform.wide_row_pairs import up_positions
+from tactile_depth.chip.poisson.transform.wide_rows import LATENCY as WIDE_ROWS
+from tactile_depth.chip.poisson.tridiagonal_solver import row_forward, row_inverse_drops
+from tactile_depth.chip.poisson.wide_elimination import LATENCY as WIDE_ELIMINATION
+from tactile_depth.chip.poisson.wide_stack import down_positions
+from tactile_depth.chip.poisson.wide_stack import latency as stack_latency
+from tactile_depth.chip.poisson.wide_substitution import LATENCY as WIDE_SUBSTITUTION
+
+
+def tables(config: Configuration) -> tuple[WideTable, WideTable]:
+    """Return the tables of the coefficients down and up the rows."""
+    down = wide_table(coefficient_rows(config, config.rows)[:-1], down_positions(config.columns, config.down_words))
+    up = wide_table(ahead_rows(config), up_positions(config.columns, config.lanes))
+    return down, up
+
+
+def solver_parameters(config: Configuration) -> dict[str, int]:
+    """Parameters of hdl/poisson/wide_solver.sv."""
+    down, up = tables(config)
+    return {
+        **tridiagonal_solver.solver_parameters(config),
+        "DownWords": config.down_words,
+        "DownTableWords": len(down.words),
+        "DownSettledWidth": down.settled_width,
+        "UpTableWords": len(up.words),
+        "UpSettledWidth": up.settled_width,
+        "WordsPerRow": 1,
+    }
+
+
+def wide_solver(
+    f: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
+) -> np.ndarray:
+    """Solve the Poisson equation for frames of divergence codes.
+
+    Parameters
+    ----------
+    f : int64 array (..., rows, columns), codes of `config.divergence`
+
+    Returns
+    -------
+    int64 array (..., rows, columns), codes of `config.depth`, bottom row first
+    """
+    e = cores.wide_elimination(row_forward(f, config, monitor, cores), config, monitor)
+    z = cores.wide_substitution(frame_stack(e), config, monitor)
+    return row_inverse(z, config, monitor, cores)
+
+
+def row_inverse(
+    modes: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
+) -> np.ndarray:
+    """Return rows of depth in natural order from the modes of rows (..., rows, columns), two rows at a time."""
+    input_drop, output_drop = row_inverse_drops(config)
+    depth = cores.wide_dst_inverse(
+        modes,
+        input_drop=input_drop,
+        output_drop=output_drop,
+        output_width=config.depth.width,
+        node="row_inverse",
+        monitor=monitor,
+        **config.transform_arguments(),
+    )
+    return row_reorder(depth, to_burst=False)
+
+
+def latency_by_core(columns: int, down_words: int, lanes: int) -> list[tuple[str, int]]:
+    """Return cores and cycles from the last divergence word of a frame to its first depth, for any gaps."""
+    return [
+        ("wide_rows", WIDE_ROWS + LEAD),
+        ("wide_dst_forward, of the last row", forward_latency(columns, down_words)),
+        ("wide_elimination", WIDE_ELIMINATION),
+        ("wide_stack, turns the order of the rows", stack_latency(columns, down_words, lanes)),
+        ("wide_substitution", WIDE_SUBSTITUTION),
+        ("wide_dst_inverse, of the first two rows out", inverse_latency(columns, lanes) - LEAD),
+    ]

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/poisson/wide_substitution.sv."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.thomas_table import ahead_rows
+
+LATENCY = 2
+
+
+def wide_substitution(
+    e: np.ndarray, config: Configuration, monitor: Monitor | None = None, node: str = "wide_substitution"
+) -> np.ndarray:
+    """Compute z[i] = e[i] + c[i] c[i+1] z[i+2] from the last row up.
+
+    Parameters
+    ----------
+    e : int64 array (..., rows, columns), codes of `config.elimination_store`, last row first
+
+    Returns
+    -------
+    int64 array of the same shape and order, codes of `config.elimination`
+    """
+    width, drop = config.arithmetic_width, config.coefficient_width - 1
+    coefficients = ahead_rows(config)[::-1]
+    lift = config.elimination.fraction - config.elimination_store.fraction
+    exact = np.moveaxis(e, -2, 0) * 2 ** (lift + drop)
+    z = np.empty(e.shape, e.dtype)
+    z_rows = np.moveaxis(z, -2, 0)
+    for step, row in enumerate(exact):
+        if step >= 2:
+            row -= coefficients[step - 2] * z_rows[step - 2]
+        z_rows[step] = round_saturate(row, drop, width, monitor, node)
+    return z

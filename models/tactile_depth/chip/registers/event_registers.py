@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Behavioural model of hdl/registers/event_registers.sv: sticky bits, counters, the last latency, and the interrupt."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, field
+
+from tactile_depth.chip.registers.register_map import REGISTERS, WORD
+
+STATUS, INTERRUPT_STATUS, CONTROL = REGISTERS["STATUS"], REGISTERS["INTERRUPT_STATUS"], REGISTERS["CONTROL"]
+
+# Events have the names of events_t in hdl/td_types_pkg.sv.
+FAULTS = ("row_short", "row_long", "start_missing", "start_early", "timed_out")
+STICKY_EVENTS = {
+    **{fault: fault for fault in FAULTS},
+    "timed_out": "timeout",
+    "out_of_step": "out_of_step",
+    "dark": "dark",
+    "depth_dropped": "depth_dropped",
+}
+"""Event to its bit of STATUS."""
+INTERRUPT_EVENTS = {**dict.fromkeys(FAULTS, "frame_dropped"), "record_valid": "record"}
+"""Event to its bit of INTERRUPT_STATUS."""
+EVENT_COUNTERS = {
+    "frame_in": "FRAMES_IN",
+    "frame_out": "FRAMES_OUT",
+    **dict.fromkeys(FAULTS, "FRAMES_DROPPED"),
+    "dark": "DARK_PIXELS",
+    "depth_dropped": "DEPTH_DROPPED",
+    "record_lost": "RECORDS_LOST",
+}
+"""Event to the register that counts it."""
+STICKY_BITS = {event: STATUS.field(bit).mask for event, bit in STICKY_EVENTS.items()}
+INTERRUPT_BITS = {event: INTERRUPT_STATUS.field(bit).mask for event, bit in INTERRUPT_EVENTS.items()}
+EVENTS = tuple(dict.fromkeys((*STICKY_EVENTS, *INTERRUPT_EVENTS, *EVENT_COUNTERS)))
+SATURATIONS = "SATURATIONS"
+COUNTERS = (*dict.fromkeys(EVENT_COUNTERS.values()), SATURATIONS)
+LATENCY = "FIRST_DEPTH_LATENCY"
+LEVELS = ("busy", "contact", "touching")
+"""Bits of STATUS that show an input as it is."""
+
+
+@dataclass
+class EventRegisters:
+    """State of the registers.
+
+    Attributes
+    ----------
+    values : dict
+        Name to word, STATUS without `LEVELS`.
+    irq : bool
+        The output `irq`.
+    """
+
+    values: dict[str, int] = field(default_factory=dict)
+    irq: bool = False
+
+    def __post_init__(self) -> None:
+        self.reset()
+
+    def reset(self) -> None:
+        """Set every register to 0."""
+        self.irq, self._interrupts = False, 0
+        self.values.update(dict.fromkeys(("STATUS", "INTERRUPT_STATUS", LATENCY, *COUNTERS), 0))
+
+    def write(self, name: str, ones: int) -> None:
+        """Clear what a write of `ones` clears."""
+        if name in ("STATUS", "INTERRUPT_STATUS"):
+            self.values[name] &= ~ones
+        elif name == "CONTROL" and ones & CONTROL.field("clear_counters").mask:
+            self.values.update(dict.fromkeys(COUNTERS, 0))
+
+    def clock(
+        self, events: Collection[str], saturations: int, first_depth_latency: int | None, interrupt_mask: int
+    ) -> None:
+        """Take the events of one cycle, after the write of that cycle.
+
+        Parameters
+        ----------
+        events : collection of str, of `EVENTS`
+        saturations : int
+            Number of values clipped.
+        first_depth_latency : int or None
+            None if no frame's first depth leaves.
+        interrupt_mask : int
+            Word of INTERRUPT_MASK before the write of this cycle.
+        """
+        values = self.values
+        self.irq = bool(self._interrupts & interrupt_mask)
+        for event in events:
+            values["STATUS"] |= STICKY_BITS.get(event, 0)
+            values["INTERRUPT_STATUS"] |= INTERRUPT_BITS.get(event, 0)
+        if saturations:
+            values["STATUS"] |= STATUS.field("saturation").mask
+        for name in {EVENT_COUNTERS[event] for event in events if event in EVENT_COUNTERS}:
+            values[name] = min(values[name] + 1, WORD)
+        values[SATURATIONS] = min(values[SATURATIONS] + saturations, WORD)
+        if first_depth_latency is not None:
+            values[LATENCY] = first_depth_latency
+        self._interrupts = values["INTERRUPT_STATUS"]

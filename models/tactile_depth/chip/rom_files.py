@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes the $readmemh files of a configuration: one line per word, with fixed names in one folder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.spectral_divide import reciprocal_rom, reciprocals
+from tactile_depth.chip.poisson.thomas_table import thomas_table
+from tactile_depth.chip.poisson.transform.sdf_fft import stages
+from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors
+from tactile_depth.chip.poisson.transform.wide_commutator import positions
+from tactile_depth.chip.poisson.transform.wide_fft import wide_factors
+from tactile_depth.chip.poisson.wide_solver import tables
+from tactile_depth.chip.poisson.wide_stack import down_positions
+
+
+def write_words(path: Path, words: Iterable[int], width: int) -> None:
+    """Write non-negative words of `width` bits.
+
+    Raises
+    ------
+    ValueError
+        A word does not fit; nothing is written.
+    """
+    words = [int(word) for word in words]
+    if words and not 0 <= min(words) <= max(words) < 1 << width:
+        raise ValueError(f"{path.name}: words from {min(words)} to {max(words)} do not fit {width} unsigned bits")
+    digits = (width + 3) // 4
+    path.write_text("".join(f"{word:0{digits}x}\n" for word in words))
+
+
+def pack(fields: Iterable[np.ndarray], width: int) -> list[int]:
+    """Pack signed fields of `width` bits into words, the first on top; Python integers, because some exceed 64 bits."""
+    words: list[int] = []
+    for row in zip(*(unsigned(field, width).tolist() for field in fields), strict=True):
+        word = 0
+        for value in row:
+            word = word << width | value
+        words.append(word)
+    return words
+
+
+def unsigned(words: np.ndarray, width: int) -> np.ndarray:
+    """Return the two's complement of signed words of `width` bits, int64 of the same shape.
+
+    Raises
+    ------
+    ValueError
+        A word does not fit.
+    """
+    words = np.asarray(words)
+    half = 1 << width - 1
+    if words.size and not -half <= words.min() <= words.max() < half:
+        raise ValueError(f"words from {words.min()} to {words.max()} do not fit {width} signed bits")
+    return words & (2 * half - 1)
+
+
+def write_factors(path: Path, factors: np.ndarray, width: int) -> None:
+    """Write complex factors (block, 2) as twiddle_multiply.sv reads them: {-Im, Im, Re}."""
+    re, im = factors.T
+    write_words(path, pack((-im, im, re), width), 3 * width)
+
+
+def write_transform(folder: Path, size: int, width: int) -> None:
+    """Write the ROMs of dst_forward and dst_inverse."""
+    for inverse, direction in ((False, "forward"), (True, "inverse")):
+        blocks = sorted({s.block for s in stages(size, inverse) if s.delay == 0}, reverse=True)
+        for pair, block in enumerate(blocks):
+            factors = twiddle_factors(block, inverse, width)
+            write_factors(folder / f"twiddle_{direction}_{pair}.hex", factors, width)
+        write_factors(folder / f"phase_{direction}.hex", phase_factors(size, inverse, width), width)
+
+
+def write_wide_factors(path: Path, factors: np.ndarray, width: int) -> None:
+    """Write complex factors (beats, paths, 2) as wide_twiddle.sv reads them: {-Im, Im, Re} of each path, 0 lowest."""
+    re, im = np.moveaxis(factors[:, ::-1], -1, 0)
+    fields = np.stack((-im, im, re), axis=-1).reshape(len(re), -1)
+    write_words(path, pack(fields.T, width), fields.shape[1] * width)
+
+
+def write_direction(folder: Path, size: int, paths: int, inverse: bool, width: int) -> None:
+    """Write the ROMs of wide_fft in one direction, and the phases of the transform around it.
+
+    One path has the twiddle factors of sdf_fft.
+    """
+    direction = "inverse" if inverse else "forward"
+    blocks = sorted({s.block for s in stages(size, inverse) if s.delay == 0}, reverse=True)
+    for pair, block in enumerate(blocks):
+        if paths == 1:
+            path = folder / f"twiddle_{direction}_{pair}.hex"
+            write_factors(path, twiddle_factors(block, inverse, width), width)
+        else:
+            path = folder / f"wide_twiddle_{direction}_{pair}.hex"
+            write_wide_factors(path, wide_factors(size, paths, block, inverse, width), width)
+    phases = phase_factors(size, inverse, width)[positions(size, paths, 0)]
+    write_wide_factors(folder / f"wide_phase_{direction}.hex", phases, width)
+
+
+def write_wide_transform(folder: Path, size: int, words_down: int, words_up: int, width: int) -> None:
+    """Write the ROMs of wide_dst_forward and wide_dst_inverse: `words_down` and `words_up` words per cycle.
+
+    The inverse has half as many paths as words, because it transforms two rows at once.
+    """
+    write_direction(folder, size, words_down, False, width)
+    write_direction(folder, size, words_up // 2, True, width)
+
+
+def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
+    """Write slope codes (bins, 2) as gradient_lookup.sv reads them: {gy, gx}."""
+    write_words(path, pack((codes[:, 1], codes[:, 0]), width), 2 * width)
+
+
+def write_gains(folder: Path, gains: np.ndarray, width: int) -> None:
+    """Write gains (node rows, node columns, 3) as flat_field.sv reads them."""
+    write_nodes(folder, "gain", gains, width)
+
+
+def write_zero(folder: Path, zero: np.ndarray, width: int, side: int = 1) -> None:
+    """Write depth codes (node rows, node columns) as zero_offset.sv reads them."""
+    write_nodes(folder, "zero", unsigned(zero, width)[..., None], width, side)
+
+
+def write_nodes(folder: Path, name: str, nodes: np.ndarray, width: int, side: int = 1) -> None:
+    """Write words (node rows, node columns, channels) as td_node_map.sv reads them.
+
+    Each channel has `side` files, and each of these the words of every side-th node.
+    """
+    for file, words in enumerate(np.asarray(nodes).reshape(-1, side * np.shape(nodes)[-1]).T):
+        write_words(folder / f"{name}_{file}.hex", words, width)
+
+
+def write_polynomials(folder: Path, words: np.ndarray, width: int) -> None:
+    """Write words (2, 3, 10) as the tables of polynomial_gradient.sv read them: one file for each polynomial."""
+    for polynomial, terms in enumerate(words.reshape(-1, words.shape[-1])):
+        write_words(folder / f"polynomial_{polynomial}.hex", pack((terms,), width), width)
+
+
+def write_thomas(folder: Path, config: Configuration) -> None:
+    """Write the ROMs of thomas_table.sv."""
+    table = thomas_table(config)
+    width = config.coefficient_width
+    write_words(folder / "thomas.hex", unsigned(table.words, width), width)
+    settled_width, shift_width = table.settled_width, table.last_shift_width
+    address_width = (len(table.words) - 1).bit_length()
+    write_words(
+        folder / "thomas_index.hex",
+        table.base << settled_width | table.settled,
+        address_width + settled_width,
+    )
+    write_words(
+        folder / "thomas_last.hex", table.last_shift << width | unsigned(table.last, width), shift_width + width
+    )
+
+
+def write_wide_thomas(folder: Path, config: Configuration) -> None:
+    """Write the ROMs of the two tables of wide_solver.sv, the coefficients of a clock side by side in a word."""
+    width, table = config.coefficient_width, thomas_table(config)
+    last = down_positions(config.columns, config.down_words)
+    for name, wide in zip(("wide_down", "wide_up"), tables(config), strict=True):
+        count = wide.words.shape[1]
+        write_words(folder / f"{name}.hex", pack(wide.words.T[::-1], width), count * width)
+        address_width = (len(wide.words) - 1).bit_length()
+        write_words(
+            folder / f"{name}_index.hex",
+            wide.base << wide.settled_width | wide.settled,
+            address_width + wide.settled_width,
+        )
+    words = []
+    for shift, word in zip(table.last_shift[last], pack(table.last[last].T[::-1], width), strict=True):
+        packed = 0
+        for each in shift[::-1].tolist():
+            packed = packed << table.last_shift_width | each
+        words.append(packed << last.shape[1] * width | word)
+    write_words(folder / "wide_down_last.hex", words, last.shape[1] * (table.last_shift_width + width))
+
+
+def write_solver(folder: Path, config: Configuration) -> None:
+    """Write the ROMs of the solver."""
+    if config.lanes > 1:
+        write_wide_transform(folder, config.columns, config.down_words, config.lanes, config.coefficient_width)
+        write_wide_thomas(folder, config)
+        return
+    write_transform(folder, config.columns, config.coefficient_width)
+    if config.solver == "tridiagonal":
+        write_thomas(folder, config)
+    else:
+        width = config.coefficient_width + reciprocals(config).shift_width
+        write_words(folder / "reciprocal.hex", reciprocal_rom(config), width)

@@ -1,0 +1,470 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Computes depth maps in millimetres from camera pictures, as the hardware does or in double precision."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import LIGHT_GAIN, Configuration, ExactConfiguration, is_grid_of_hardware
+from tactile_depth.chip.contact.contact_events import Settings
+from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2, captured_zero
+from tactile_depth.chip.depth.zero_offset import exact_zero, no_zero
+from tactile_depth.chip.gradient.flat_field import captured_gains, dark_pixels, pixel_gains, require_light, unit_gains
+from tactile_depth.chip.gradient.light_gains import Light, LightFilter
+from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
+from tactile_depth.chip.hardware_files import write_hardware
+from tactile_depth.chip.poisson.cores import fastest
+from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.tactile_depth import Tables, light_of, slope_codes, slope_tables, solve, zeroed
+from tactile_depth.depth import reference as exact
+from tactile_depth.depth.result import Recorder, Result
+from tactile_depth.depth.stream import Stream
+from tactile_depth.pictures.blocks import Rest
+from tactile_depth.pictures.doubts import Doubt, UnusablePicture, Warned, tell
+from tactile_depth.pictures.frames import camera_scale
+from tactile_depth.pictures.grid_sampler import picture_grid
+from tactile_depth.pictures.light_check import doubts_of
+from tactile_depth.pictures.picture_check import Checked, check_picture
+from tactile_depth.pictures.pictures import Picture, Pictures
+from tactile_depth.pictures.reader import Reader, power_of_two_of
+from tactile_depth.pictures.reference_check import check_reference
+from tactile_depth.sensor.presets import SENSOR, Boundary, Model, Solver
+from tactile_depth.sensor.sensor import Sensor
+
+SYNTHETIC_GRID = (128, 128)
+ARITHMETICS = ("chip", "float")
+Arithmetic = Literal["chip", "float"]
+BOUNDARIES = ("neumann", "dirichlet")
+THRESHOLDS = {"THRESHOLD": "on_threshold", "AREA_THRESHOLD": "area_threshold"}  # fields of Settings, by register
+PICTURES, REFERENCE = Argument("pictures"), Argument("reference")
+PIXELS_AT_ONCE = 1 << 16  # pixels of a batch of frames, whose arrays stay in a cache
+
+
+def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]:
+    """Return rows and columns of the grid that covers the full picture of a sensor, as `picture_grid`."""
+    if sensor.camera is None:
+        return SYNTHETIC_GRID
+    return picture_grid((sensor.camera.rows, sensor.camera.columns), solver)
+
+
+class Pipeline:
+    """Pipeline for one sensor; a call with pictures returns their depth maps. Its attributes are read-only.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        See `load`, `fit` and `sample`.
+    reference : a picture or 2**k pictures, as for a call, optional
+        Pictures of the sensor without contact. A real sensor needs them.
+    grid : (rows, columns), optional
+        Size of the depth map; by default `default_grid`, which covers the full picture. Columns are a power of two,
+        except with `arithmetic="float"`, which takes any grid up to the size of the pictures.
+    solver : str
+        `tridiagonal` or `spectral`.
+    boundary : str
+        `neumann`, zero slope at the edge, or `dirichlet`, zero depth at the edge.
+    model : str
+        Gradient model, `lut`, `quadratic` or `cubic`; "": the best model of the sensor.
+    data_width, coefficient_width : int
+        Bits of a stored word and of a coefficient.
+    gain_width : int
+        Bits of a gain of the flat field.
+    depth_range_mm : float, optional
+        Depth that the formats are sized for; by default a quarter of the shorter side.
+    zero_offset : bool
+        Subtract the depth that is read without contact. It is first captured from `reference`.
+    light_gains : bool, optional
+        A gain for each colour undoes the difference of the light between picture and reference; by default with the
+        models `quadratic` and `cubic`.
+    arithmetic : str
+        `chip`, bit-accurate as in the hardware, or `float`, double precision.
+    threshold_mm : float
+        Depth above which a pixel touches.
+    area_threshold_mm : float
+        Depth above which a pixel is in the area of the contact, whose centroid, limits and volume are recorded. Half
+        the peak of the frame before counts where that is less, but never less than `threshold_mm`. A picture that is
+        not of a stream counts as the frame before itself.
+
+    Raises
+    ------
+    InputError
+        An argument is not accepted, or the reference is missing, too dark or of another camera.
+    """
+
+    def __init__(
+        self,
+        sensor: Sensor,
+        reference: Pictures | None = None,
+        *,
+        grid: tuple[int, int] | None = None,
+        solver: Solver = SENSOR.solver,
+        boundary: Boundary = SENSOR.boundary,
+        model: Model | Literal[""] = "",
+        data_width: int = 24,
+        coefficient_width: int = 18,
+        gain_width: int = Configuration.gain_width,
+        depth_range_mm: float | None = None,
+        zero_offset: bool = SENSOR.zero_offset,
+        light_gains: bool | None = None,
+        arithmetic: Arithmetic = "chip",
+        threshold_mm: float = 0.1,
+        area_threshold_mm: float = 0.3,
+    ) -> None:
+        if not isinstance(sensor, Sensor):
+            problem = f" is a {type(sensor).__name__}"
+            raise InputError(Argument("sensor"), problem, accepted="a Sensor, as load(..) returns it")
+        if grid is not None and not (len(np.shape(grid)) == 1 and len(grid) == 2 and all(map(is_whole, grid))):
+            raise InputError(Argument("grid", grid), accepted=("(rows, columns)", "whole numbers"))
+        widths = (
+            Argument("data_width", data_width),
+            Argument("coefficient_width", coefficient_width),
+            Argument("gain_width", gain_width),
+        )
+        for width in widths:
+            if not is_whole(width.value):
+                raise InputError(width, accepted="a whole number, of type int")
+        one_of(Argument("arithmetic", arithmetic), ARITHMETICS)
+        one_of(Argument("boundary", boundary), BOUNDARIES)
+        sensor.require_reference(reference is not None)
+        rows, columns = self._grid = default_grid(sensor, solver) if grid is None else grid
+        self._arithmetic, self._is_of_hardware = arithmetic, is_grid_of_hardware(rows, columns, solver)
+        kind = Configuration if self._is_of_hardware or arithmetic == "chip" else ExactConfiguration
+        shape: dict[str, Any] = {"columns": columns, "rows": rows, "solver": solver, "neumann": boundary == "neumann"}
+        self._reader = Reader(sensor, self._grid)
+        self._rest: Rest | None = None
+        self._doubts: tuple[Doubt, ...] = ()
+        pitch_mm = sensor.pixel_pitch_mm * camera_scale(sensor, kind(**shape))
+        rest = None if reference is None else self._rest_of(reference, REFERENCE, LARGEST_LOG2)
+        self._sensor = replace(sensor, pixel_pitch_mm=pitch_mm, reference=rest)
+        self._config = self.sensor.configuration(
+            model,
+            kind=kind,
+            **shape,
+            **dict(widths),
+            depth_range_px=None if depth_range_mm is None else self.sensor.depth_range_px(depth_range_mm),
+            zero_offset=zero_offset,
+            light_gains=light_gains,
+        )
+        if not is_number(threshold_mm) or not 0 < threshold_mm / self.depth_lsb_mm < 2 ** (data_width - 1):
+            limit = f"{self.config.depth_limit_px * self.pixel_pitch_mm:.3g} mm"
+            accepted = f"a depth above 0 and within the depth range of {limit}"
+            raise InputError(Argument("threshold_mm", threshold_mm), accepted=accepted)
+        if not is_number(area_threshold_mm) or not 0 <= area_threshold_mm / self.depth_lsb_mm < 2**31:
+            raise InputError(Argument("area_threshold_mm", area_threshold_mm), accepted="a depth, 0 or more")
+        self._threshold_mm, self._area_threshold_mm = threshold_mm, area_threshold_mm
+        threshold, area = (round(depth / self.depth_lsb_mm) for depth in (threshold_mm, area_threshold_mm))
+        settings = Settings(threshold, threshold, area, minimum_area=1, debounce=1)
+        self._recorder = Recorder(settings, data_width, self.config.solver == "tridiagonal")
+        self._gains = unit_gains(self.config)
+        self._zero = no_zero(self.config)
+        self._exact_zero = np.zeros(self.grid)
+        if rest is None:
+            self._prepare()
+        else:
+            self._use_reference(rest)
+            if zero_offset:
+                self._use_zero(rest)
+
+    def __call__(self, pictures: Pictures, stream: Stream | None = None, name: str = "") -> Result:
+        """Return the depth of pictures.
+
+        Parameters
+        ----------
+        pictures : uint8 array (rows, columns, 3) or (frames, rows, columns, 3), RGB, or a path, or a sequence of them
+            Full pictures of the sensor's camera, or scaled pictures of the same aspect ratio. PIL images and other
+            objects that numpy takes as arrays are arrays. A path names a picture (PNG, JPEG), a `.npy` of one or of
+            several, or a folder of pictures.
+        stream : Stream, optional
+            The stream, `new_stream`, to which the pictures belong, in their order; by default each picture stands for
+            itself.
+        name : str
+            Names the pictures in errors and warnings.
+
+        Returns
+        -------
+        Result
+            Arrays have a first axis of frames if the pictures have one.
+
+        Raises
+        ------
+        InputError
+            The pictures are not accepted, or one of them gives no right depth (`UnusablePicture`).
+
+        Warns
+        -----
+        InputWarning
+            The heights of a picture are uncertain.
+        """
+        frames, checked, single = self._checked(pictures, name or PICTURES)
+        monitor = Monitor()
+        gains = light_of(frames, self._tables, self.config, None if stream is None else stream.light, fastest())
+        if self.arithmetic == "chip":
+            slopes, depth = self._chip(frames, monitor, gains)
+            depth = zeroed(depth, self.config, monitor, self._zero)
+        else:
+            slopes, depth = self._exact(frames, gains)
+            depth = depth - self._exact_zero
+        codes = np.rint(depth).astype(np.int32)
+        codes, depth_mm = self._upright(codes), self._upright(depth) * self.depth_lsb_mm
+        streamed = None
+        if stream is not None:
+            streamed = tuple(self._recorder.next(frame, stream.events) for frame in codes)
+        reference = self._tables.gains
+        dark = np.zeros(codes.shape, bool) if reference is None else dark_pixels(frames, reference, self.config)
+        result = Result(
+            codes,
+            depth_mm,
+            slopes if self.sensor.pixel_aspect == 1 else slopes / (self.sensor.pixel_aspect, 1),
+            dark,
+            None if gains is None else gains * LIGHT_GAIN.lsb,
+            dict(monitor.saturations),
+            self._recorder,
+            self.depth_lsb_mm,
+            self.pixel_pitch_mm,
+            self.sensor.fitted_slope.get(self.config.gradient_model, math.inf),
+            self.sensor.height_errors.get(self.config.gradient_model),
+            streamed,
+            self._warned(checked, gains, depth_mm, None if stream is None else stream.warned),
+            self.sensor.pixel_aspect,
+        )
+        return result[0] if single else result
+
+    def stream(self, pictures: Iterable[Picture], stream: Stream | None = None) -> Iterator[Result]:
+        """Give the depth of the pictures of a stream, as the hardware does.
+
+        Light gains act on the next picture, and half the peak of a contact bounds the area of the next. A picture that
+        gives no right depth is left out and counted.
+
+        Parameters
+        ----------
+        pictures : iterable of pictures, each as for a call
+        stream : Stream, optional
+            The stream, `new_stream`, that the pictures continue.
+
+        Raises
+        ------
+        InputError
+            A picture is not accepted.
+
+        Warns
+        -----
+        InputWarning
+            Once for each kind of doubt, and for the first picture that is left out.
+        """
+        stream = self.new_stream() if stream is None else stream
+        for picture in pictures:
+            stream.taken += 1
+            try:
+                result = self(picture, stream, f"picture {stream.taken - 1}")
+            except UnusablePicture as error:
+                stream.failed += 1
+                if stream.failed == 1:
+                    warn(InputWarning("left out and counted: ", *error.parts))
+                continue
+            yield result
+
+    def new_stream(self) -> Stream:
+        """Return the state of a stream before its first picture: light gains of 1, no contact."""
+        light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
+        return Stream(light, self._recorder.events(self.grid))
+
+    def __repr__(self) -> str:
+        rows, columns = self.grid
+        choices = f"{self.config.gradient_model}, {self.config.solver}, {self.arithmetic}"
+        return f"Pipeline({self.sensor.name!r}, {columns}x{rows}, {choices})"
+
+    @property
+    def sensor(self) -> Sensor:
+        """Sensor on the grid, with the reference in use."""
+        return self._sensor
+
+    @property
+    def config(self) -> Configuration:
+        """Configuration, which models and RTL share."""
+        return self._config
+
+    @property
+    def grid(self) -> tuple[int, int]:
+        """Rows and columns of the depth map."""
+        return self._grid
+
+    @property
+    def arithmetic(self) -> Arithmetic:
+        """`chip` or `float`."""
+        return self._arithmetic
+
+    @property
+    def pixel_pitch_mm(self) -> float:
+        """Height of a grid pixel, in mm; its width is `sensor.pixel_aspect` times that."""
+        return self.sensor.pixel_pitch_mm
+
+    @property
+    def depth_lsb_mm(self) -> float:
+        """Depth of code 1, in mm."""
+        return self.config.depth_lsb_px * self.pixel_pitch_mm
+
+    @property
+    def threshold_mm(self) -> float:
+        """Depth above which a pixel touches."""
+        return self._threshold_mm
+
+    @property
+    def area_threshold_mm(self) -> float:
+        """Depth above which a pixel is in the area of the contact."""
+        return self._area_threshold_mm
+
+    @property
+    def zero_codes(self) -> np.ndarray:
+        """Zero offset at its nodes, depth codes in the order of the stream, int64 (node rows, node columns)."""
+        return self._zero
+
+    def capture_reference(self, pictures: Pictures) -> None:
+        """Take the mean of pictures without contact as the reference, as the hardware's capture does.
+
+        The zero offset does not change: call `capture_zero` next.
+
+        Parameters
+        ----------
+        pictures : as for a call
+            1, 2, 4, .. pictures, as many as the hardware can average.
+
+        Raises
+        ------
+        InputError
+            The number of pictures is not accepted, they are too dark, or the pipeline takes colours as sent.
+        """
+        if not self.config.flat_field:
+            problem = ": this pipeline takes colours as sent"
+            raise InputError(PICTURES, problem, remedy=("make it with ", Argument("reference", "<picture>")))
+        self._use_reference(self._rest_of(pictures, PICTURES, largest_log2_frames(self.config)))
+
+    def capture_zero(self, pictures: Pictures) -> None:
+        """Take the depth of pictures without contact as the zero offset, as the hardware's capture does.
+
+        Raises
+        ------
+        InputError
+            The number of pictures is not 1, 2, 4, .. 256, or the pipeline has no zero offset.
+        """
+        if not self.config.zero_offset:
+            problem = ": this pipeline has no zero offset"
+            raise InputError(PICTURES, problem, remedy=("make it with ", Argument("zero_offset", True)))
+        frames, *_ = self._checked(pictures, PICTURES)
+        power_of_two_of(len(frames), LARGEST_LOG2, PICTURES)
+        self._use_zero(frames)
+
+    def hardware(self, folder: str | Path) -> Path:
+        """Write the parameters of the top module and the tables, with which the RTL computes the same depth.
+
+        Parameters
+        ----------
+        folder : path
+            Created if it is missing. Its `parameters.json` holds the parameters of hdl/tactile_depth.sv, the fields of
+            Config by name, the contact thresholds for the registers, units, and the names of the $readmemh files.
+            Software in C loads the same tables with its `tactile_depth_tables.h`.
+
+        Returns
+        -------
+        Path of parameters.json
+
+        Raises
+        ------
+        InputError
+            The folder cannot be written, or the hardware cannot have the grid.
+        """
+        if not self._is_of_hardware:
+            problem = " is for double precision alone"
+            remedy = ("make the pipeline with ", Argument("arithmetic", "chip"), " and a grid that it takes")
+            raise InputError(Argument("grid", self.grid), problem, remedy=remedy)
+        thresholds = {name: getattr(self._recorder.settings, field) for name, field in THRESHOLDS.items()}
+        return write_hardware(Path(folder), self.sensor, self.config, self._zero, self._gains, thresholds)
+
+    # Arithmetic. Each function returns slopes, and depth in codes before the zero offset, rows in stream order.
+
+    def _chip(self, frames: np.ndarray, monitor: Monitor, light: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+        """Compute slopes and depth as the RTL does, bit for bit."""
+        step = max(1, PIXELS_AT_ONCE // (self.config.rows * self.config.columns))
+        slopes, depths = [], []
+        for start in range(0, len(frames), step):
+            part = frames[start : start + step]
+            gains = None if light is None else light[start : start + step]
+            codes = slope_codes(part, self.sensor, self.config, monitor, tables=self._tables, light=gains)
+            slopes.append(codes * self.config.gradient_lsb)
+            depths.append(solve(divergence(codes, self.config.neumann), self.config, monitor, fastest()))
+        return np.concatenate(slopes), np.concatenate(depths)
+
+    def _exact(self, frames: np.ndarray, light: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+        """Compute slopes and depth in double precision."""
+        slopes = exact.slopes_of(frames, self.sensor, self.config, self._exact_tables, light)
+        depth = exact.solve(divergence(slopes, self.config.neumann), self.config.neumann)
+        return slopes, self._upright(depth / self.config.depth_lsb_px)
+
+    def _upright(self, depths: np.ndarray) -> np.ndarray:
+        """Convert between the row orders of stream and picture; the tridiagonal solver starts at the bottom row."""
+        return depths[..., ::-1, :] if self.config.solver == "tridiagonal" else depths
+
+    # Captures.
+
+    def _use_reference(self, frames: np.ndarray) -> None:
+        gains = captured_gains(frames, self.config)
+        require_light(gains, self.config)
+        self._rest = Rest.of(frames)
+        self._gains, self._sensor = gains, replace(self.sensor, reference=frames)
+        self._prepare()
+
+    def _prepare(self) -> None:
+        """Compute the tables that all frames use until the reference changes."""
+        gains = self._gains if self.config.flat_field else None
+        if self._is_of_hardware:
+            self._tables = slope_tables(self.sensor, self.config, gains)
+        else:
+            self._tables = Tables(None if gains is None else pixel_gains(gains, self.config), np.empty(0, np.int64))
+        self._exact_tables = exact.slope_tables(self.sensor, self.config)
+
+    def _use_zero(self, frames: np.ndarray) -> None:
+        light = light_of(frames, self._tables, self.config, cores=fastest())
+        if self._is_of_hardware:
+            self._zero = captured_zero(self._chip(frames, Monitor(), light)[1], self.config)
+        self._exact_zero = -exact_zero(np.zeros(self.grid), self._exact(frames, light)[1], self.config)
+
+    # Checks of pictures.
+
+    def _rest_of(self, pictures: Pictures, name: Argument, largest_log2: int) -> np.ndarray:
+        """Return pictures without contact on the grid, uint8 (frames, rows, columns, 3)."""
+        images, frames = self._reader.reference(pictures, name, largest_log2)
+        self._doubts = check_reference(self._reader.sensor, images, name)
+        return frames
+
+    def _checked(self, pictures: Pictures, name: Part) -> tuple[np.ndarray, list[Checked], bool]:
+        """Return frames on the grid, uint8 (frames, rows, columns, 3), their checks, and True for a single picture."""
+        read, single = self._reader.pictures(pictures, name)
+        frames, checked = [], []
+        for each, frame in read:
+            frames.append(frame)
+            checked.append(check_picture(frame, self._rest, each))
+        return np.stack(frames), checked, single
+
+    def _warned(
+        self, checked: Sequence[Checked], gains: np.ndarray | None, depth_mm: np.ndarray, warned: Warned | None
+    ) -> tuple[tuple[str, ...], ...]:
+        """Return for each picture why its heights are uncertain; warn of it, and in a stream only of what is new."""
+        light = [None] * len(checked) if gains is None else gains * LIGHT_GAIN.lsb
+        texts = []
+        for each, gain, depth in zip(checked, light, depth_mm, strict=True):
+            doubts = doubts_of(each, gain, depth, self.threshold_mm)
+            tell(doubts if warned is None else warned.new(doubts))
+            texts.append(tuple(map(str, (*self._doubts, *doubts))))
+        return tuple(texts)
+
+
+def is_whole(number: object) -> bool:
+    """Return True for a whole number."""
+    return isinstance(number, int | np.integer) and not isinstance(number, bool)

@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Depth maps in millimetres, with slopes and contacts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from tactile_depth.base.by_value import ByValue
+from tactile_depth.chip.contact.centroid import FRACTION
+from tactile_depth.chip.contact.contact_debounce import TOUCHING
+from tactile_depth.chip.contact.contact_events import ContactEvents, Record, Settings
+from tactile_depth.sensor.sensor import HeightError
+
+
+@dataclass(frozen=True, eq=False)
+class Contact(ByValue):
+    """Contact of one frame, as the hardware records it.
+
+    Two contacts are equal if all their values are.
+
+    Attributes
+    ----------
+    record : Record
+        Words of the hardware: depth in codes, positions in grid pixels.
+    mask : bool array (rows, columns)
+        Pixels whose depth is above the threshold, rows from the top of the picture.
+    untouched_mm : float
+        Mean depth of the other pixels, which a height is counted from, in mm; NaN without any.
+    depth_lsb_mm, pixel_pitch_mm : float
+    pixel_aspect : float
+        Width of a grid pixel over its height, `pixel_pitch_mm`.
+    grid : tuple of int, or None
+        Rows and columns that positions count on; None: those of `mask`.
+    """
+
+    record: Record
+    mask: npt.NDArray[np.bool_]
+    untouched_mm: float
+    depth_lsb_mm: float
+    pixel_pitch_mm: float
+    pixel_aspect: float = 1.0
+    grid: tuple[int, int] | None = None
+
+    def __repr__(self) -> str:
+        peak = f"peak {self.peak_mm:.3g} mm at {self.peak_px}, area {self.area_mm2:.3g} mm^2"
+        return f"Contact({peak if self.touching else 'none'})"
+
+    @property
+    def touching(self) -> bool:
+        """True if this frame has a contact."""
+        return bool(self.record.status & TOUCHING)
+
+    @property
+    def peak_mm(self) -> float:
+        """Largest depth above the threshold, in mm; 0 without contact. Its height is `peak_mm - untouched_mm`."""
+        return self.record.peak * self.depth_lsb_mm
+
+    @property
+    def peak_px(self) -> tuple[int, int]:
+        """Row and column of the peak on the grid."""
+        return self.record.peak_position
+
+    @property
+    def area_threshold_mm(self) -> float:
+        """Depth above which a pixel of this frame is in the area, in mm."""
+        return self.record.area_threshold * self.depth_lsb_mm
+
+    @property
+    def area_mm2(self) -> float:
+        """Area whose depth is above `area_threshold_mm`, in mm^2; 0 for a contact that does not reach it."""
+        return self.record.area * self._pixel_mm2
+
+    @property
+    def volume_mm3(self) -> float:
+        """Sum of the depths in the area times the area of a pixel, in mm^3."""
+        return self.record.volume * self.depth_lsb_mm * self._pixel_mm2
+
+    @property
+    def centroid_px(self) -> tuple[float, float]:
+        """Row and column of the area's centre on the grid, weighted by depth above `area_threshold_mm`, to 1/16 pixel.
+
+        Of a contact without area the peak.
+        """
+        row, column = self.record.centroid
+        return row / 2**FRACTION, column / 2**FRACTION
+
+    @property
+    def peak_position_mm(self) -> tuple[float, float] | None:
+        """Row and column of the peak from the upper left corner of the picture, in mm; None without contact."""
+        return self._from_the_corner(self.peak_px)
+
+    @property
+    def centroid_mm(self) -> tuple[float, float] | None:
+        """Row and column of the centroid from the upper left corner of the picture, in mm; None without contact."""
+        return self._from_the_corner(self.centroid_px)
+
+    def _from_the_corner(self, index: tuple[float, float]) -> tuple[float, float] | None:
+        """Return a position on the depth map in mm.
+
+        The centre of a pixel is half a pixel from its corner, and depth lies half a pixel up and to the left of it: so
+        index 0 is on the edge of the picture.
+        """
+        if not self.touching:
+            return None
+        row, column = index
+        return row * self.pixel_pitch_mm, column * self.pixel_pitch_mm * self.pixel_aspect
+
+    @property
+    def _pixel_mm2(self) -> float:
+        return self.pixel_pitch_mm**2 * self.pixel_aspect
+
+    @property
+    def is_central(self) -> bool:
+        """True if the area lies wholly in the middle square, where `Result.height_error` was measured."""
+        shape = self.grid or self.mask.shape
+        side = min(shape)
+        bounds = zip(shape, self.record.least, self.record.greatest, strict=True)
+        return all((length - side) // 2 < least <= most < (length + side) // 2 - 1 for length, least, most in bounds)
+
+
+@dataclass(frozen=True)
+class Recorder:
+    """Makes the record of a picture by itself, which is that of a picture that stands still in a stream.
+
+    Attributes
+    ----------
+    settings : Settings
+    width : int
+        Bits of a depth code.
+    bottom_first : bool
+        The bottom row leaves the hardware first.
+    """
+
+    settings: Settings
+    width: int
+    bottom_first: bool
+
+    def events(self, grid: tuple[int, int]) -> ContactEvents:
+        """Return the state before the first picture of a stream."""
+        return ContactEvents(*grid, self.width, self.bottom_first)
+
+    def next(self, codes: np.ndarray, events: ContactEvents) -> Record:
+        """Return the record of the next picture of a stream, from codes in the order of the picture."""
+        return events.whole_frame(codes[::-1] if self.bottom_first else codes, self.settings, time=0)
+
+    def record(self, codes: np.ndarray) -> Record:
+        """Return the record of codes (rows, columns) in the order of the picture."""
+        rows, columns = codes.shape
+        events = self.events((rows, columns))
+        self.next(codes, events)
+        return self.next(codes, events)
+
+
+@dataclass(frozen=True, eq=False)
+class Result(ByValue):
+    """Depth of one frame or of several frames.
+
+    For several frames every array has a first axis of frames; `result[i]` is the result of one frame, `result[i:j]`
+    that of some, and a loop gives one after another. `np.asarray` takes the arrays, such as `height_mm`, not the
+    result. Rows are in the order of the picture. Depth is positive where the gel is pressed in. The depth map is
+    shifted by half a pixel up and to the left, because slopes are differenced backwards. Two results are equal if all
+    their values are.
+
+    Attributes
+    ----------
+    codes : int32 array (rows, columns)
+        Depth codes of the hardware.
+    depth_mm : float64 array (rows, columns)
+        `codes` times `depth_lsb_mm`; not rounded with float arithmetic.
+    slopes : float64 array (rows, columns, 2)
+        dz/dx along the columns and dz/dy down the rows, without unit.
+    dark : bool array (rows, columns)
+        Pixels without light, whose colour was taken from the pixel before them.
+    light_gains : float64 array (3,) or None
+        Light of the reference over that of the picture, of red, green and blue; None without light gains.
+    saturations : dict of str to int
+        Number of values clipped in all frames, by node of the pipeline; empty without any.
+    recorder : Recorder
+        Makes the records.
+    depth_lsb_mm, pixel_pitch_mm : float
+    fitted_slope : float
+        Largest slope in the presses of the calibration.
+    calibration_error : HeightError or None
+        Error of the calibration, measured on presses that were not fitted and lay wholly in the picture's middle
+        square; None if not measured. It holds for contacts that are central (`Contact.is_central`).
+    streamed : tuple of Record, or None
+        Records of the frames of a stream, which depend on the frames before.
+    warnings : tuple of tuples of str
+        For each frame why its heights are uncertain.
+    pixel_aspect : float
+        Width of a grid pixel over its height, `pixel_pitch_mm`.
+    """
+
+    codes: npt.NDArray[np.int32]
+    depth_mm: npt.NDArray[np.float64]
+    slopes: npt.NDArray[np.float64]
+    dark: npt.NDArray[np.bool_]
+    light_gains: npt.NDArray[np.float64] | None
+    saturations: dict[str, int]
+    recorder: Recorder
+    depth_lsb_mm: float
+    pixel_pitch_mm: float
+    fitted_slope: float
+    calibration_error: HeightError | None
+    streamed: tuple[Record, ...] | None = None
+    warnings: tuple[tuple[str, ...], ...] = ()
+    pixel_aspect: float = 1.0
+
+    def __repr__(self) -> str:
+        *frames, rows, columns = self.codes.shape
+        number = f"{frames[0]} x " if frames else ""
+        return f"Result({number}{columns}x{rows}, depth up to {self.depth_mm.max(initial=-math.inf):.3g} mm)"
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __len__(self) -> int:
+        """Return the number of frames; raise TypeError for the result of a single picture, as numpy does."""
+        self._require_frames()
+        return len(self.codes)
+
+    def __iter__(self) -> Iterator[Result]:
+        """Give the result of each frame."""
+        return (self[index] for index in range(len(self)))
+
+    def __getitem__(self, index: int | slice) -> Result:
+        """Return the result of one frame of several, or of a slice of them; `saturations` stays that of all."""
+        if not isinstance(index, int | np.integer | slice):
+            raise TypeError(f"result[{index!r}]: accepted is the number of a frame, or a slice")
+        self._require_frames()
+        arrays = {name: getattr(self, name)[index] for name in ("codes", "depth_mm", "slopes", "dark")}
+        gains = None if self.light_gains is None else self.light_gains[index]
+        frames = range(len(self))[index] if isinstance(index, slice) else (index,)
+        streamed = None if self.streamed is None else tuple(self.streamed[frame] for frame in frames)
+        warned = tuple(self.warnings[frame] for frame in frames) if self.warnings else ()
+        return replace(self, streamed=streamed, warnings=warned, light_gains=gains, **arrays)
+
+    def _require_frames(self) -> None:
+        if self.codes.ndim == 2:
+            raise TypeError("the result of a single picture has no frames: use its attributes")
+
+    @property
+    def height_error(self) -> HeightError | None:
+        """Error of the heights, `calibration_error`; None if it was not measured, or if a frame has a warning."""
+        return None if any(self.warnings) else self.calibration_error
+
+    @cached_property
+    def records(self) -> tuple[Record, ...]:
+        """One record per frame, from which `contact` is made; computed on first use, except for a stream."""
+        if self.streamed is not None:
+            return self.streamed
+        return tuple(map(self.recorder.record, self.codes if self.codes.ndim == 3 else self.codes[None]))
+
+    @property
+    def threshold(self) -> int:
+        """Depth code above which a pixel touches."""
+        return self.recorder.settings.on_threshold
+
+    @property
+    def threshold_mm(self) -> float:
+        """Depth above which a pixel touches, in mm."""
+        return self.threshold * self.depth_lsb_mm
+
+    @cached_property
+    def mask(self) -> npt.NDArray[np.bool_]:
+        """Pixels whose depth is above the threshold, bool, as `codes`."""
+        return self.codes > self.threshold
+
+    @cached_property
+    def untouched_mm(self) -> npt.NDArray[np.float64]:
+        """Mean of the depths that are not above the threshold, of each frame, in mm; NaN without such a pixel."""
+        untouched = ~self.mask
+        count = untouched.sum(axis=(-2, -1))
+        depths_mm = np.where(untouched, self.depth_mm, 0).reshape(*untouched.shape[:-2], -1)  # added in one order
+        total = depths_mm.sum(axis=-1)
+        return np.where(count, total / np.maximum(count, 1), np.nan)
+
+    @cached_property
+    def height_mm(self) -> npt.NDArray[np.float64]:
+        """Depth above the untouched surface: `depth_mm` minus `untouched_mm`."""
+        return self.depth_mm - self.untouched_mm[..., None, None]
+
+    @cached_property
+    def outside(self) -> npt.NDArray[np.bool_]:
+        """Pixels whose slope exceeds `fitted_slope`, bool, as `codes`."""
+        return ~self.dark & (np.hypot(self.slopes[..., 0], self.slopes[..., 1]) > self.fitted_slope)
+
+    @property
+    def contact(self) -> Contact:
+        """Contact of a single picture; for several frames use `result[i].contact`."""
+        if self.codes.ndim != 2:
+            raise AttributeError("several frames have several contacts: use result[i].contact")
+        untouched = float(self.untouched_mm)
+        pixel = (self.pixel_pitch_mm, self.pixel_aspect)
+        return Contact(self.records[0], self.mask, untouched, self.depth_lsb_mm, *pixel)

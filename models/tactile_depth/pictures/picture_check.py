@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Check of a picture with its reference: light, colours, order of colours and sides, rows that are whole."""
+
+from __future__ import annotations
+
+import itertools
+from typing import NamedTuple
+
+import numpy as np
+
+from tactile_depth.base.errors import Part
+from tactile_depth.pictures.blocks import Rest, block_means, differences, largest, median, medians, smooth, spread
+from tactile_depth.pictures.doubts import COLOURS, Doubt, UnusablePicture, clipped, doubt
+from tactile_depth.pictures.exchanges import CORRECT_IT, nearest_exchange, pattern
+from tactile_depth.sensor.sensor import TOO_DARK
+
+# Weakest colour over the strongest, each relative to the reference. Right: 0.98 and more, 5 % off in two colours 0.89
+# and more; a colour that is lost: 0.
+LOST_COLOUR = 0.25
+# Brightest colour of a block over the reference, in the light of the strongest colour. Right: 0.67 and more; not lit or
+# not sent: 0. Share of such blocks that is refused.
+LOST_BLOCK, LOST_SHARE = 0.25, 0.02
+# Spread of the ratio of two colours over the picture, without a tenth at both ends, natural logarithm. Right: 0.85 and
+# more; a grey picture: 0.00. A reference that spreads less than the second number is grey itself.
+GREY, COLOURED = 0.02, 0.08
+# Median difference to the pattern of the reference. Right: 0.005 at most; exchanged, mirrored, rotated: 0.039 and more,
+# and 0.005 at most after the right exchange. An exchange is named where it leaves less than half of the difference, and
+# less than half of this limit.
+PATTERN_DIFFERS, EXCHANGE_LEAVES = 0.02, 0.5
+PATTERN_DOUBTFUL = 0.04
+# The same of one of `BANDS` bands of rows. Right: 0.010 at most; torn by 20 pixels: 0.059 and more, by 40: 0.11 and
+# more.
+BAND_DIFFERS, BANDS = 0.02, 8
+# Step from a row of blocks to the second next, of the most different colour, exceeded in three quarters of the columns.
+# Right: 0.014 at most, with light that changes by 30 % 0.012; torn by 20 pixels 0.059 and more, by 40 0.097 and more.
+SEAM = 0.04
+
+COMPLETE = "give frames that are complete"
+OTHER_SENSOR = "touch less of the gel, or take the reference with the same sensor"
+
+
+class Checked(NamedTuple):
+    """A picture that was not refused.
+
+    Attributes
+    ----------
+    ratios : float32 array (block rows, block columns, 3) or None
+        Picture over reference; None without a reference.
+    doubts : list of Doubt
+        Those that need no depth.
+    """
+
+    name: Part
+    ratios: np.ndarray | None
+    doubts: list[Doubt]
+
+
+def check_picture(picture: np.ndarray, rest: Rest | None, name: Part) -> Checked:
+    """Refuse a picture that gives no right depth.
+
+    Parameters
+    ----------
+    picture : uint8 array (rows, columns, 3)
+        On the grid, as the reference is.
+
+    Raises
+    ------
+    UnusablePicture
+    """
+    blocks = block_means(picture)
+    if blocks.max() < TOO_DARK:
+        problem = f": it is black, at most {blocks.max():.0f} of 255"
+        raise UnusablePicture(name, problem, remedy="take it with the lights on, and leave out a camera's first frames")
+    doubts = clipped(picture[None], name)
+    if rest is None:
+        return Checked(name, None, doubts)
+    ratios = blocks / rest.blocks
+    light = medians(ratios)
+    constant = spread(blocks, 0.0) < 1
+    if constant.any():  # those of the reference are not
+        constant &= spread(rest.blocks, 0.0) > COLOURED * rest.blocks.mean()
+    if constant.all():
+        raise UnusablePicture(name, ": it has one colour everywhere", remedy=COMPLETE)
+    lost = (light < LOST_COLOUR * light.max()) | constant
+    if lost.any():
+        problem = f": it has no {' and no '.join(itertools.compress(COLOURS, lost))}"
+        raise UnusablePicture(name, problem, remedy="look at the camera's format and at the lamps")
+    dark = float((largest(ratios) < LOST_BLOCK * light.max()).mean())
+    if dark > LOST_SHARE:
+        raise UnusablePicture(name, f": {100 * dark:.0f} % of it are dark", remedy=COMPLETE)
+    if is_grey(blocks, rest.blocks):
+        raise UnusablePicture(name, ": it is grey, its colours do not differ", remedy="give it in colour, as RGB")
+    _require_all_rows(picture, rest, light, name)
+    return Checked(name, ratios, doubts + _other_pattern(blocks, rest.blocks, name))
+
+
+def is_grey(blocks: np.ndarray, rest: np.ndarray) -> bool:
+    """Return True if the colours of a picture are in one ratio everywhere, and those of the reference are not."""
+
+    def spread_of_ratios(of: np.ndarray) -> float:
+        ratios = np.log(np.maximum(of, 0.01))
+        return float(spread((ratios - ratios[..., 1:2])[..., ::2], 0.1).max())
+
+    return spread_of_ratios(blocks) < GREY and spread_of_ratios(rest) > COLOURED
+
+
+def _require_all_rows(picture: np.ndarray, rest: Rest, light: np.ndarray, name: Part) -> None:
+    """Refuse a picture with many equal rows: a frame that stopped, or repeats a row.
+
+    Rows of a drawn picture without noise may be equal: where nothing touches, or along a cylinder. They do not count.
+    """
+    rows = picture.reshape(len(picture), -1)
+    equal = (rows[1:] == rows[:-1]).all(axis=1)
+    if not equal.any():
+        return
+    least = max(3, len(picture) // 16)
+    for first, end in np.flatnonzero(np.diff(np.concatenate(([0], equal, [0])))).reshape(-1, 2):
+        if end - first < least:
+            continue
+        untouched = rest.pixels[first : end + 1]
+        differs = np.abs(picture[first : end + 1] - untouched * light).mean(axis=(0, 1)).max()
+        others = np.concatenate((equal[:first], equal[end:]))
+        varies = np.ptp(untouched, axis=0).max() > 2 or (len(others) >= least and others.mean() < 0.1)
+        if differs > 2 and varies:
+            problem = f": {100 * (end - first + 1) / len(picture):.0f} % of its rows are one row, repeated"
+            raise UnusablePicture(name, problem, remedy=COMPLETE)
+
+
+def _other_pattern(blocks: np.ndarray, rest: np.ndarray, name: Part) -> list[Doubt]:
+    """Refuse a picture whose pattern of light is that of the reference in another order; doubt one with another."""
+    difference = differences(blocks, rest)
+    differs, bands = median(np.abs(difference)), _bands(difference)
+    if differs > PATTERN_DIFFERS:
+        exchange, left = nearest_exchange(blocks, rest, blocks.shape[0] == blocks.shape[1])
+        if exchange and left < EXCHANGE_LEAVES * min(differs, PATTERN_DIFFERS):
+            raise UnusablePicture(name, f": {exchange}, by its reference", remedy=CORRECT_IT)
+    if bands.max() > BAND_DIFFERS and _is_torn(blocks, rest, difference, bands):
+        raise UnusablePicture(name, ": it is torn, rows are shifted against its reference", remedy=COMPLETE)
+    if differs > PATTERN_DOUBTFUL and _is_no_light(difference):
+        text = f": it differs by {100 * differs:.0f} % from its reference in more than half of its area"
+        return [doubt("pattern", name, text, remedy=OTHER_SENSOR)]
+    return []
+
+
+def _is_no_light(difference: np.ndarray) -> bool:
+    """Return True if differences are not explained by light that changes across the picture."""
+    return median(np.abs(difference - smooth(difference, degree=2, rounds=6))) > PATTERN_DIFFERS
+
+
+def _bands(difference: np.ndarray) -> np.ndarray:
+    """Return the median difference of each band of rows, (bands,)."""
+    height = max(len(difference) // BANDS, 1)
+    bands = len(difference) // height
+    means = np.abs(difference[: bands * height].reshape(bands, height, -1).sum(axis=1) / height)
+    middle = means.shape[1] // 2
+    return np.partition(means, middle)[:, middle]
+
+
+def _is_torn(blocks: np.ndarray, rest: np.ndarray, difference: np.ndarray, bands: np.ndarray) -> bool:
+    """Return True if below a seam bands of rows agree with the reference once they are shifted, or rows are rolled."""
+    steps = largest(np.abs(difference[2:] - difference[:-2]))
+    if np.sort(steps, axis=1)[:, steps.shape[1] // 4].max() < SEAM:
+        return False
+    left = [_bands(differences(np.roll(blocks, shift, axis=1), rest)) for shift in range(blocks.shape[1])]
+    if np.any((bands > BAND_DIFFERS) & (np.min(left, axis=0) < EXCHANGE_LEAVES * bands)):
+        return True
+    rolled = min(pattern(np.roll(blocks, shift, axis=0), rest) for shift in range(blocks.shape[0]))
+    return rolled < EXCHANGE_LEAVES * median(np.abs(difference))

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures as users have them: arrays, PIL images, paths, and sequences of these."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from tactile_depth.base.errors import Argument, InputError, Part
+from tactile_depth.base.npy import HasArray, HasInterface, is_array
+from tactile_depth.pictures.frames import read_pictures
+
+SHAPES = "uint8 (rows, columns, 3), RGB, or (frames, rows, columns, 3)"
+
+
+Picture = np.ndarray | HasArray | HasInterface | str | Path
+Pictures = Picture | Sequence[Picture]
+
+
+def pictures_of(given: Pictures, name: Part) -> tuple[Iterator[tuple[Part, np.ndarray]], bool]:
+    """Return pictures, uint8 (rows, columns, 3), each with its name in errors, and True for a single picture.
+
+    Those of a folder are read one by one when the iterator reaches them.
+
+    Raises
+    ------
+    InputError
+        It is none of `Pictures`, or empty.
+    """
+    if isinstance(given, str | Path):
+        labels, read = read_pictures(given)
+        return _labelled(given, labels, read), Path(given).is_file() and labels == (Path(given).name,)
+    if is_array(given):
+        array = np.asarray(given)
+        if array.dtype != np.uint8 or array.ndim not in (3, 4) or array.shape[-1] != 3 or not array.size:
+            raise InputError(name, f" are {array.dtype} {array.shape}", accepted=SHAPES)
+        if array.ndim == 3:
+            return iter([(name, array)]), True
+        return ((_item(name, index), picture) for index, picture in enumerate(array)), False
+    if not isinstance(given, Sequence):
+        remedy = "give them to `stream`" if isinstance(given, Iterable) and str(name) == "pictures" else ""
+        accepted = "a uint8 array or a path, or a sequence of them"
+        raise InputError(name, f" are {type(given).__name__}", accepted=accepted, remedy=remedy)
+    if not given:
+        raise InputError(name, " are empty", accepted="one picture or more")
+    return _of_sequence(given, name), False
+
+
+def _item(name: Part, index: int) -> Part:
+    return Argument(f"{name.name}[{index}]") if isinstance(name, Argument) else f"{name}[{index}]"
+
+
+def _labelled(
+    source: str | Path, labels: tuple[str, ...], pictures: Iterable[np.ndarray]
+) -> Iterator[tuple[Part, np.ndarray]]:
+    return ((f"{source}: {label}", picture) for label, picture in zip(labels, pictures, strict=True))
+
+
+def _of_sequence(given: Sequence[Picture], name: Part) -> Iterator[tuple[Part, np.ndarray]]:
+    for index, one in enumerate(given):
+        item = _item(name, index)
+        pictures, single = pictures_of(one, item)
+        if not single:
+            raise InputError(item, " are several pictures", accepted="one picture, uint8 (rows, columns, 3) or a path")
+        yield from pictures

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reads pictures of a sensor onto its grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tactile_depth.base.errors import Argument, InputError, Part
+from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler
+from tactile_depth.pictures.pictures import Pictures, pictures_of
+from tactile_depth.sensor.sensor import Sensor
+
+
+class Reader:
+    """Reads pictures of a sensor onto a grid.
+
+    Attributes
+    ----------
+    sensor : Sensor
+        With the pixel pitch of its camera.
+    """
+
+    def __init__(self, sensor: Sensor, grid: tuple[int, int]) -> None:
+        self.sensor, self._grid = sensor, grid
+        self._samplers: dict[tuple[int, int], GridSampler] = {}
+
+    def pictures(self, given: Pictures, name: Part) -> tuple[Iterator[tuple[Part, np.ndarray]], bool]:
+        """Return frames on the grid, uint8 (rows, columns, 3), each with its name, and True for a single picture.
+
+        Raises
+        ------
+        InputError
+            They are no pictures of the sensor's camera.
+        """
+        read, single = pictures_of(given, name)
+        return ((each, self._on_grid(picture, each)) for each, picture in read), single
+
+    def reference(self, given: Pictures, name: Argument, largest_log2: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return 1, 2, 4 .. 2**largest_log2 pictures, as given and on the grid, uint8 (frames, rows, columns, 3).
+
+        Raises
+        ------
+        InputError
+            Their number is not accepted, their sizes differ, or they are no pictures of the sensor's camera.
+        """
+        read = list(pictures_of(given, name)[0])
+        power_of_two_of(len(read), largest_log2, name)
+        frames = np.stack([self._on_grid(picture, each) for each, picture in read])
+        rows, columns, _ = read[0][1].shape
+        for each, picture in read:
+            if picture.shape[:2] != (rows, columns):
+                size = f"{picture.shape[1]} x {picture.shape[0]}"
+                problem = f": {size} pixels (columns x rows), but the first picture had {columns} x {rows}"
+                raise InputError(each, problem, remedy="give pictures of one size")
+        return np.stack([picture for _, picture in read]), frames
+
+    def _on_grid(self, picture: np.ndarray, name: Part) -> np.ndarray:
+        size = (picture.shape[0], picture.shape[1])
+        if size not in self._samplers:
+            self.sensor.zoom(size, name)
+            if self.sensor.camera is None and self._samplers:
+                first = next(iter(self._samplers))[::-1]
+                problem = f": {size[1]} x {size[0]} pixels (columns x rows), but the first picture had {first}"
+                raise InputError(name, problem, remedy="give pictures of one size")
+            self._samplers[size] = grid_sampler(name, size, self._grid)
+        return self._samplers[size].frame(picture)
+
+
+def power_of_two_of(count: int, largest_log2: int, name: Argument) -> None:
+    """Raise InputError unless the hardware averages so many pictures."""
+    if count.bit_count() != 1 or count > 1 << largest_log2:
+        problem = f": {count} pictures: the hardware averages 1, 2, 4, .. {1 << largest_log2}"
+        raise InputError(name, problem, remedy="give so many")

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Presets, the choices that a configuration starts from: the published pipeline, a real sensor, and its chip."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Literal, cast
+
+from tactile_depth.chip.configuration import Configuration
+
+Solver = Literal["tridiagonal", "spectral"]
+Boundary = Literal["neumann", "dirichlet"]
+Model = Literal["lut", "quadratic", "cubic"]
+
+
+@dataclass(frozen=True)
+class Preset:
+    """Choices for everything that is not named.
+
+    Attributes
+    ----------
+    solver, boundary, model, calibration : str
+    grid : (rows, columns)
+    zero_offset : bool
+        Colours are relative to a reference, and the depth without contact is subtracted.
+    light_gains : bool
+        A gain for each colour follows the light.
+    words : dict
+        Word lengths and depth range, as arguments of `td.Pipeline`; by default those of `td.Pipeline`.
+    """
+
+    solver: Solver
+    boundary: Boundary
+    model: Model
+    calibration: str
+    grid: tuple[int, int]
+    zero_offset: bool
+    light_gains: bool
+    words: dict[str, float] = field(default_factory=dict)
+
+
+PUBLISHED = Preset(
+    solver=cast(Solver, Configuration.solver),
+    boundary="neumann" if Configuration.neumann else "dirichlet",
+    model=cast(Model, Configuration.gradient_model),
+    calibration="synthetic",
+    grid=(Configuration.columns, Configuration.columns),
+    zero_offset=Configuration.zero_offset,
+    light_gains=Configuration.light_gains,
+)
+"""The pipeline of the published design: colours as they are sent, and a table of slopes."""
+SENSOR = Preset("tridiagonal", "neumann", "cubic", "gelsight-mini", (96, 128), zero_offset=True, light_gains=True)
+"""A real sensor: colours relative to a reference and to its light, and the whole picture of a camera of 4:3."""
+CHIP = replace(SENSOR, words={"data_width": 15, "coefficient_width": 10, "gain_width": 16, "depth_range_mm": 2.0})
+"""A real sensor with the shortest words that add a tenth to the error of its calibration, as `make tune TOLERANCE=auto
+DEPTH_RANGE=2 TARGET=ecp5` chose them on 45 presses of a GelSight Mini."""
+PRESETS = {"published": PUBLISHED, "sensor": SENSOR, "chip": CHIP}
