@@ -16,8 +16,9 @@ from typing import Any
 import cocotb
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.chip.configuration import COLUMNS, ROWS, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import frame_latency
+from tactile_depth.chip.limits import COLUMNS, ROWS
 from tactile_depth.chip.registers.register_map import MAP
 from tactile_depth.chip.video.frame_guard import FAULTS
 from tb import structs

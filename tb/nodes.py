@@ -10,8 +10,9 @@ import numpy as np
 from cocotb.triggers import FallingEdge, RisingEdge
 
 from tactile_depth.chip.common.td_node_map import entries_per_node, table_entries
-from tactile_depth.chip.configuration import Configuration, gain_fraction
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import Format
+from tactile_depth.chip.limits import gain_fraction
 from tb.pins import Driver, by_name
 from tb.stream import parameters, places
 from tb.table_bus import READ_CLOCKS, TO_TABLE, TableBus

@@ -12,7 +12,7 @@ from cocotb.task import bridge, resume
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.registers.axil_port import Response
 from tactile_depth.chip.table_entries import table_entries
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 from tb.settings import RUN
 from tb.tactile_depth.bench import COMMIT, started
 

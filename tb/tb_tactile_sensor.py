@@ -16,7 +16,7 @@ from tactile_depth.chip.latency import last_word_to_first_depth
 from tactile_depth.chip.registers.axil_port import Response
 from tactile_depth.chip.registers.register_map import CAMERA_MAP, CAMERA_REGISTERS, MAP, REGISTERS
 from tactile_depth.chip.tactile_depth import tactile_depth
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 from tb import axil
 from tb.axis import AxisMonitor, AxisSource
 from tb.camera.slots import camera_words

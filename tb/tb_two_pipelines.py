@@ -13,8 +13,8 @@ from cocotb.triggers import ClockCycles, RisingEdge, gather
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import first_depth_latency
 from tactile_depth.chip.tactile_depth import tactile_depth
-from tactile_depth.sensor.built_in import synthetic
 from tactile_depth.sensor.sensor import Sensor
+from tactile_depth.sensor.synthetic import synthetic
 from tb.axis import AxisMonitor, AxisSource, video
 from tb.pixels import unpack
 from tb.settings import RUN

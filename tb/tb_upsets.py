@@ -23,7 +23,7 @@ from commands.common.repository import cores
 from tactile_depth.chip.latency import last_pixel_to_first_depth
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.tactile_depth import tactile_depth
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 from tb.axis import video
 from tb.pixels import pack
 from tb.settings import RUN

@@ -22,7 +22,7 @@ from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.tactile_depth import solve
 from tactile_depth.chip.video.frame_guard import FAULTS, Guarded, Word, frame_guard
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 from tb.axis import BREAKS, SILENT, WITHOUT_START, broken, faults_of, positions, video
 from tb.pixels import pack, unpack
 

@@ -14,9 +14,9 @@ import pytest
 
 from tactile_depth.chip.poisson import cores
 from tactile_depth.depth.pipeline import Pipeline
-from tactile_depth.sensor.built_in import synthetic
 from tactile_depth.sensor.scenes import Press, render
 from tactile_depth.sensor.sensor import Camera
+from tactile_depth.sensor.synthetic import synthetic
 
 CAMERA = (240, 320)  # picture size of a GelSight Mini
 

@@ -16,15 +16,15 @@ import pytest
 import tactile_depth as td
 from commands.common.repository import ROOT
 from tactile_depth.chip.c_header import FILE, c_header
-from tactile_depth.chip.configuration import CORRECTION_WIDTH, POLYNOMIAL, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.hardware_files import write_hardware
+from tactile_depth.chip.limits import CORRECTION_WIDTH, CUBIC, POLYNOMIAL
 from tactile_depth.chip.registers.axil_port import Response
 from tactile_depth.chip.registers.axil_registers import AxilRegisters, Build, Events
 from tactile_depth.chip.registers.register_map import REGISTERS, TABLES
 from tactile_depth.chip.registers.table_banks import COMMIT
 from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters, write_roms
-from tactile_depth.sensor.built_in import synthetic
-from tactile_depth.sensor.sensor import CUBIC
+from tactile_depth.sensor.synthetic import synthetic
 from tb import tb_c_header
 from tb.structures import Structure
 

@@ -14,10 +14,11 @@ import pytest
 
 from tactile_depth.base.errors import InputError, InputWarning
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.sensor.built_in import load, synthetic
+from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import BUILT_IN, CAMERA_KEYS, FOLDER
 from tactile_depth.sensor.scenes import GAIN, LIGHTS, REST
 from tactile_depth.sensor.sensor import BITS_PER_CHANNEL, FORMAT_VERSION, Camera, Sensor
+from tactile_depth.sensor.synthetic import synthetic
 
 OLD = {"gradient": np.zeros((4, 4, 4, 2)), "pixel_pitch_mm": 0.05}
 CAMERA = {

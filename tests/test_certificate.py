@@ -15,8 +15,9 @@ from commands.study.certificate import certify, deepest, node_format, slope_resp
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.bounds import difference_bounds
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import DEPTH_HEADROOM, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import Format
+from tactile_depth.chip.limits import DEPTH_HEADROOM
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.tactile_depth import solve
 from tactile_depth.depth import reference

@@ -14,8 +14,8 @@ from tactile_depth.base import files
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import tactile_depth
-from tactile_depth.sensor.built_in import synthetic
 from tactile_depth.sensor.scenes import SCENES, render
+from tactile_depth.sensor.synthetic import synthetic
 
 CODES = 5_000_000  # codes of each job, rounded up to whole frames
 MODEL_PIXELS = 1 << 20  # pixels that go through the models at a time

@@ -15,7 +15,8 @@ from tactile_depth.base.errors import InputError
 from tactile_depth.chip.bounds import bounds
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import DEPTH_HEADROOM, Configuration, Format
+from tactile_depth.chip.configuration import Configuration, Format
+from tactile_depth.chip.limits import DEPTH_HEADROOM
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.poisson.spectral_solver import spectral_solver
 from tactile_depth.chip.poisson.transform.dst_forward import dst_forward

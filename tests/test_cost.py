@@ -17,7 +17,7 @@ from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.transform.sdf_fft import twiddle_stages
 from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters, write_roms
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 
 DEVICES = {device.name: device for device in (XCZU7EV, ECP5)}
 FITTED, CHECKED = 0.035, 0.06  # largest difference of LUTs of logic

@@ -25,7 +25,8 @@ from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate.press_folder import read_presses
 from tactile_depth.pictures.frames import load_frames
 from tactile_depth.sensor import calibration_file
-from tactile_depth.sensor.built_in import load, synthetic
+from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.synthetic import synthetic
 from tb.settings import RUN
 
 EXAMPLES, FULL = 40, 50

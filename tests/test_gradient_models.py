@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.common.td_node_map import node_map
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIAL, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.flat_field import (
     captured_gains,
     dark_pixels,
@@ -34,11 +34,12 @@ from tactile_depth.chip.gradient.polynomial_gradient import (
     polynomial_gradient,
     polynomial_words,
 )
+from tactile_depth.chip.limits import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIAL
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.tactile_depth import slope_codes, slope_tables, solve
 from tactile_depth.depth import reference
-from tactile_depth.sensor.built_in import synthetic
 from tactile_depth.sensor.sensor import CORRECTIONS, Sensor
+from tactile_depth.sensor.synthetic import synthetic
 
 SHAPES = [
     {"columns": 16},

@@ -13,11 +13,12 @@ from scipy.linalg import solve_banded
 from tactile_depth.chip import latency
 from tactile_depth.chip.common.td_axis_skid import CAPACITY, AxisSkid
 from tactile_depth.chip.common.td_rom import rom
-from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.threshold_comparator import ThresholdComparator
 from tactile_depth.chip.depth.frame_output import Clock, frame_output
 from tactile_depth.chip.depth.frame_tags import FrameTags
 from tactile_depth.chip.gradient.gradient_lookup import gradient_codes, gradient_lookup
+from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.chip.poisson.back_substitution import back_substitution
 from tactile_depth.chip.poisson.forward_elimination import forward_elimination
 from tactile_depth.chip.poisson.frame_stack import frame_stack
@@ -36,8 +37,9 @@ from tactile_depth.chip.rom_files import pack, write_words
 from tactile_depth.chip.tactile_depth import solve, tactile_depth, top_parameters
 from tactile_depth.chip.video.frame_guard import Word, frame_guard
 from tactile_depth.depth import reference
-from tactile_depth.sensor.built_in import load, synthetic
+from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.sensor import Sensor
+from tactile_depth.sensor.synthetic import synthetic
 
 SEED = st.integers(0, 2**32 - 1)
 SIZE = st.sampled_from([8, 16, 32, 64])

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.depth.reference import depth, eigenvalues, slopes, solve
-from tactile_depth.sensor.built_in import synthetic
 from tactile_depth.sensor.scenes import dome, photograph
 from tactile_depth.sensor.sensor import Sensor
+from tactile_depth.sensor.synthetic import synthetic
 
 
 def second_difference(z: np.ndarray, axis: int) -> np.ndarray:

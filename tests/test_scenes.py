@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.depth import reference
-from tactile_depth.sensor.built_in import synthetic
 from tactile_depth.sensor.scenes import (
     BENCH,
     NOISE,
@@ -24,6 +23,7 @@ from tactile_depth.sensor.scenes import (
     scene_pixel_pitch_mm,
     slopes_of,
 )
+from tactile_depth.sensor.synthetic import synthetic
 
 SIZES = (16, 256)
 

@@ -14,10 +14,12 @@ from tactile_depth.chip.rom_files import pack, unsigned, write_words
 from tactile_depth.chip.tactile_depth import tactile_depth, write_roms
 from tactile_depth.depth.reference import slopes_of
 from tactile_depth.pictures.frames import camera_scale, load_frames, on_grid, read_picture
+from tactile_depth.pictures.identify import identify
 from tactile_depth.pictures.reference_check import check_reference
-from tactile_depth.sensor.built_in import identify, load, synthetic
+from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.scenes import render
 from tactile_depth.sensor.sensor import Sensor, lighting
+from tactile_depth.sensor.synthetic import synthetic
 from tests.drawn_light import light_of
 from tests.real_data import FOLDER, needs_real_data
 

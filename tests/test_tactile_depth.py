@@ -8,9 +8,10 @@ from typing import Any
 import pytest
 
 from formal.entries import Cone
-from tactile_depth.chip.configuration import ULTRA, Configuration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import ULTRA
 from tactile_depth.chip.tactile_depth import config_value, top_parameters, write_roms
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 from tb.settings import RUN
 from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
 

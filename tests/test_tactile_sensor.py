@@ -7,7 +7,7 @@ from typing import Any
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
 PIPELINE: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal", "bits_per_channel": 2}

@@ -4,8 +4,8 @@
 //   camera -> dvp_receive -> tactile_sensor -> serial line (ulx3s_system)
 //
 // The wrapper tactile_sensor_ulx3s has the front end inside, and its registers. After a reset camera_setup brings up
-// the camera, with the list camera.hex of models/tactile_depth/chip/camera/register_lists.py. A picture that is malformed,
-// or cut short because its bytes found no room, is dropped whole and counted in FRAMES_DROPPED.
+// the camera, with the list camera.hex of models/tactile_depth/chip/camera/register_lists.py. A picture that is
+// malformed, or cut short because its bytes found no room, is dropped whole and counted in FRAMES_DROPPED.
 // led[0]: contact; led[1] changes with every record; led[2]: the camera is set up; led[3]: it did not answer as it
 // should; led[4] changes when pictures were lost; led[5]: irq, as INTERRUPT_MASK asks; led[7]: the clock is locked.
 // btn[1]: reset. Models: models/tactile_depth/chip/camera/, and see ulx3s_system.

@@ -18,7 +18,8 @@ from commands.study.certificate import deepest
 from tactile_depth.base.errors import InputError
 from tactile_depth.base.npy import is_file
 from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoice, CameraConfiguration
-from tactile_depth.chip.configuration import COLUMNS, GRADIENT_MODELS, Configuration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import COLUMNS, GRADIENT_MODELS
 from tactile_depth.pictures.frames import REST_SCENE
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import BUILT_IN

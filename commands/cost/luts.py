@@ -21,7 +21,8 @@ from scipy.optimize import nnls
 
 from commands.cost.devices import Device
 from commands.cost.parts import Memory, parts
-from tactile_depth.chip.configuration import CORRECTION_WIDTH, Configuration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import CORRECTION_WIDTH
 from tactile_depth.chip.poisson.transform.sdf_fft import stages
 from tactile_depth.chip.tactile_depth import top_parameters
 

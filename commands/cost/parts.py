@@ -13,21 +13,21 @@ from dataclasses import dataclass, replace
 
 from commands.cost.devices import BLOCK, BY_SIZE, DISTRIBUTED, DISTRIBUTED_BITS
 from tactile_depth.chip.common import td_node_map
-from tactile_depth.chip.configuration import (
+from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
+from tactile_depth.chip.limits import (
     COLOUR_COEFFICIENT,
     CORRECTION_WIDTH,
+    CUBIC,
     DEVIATION,
     GUARD_BITS,
     LIGHT_GAIN,
     POLYNOMIAL,
     RATIO,
 )
-from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.poisson.transform import wide_corner_turn
 from tactile_depth.chip.poisson.transform.sdf_fft import stages
 from tactile_depth.chip.poisson.transform.wide_dst_inverse import latency as wide_inverse_latency
 from tactile_depth.chip.poisson.transform.wide_fft import constant_paths
-from tactile_depth.sensor.sensor import CUBIC
 
 LONGEST_SHIFT = 4  # delays up to this are registers, hdl/common/td_delay_line.sv
 LOOP = 4  # clocks of wide_substitution.sv from a word to the product with it and back

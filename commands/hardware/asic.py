@@ -25,7 +25,7 @@ import numpy as np
 from tqdm import tqdm
 
 from commands.common import recorded, repository, run_request, variables
-from commands.common.markdown import table
+from commands.common.tabular import table
 from commands.cost.cost import MACRO_BITS
 from commands.hardware import estimate, gate_sim, memory_model, synthesis, yosys
 from commands.hardware.gate_power import DATA, NAMES, power_of, typical

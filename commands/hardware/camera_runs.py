@@ -14,7 +14,7 @@ from commands.hardware.targets import TARGETS
 from tactile_depth.base import files
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 
 PICTURE, CONFIG = (480, 640), Configuration(columns=128, rows=96, solver="tridiagonal")
 

@@ -15,10 +15,11 @@ try:
     import yaml
 
     from commands.common import run_request, variables, wrapper
-    from commands.common.zero_offset import untouched, zero_of
+    from commands.common.zero_offset import untouched
     from commands.hardware import synth, synthesis
     from tactile_depth.base.errors import InputError
     from tactile_depth.chip.tactile_depth import top_parameters, write_roms
+    from tactile_depth.depth.twin import Twin
 except ImportError as error:
     sys.exit(f"tables of tactile_depth: {error} ({sys.executable}): run `make setup`, put {ROOT}/.venv/bin on PATH")
 
@@ -35,7 +36,7 @@ def generate(description: Path, folder: Path) -> None:
             raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(synth.CONFIGURING)}")
     request = run_request.parse([f"{key}={value}" for key, value in values.items()], preset="sensor", frames="")
     frames, calibration, config = synthesis.design(request)
-    write_roms(folder, calibration, config, zero_of(untouched(request, frames), calibration, config))
+    write_roms(folder, calibration, config, Twin(calibration, config, untouched(request, frames)).zero)
     tables = [rom.name for rom in sorted(folder.glob("*.hex"))]
     path = wrapper.write(folder, module, top_parameters(config, calibration.pixel_pitch_mm), f"{module}/")
     core = {

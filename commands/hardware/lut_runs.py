@@ -13,7 +13,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from commands.common.markdown import compact
+from commands.common.tabular import compact
 from commands.cost.cost import cost
 from commands.cost.luts import RUNS, grouped, logic, memories
 from commands.hardware import synth, synthesis, targets

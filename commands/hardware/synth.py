@@ -29,8 +29,8 @@ from typing import Any
 from tqdm import tqdm
 
 from commands.common import published, recorded, repository, run_request, variables
-from commands.common.markdown import table
 from commands.common.signals import threads
+from commands.common.tabular import table
 from commands.cost.cost import cost
 from commands.hardware import ecp5, synthesis, yosys
 from commands.hardware.fpga_memory import BLOCKS_PER_ULTRA, TOP, Memory, memories, path_of
@@ -38,7 +38,8 @@ from commands.hardware.targets import DEFAULT_TARGET, LOGIC, MEMORY, SHIFT, TARG
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.camera_configuration import CameraConfiguration
-from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.chip.tactile_depth import hdl_parameters
 from tactile_depth.sensor.sensor import Sensor
 

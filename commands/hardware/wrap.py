@@ -13,12 +13,13 @@ import os
 import sys
 
 from commands.common import repository, run_request, variables, wrapper
-from commands.common.zero_offset import untouched, zero_of
+from commands.common.zero_offset import untouched
 from commands.hardware import synth, synthesis
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip import c_header
 from tactile_depth.chip.tactile_depth import top_parameters, write_roms
+from tactile_depth.depth.twin import Twin
 
 
 def main() -> None:
@@ -33,7 +34,7 @@ def main() -> None:
         request = run_request.of_values(values, run_request.WITH_CAMERA, "chip", "")
         out = request.out or repository.ROOT / "build" / "wrap" / name
         frames, calibration, config = synthesis.design(request)
-        zero = zero_of(untouched(request, frames), calibration, config)
+        zero = Twin(calibration, config, untouched(request, frames)).zero
         with files.workspace(out) as work:
             parameters = top_parameters(config, calibration.pixel_pitch_mm, frames.camera)
             path = wrapper.write(work, name, parameters, tables)

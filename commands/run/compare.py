@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactile_depth.chip.configuration import DATA_WIDTHS, Configuration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import DATA_WIDTHS
 
 WARNED_RMS_PERCENT = 1.0  # mean RMS error to double precision, of the peak; the default widths stay below 0.001
 OF_COLOURS = ("flat_field", "polynomial_gradient")  # nodes before the solver, which no depth range widens

@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import markdown, published, repository, variables
+from commands.common import published, repository, tabular, variables
 from commands.common import simulator as simulation
 from commands.common.machine import machine
 from commands.common.progress import following
@@ -37,8 +37,9 @@ from commands.run.reflex_model import Draws, Request, Setup, Times
 from commands.run.reflex_tables import sentences, tables
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
-from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_pixel_to_first_depth
+from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.chip.tactile_depth import tactile_depth
 from tactile_depth.sensor.scenes import SENSOR_WIDTH_MM
 from tactile_depth.sensor.sensor import Sensor
@@ -333,7 +334,7 @@ def difference(near: dict[str, Any], setup: Setup) -> dict[str, float | None]:
 
 
 def show(document: dict[str, Any]) -> str:
-    parts = [f"{title}\n\n{markdown.table(head, rows)}" for title, head, rows in tables(document).values()]
+    parts = [f"{title}\n\n{tabular.table(head, rows)}" for title, head, rows in tables(document).values()]
     rows, columns = document["grid"]
     machine = f"{document['machine']} (load {document['load_before']:.1f} before)"
     setting = f"{rows} x {columns}, seed {document['seed']}, {machine}"

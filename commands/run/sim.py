@@ -19,7 +19,7 @@ from commands.common import repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.common.progress import following
 from commands.common.run_request import WITH_CAMERA, Request, announce, check_grid, configure, load_sensor, parse
-from commands.common.zero_offset import untouched, zero_of
+from commands.common.zero_offset import untouched
 from commands.run import bench
 from commands.run.compare import compare, warnings
 from commands.run.draw import draw_depth
@@ -29,48 +29,14 @@ from commands.study.accuracy import errors
 from tactile_depth.base import files
 from tactile_depth.chip import latency
 from tactile_depth.chip.camera_configuration import CameraChoice
-from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.depth.zero_offset import exact_zero
-from tactile_depth.chip.gradient.light_gains import Light, LightFilter
 from tactile_depth.chip.registers.axil_registers import GAINS
-from tactile_depth.chip.tactile_depth import light_of, slope_tables, tactile_depth
-from tactile_depth.depth import reference
+from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, load_frames, on_grid
 from tactile_depth.sensor.sensor import Sensor
 
 RESULTS = ("depth.npy", "depth.png", "report.json")
 DUMPS = (".vcd", ".fst")
-
-
-def exact_depth(
-    frames: np.ndarray,
-    no_contact: np.ndarray | None,
-    calibration: Sensor,
-    config: Configuration,
-    light: np.ndarray | None,
-) -> np.ndarray:
-    """Return the depth in double precision, in grid pixels, rows from the top; `light`: light gains of the frames."""
-    depth = reference.depth_of(frames, calibration, config, light=light)
-    if no_contact is None:
-        return depth
-    down = -1 if config.solver == "tridiagonal" else 1  # blocks are counted as depth leaves
-    at_rest_light = light_of(no_contact, slope_tables(calibration, config), config)
-    at_rest = reference.depth_of(no_contact, calibration, config, light=at_rest_light)[..., ::down, :]
-    return exact_zero(depth[..., ::down, :], at_rest, config)[..., ::down, :]
-
-
-def light_of_stream(frames: np.ndarray, calibration: Sensor, config: Configuration, repeat: int) -> np.ndarray | None:
-    """Return the light gains of frames that are streamed `repeat` times, int64 (repeat, frames, 3); None without.
-
-    The stream begins with the gains of its first picture, which the registers get, and goes on by the filter.
-    """
-    if not config.light_gains:
-        return None
-    tables = slope_tables(calibration, config)
-    first = light_of(frames[0], tables, config)
-    stream = LightFilter(Light.of(config), first)
-    return np.array([light_of(frames, tables, config, stream) for _ in range(repeat)])
 
 
 def simulate(
@@ -82,7 +48,7 @@ def simulate(
     zero: np.ndarray | None = None,
     light: np.ndarray | None = None,
 ) -> bench.Played:
-    """Run the bench in `folder` with a progress bar; `light` is that of `light_of_stream`."""
+    """Run the bench in `folder` with a progress bar; `light` is that of `Twin.light_of_stream`."""
     total = len(frames.pixels) * request.repeat
     pixels = config.rows * config.columns
     if frames.camera is None or frames.words is None:
@@ -129,19 +95,15 @@ def run(request: Request, frames: Frames | None = None) -> int:
         frames = load_frames(request.frames, grid, request.reference, request.seed, request.press, request.camera)
     calibration = on_grid(calibration, frames)
     config = configure(request, calibration)
-    light = light_of_stream(frames.pixels, calibration, config, request.repeat)
+    twin = Twin(calibration, config, untouched(request, frames))
+    codes, light, clips = twin.played(frames.pixels, request.repeat)
     light_once = None if light is None else light[0]
     flagged = flags(frames.pixels, calibration, config, request.reference, light_once)
-    no_contact = untouched(request, frames)
-    zero = zero_of(no_contact, calibration, config)
     out = request.out or default_folder(request, config)
     with files.workspace(out, RESULTS) as work:
-        played = simulate(request, config, frames, calibration, work, zero, light)
-        codes, clips = expected(frames.pixels, calibration, config, request.repeat, zero, light)
-        reference_px = exact_depth(frames.pixels, no_contact, calibration, config, light_once)
-        rtl_codes = played.codes.reshape(request.repeat, *codes.shape[-3:])
-        if config.solver == "tridiagonal":  # the bottom row leaves first; results are in the order of the input
-            rtl_codes, codes = rtl_codes[..., ::-1, :], codes[..., ::-1, :]
+        played = simulate(request, config, frames, calibration, work, twin.zero, light)
+        reference_px = twin.exact_px(frames.pixels, light_once)
+        rtl_codes = twin.upright(played.codes.reshape(request.repeat, *codes.shape[-3:]))
         difference = compare(rtl_codes, codes)
         percent = errors(rtl_codes[0] * config.depth_lsb_px, reference_px)
         result = work / "result"
@@ -188,30 +150,6 @@ def run(request: Request, frames: Frames | None = None) -> int:
     for line in report["warnings"]:
         print(f"make sim: warning: {line}", file=sys.stderr)
     return variables.MISMATCH if difference.count or differences else variables.EQUAL
-
-
-def expected(
-    frames: np.ndarray,
-    calibration: Sensor,
-    config: Configuration,
-    repeat: int,
-    zero: np.ndarray | None,
-    light: np.ndarray | None,
-) -> tuple[np.ndarray, dict[str, int]]:
-    """Return the codes of frames that are streamed `repeat` times, by the model, and the values clipped by node.
-
-    Codes are (repeat, frames, rows, columns); without light gains every repetition has the same, and they are (frames,
-    rows, columns).
-    """
-    monitor = Monitor()
-    if light is None:
-        codes = tactile_depth(frames, calibration, config, monitor, zero=zero)
-    else:
-        tables = slope_tables(calibration, config)
-        every = np.broadcast_to(frames, (repeat, *frames.shape))
-        codes = tactile_depth(every, calibration, config, monitor, zero=zero, tables=tables, light=light)
-        repeat = 1
-    return codes, {node: count * repeat for node, count in sorted(monitor.saturations.items())}
 
 
 def default_folder(request: Request, config: Configuration) -> Path:
@@ -262,10 +200,9 @@ def camera_report(request: Request, config: Configuration, frames: Frames, codes
     plain = replace(request, camera=CameraChoice("rgb888", window=camera.crop))
     size = (config.rows, config.columns)
     as_rgb = load_frames(request.frames, size, request.reference, request.seed, request.press, plain.camera)
-    calibration = on_grid(load_sensor(request), as_rgb)
-    light = light_of_stream(as_rgb.pixels, calibration, config, 1)
-    once = None if light is None else light[0]
-    reference_px = exact_depth(as_rgb.pixels, untouched(plain, as_rgb), calibration, config, once)
+    twin = Twin(on_grid(load_sensor(request), as_rgb), config, untouched(plain, as_rgb))
+    light = twin.light_of_stream(as_rgb.pixels)
+    reference_px = twin.exact_px(as_rgb.pixels, None if light is None else light[0])
     percent = errors(codes * config.depth_lsb_px, reference_px)
     lost = {f"camera_{key}": values * request.repeat for key, values in percent.items()}
     return {**run_request.described_camera(camera), **lost}

@@ -20,14 +20,12 @@ from commands.study.certificate import deepest
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.tactile_depth import light_of, slope_tables, tactile_depth
 from tactile_depth.depth import reference
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.depth.twin import Twin
 from tactile_depth.sensor.scenes import render, scene_pixel_pitch_mm
-from tactile_depth.sensor.sensor import Sensor
+from tactile_depth.sensor.synthetic import synthetic
 
 SMALLEST_PEAK_PX = 0.1  # the error in % of the peak is not defined below this peak
-PIXELS_AT_ONCE = 1 << 17  # pixels of a batch of frames, whose arrays stay in a cache
 SCENE, SEED = "bench", 1  # the scene that a sweep measures, and the seed of its noise
 
 
@@ -63,30 +61,6 @@ def errors(depth_px: np.ndarray, reference_px: np.ndarray) -> dict[str, list[flo
         for values in (rms, largest)
     ]
     return {"rms_percent_of_peak": percent[0], "max_percent_of_peak": percent[1]}
-
-
-def depth_px(
-    frames: np.ndarray,
-    config: Configuration,
-    calibration: Sensor,
-    monitor: Monitor | None = None,
-    zero: np.ndarray | None = None,
-) -> np.ndarray:
-    """Return the depth of frames by the bit-accurate model in grid pixels, rows in the order of the input.
-
-    `zero` is that of `tactile_depth`.
-    """
-    step = max(1, PIXELS_AT_ONCE // (config.rows * config.columns))
-    tables = slope_tables(calibration, config)
-    parts = []
-    for i in range(0, len(frames), step):
-        part = frames[i : i + step]
-        light = light_of(part, tables, config)
-        parts.append(tactile_depth(part, calibration, config, monitor, zero=zero, tables=tables, light=light))
-    codes = np.concatenate(parts)
-    if config.solver == "tridiagonal":  # this solver puts the bottom row out first
-        codes = codes[..., ::-1, :]
-    return codes * config.depth_lsb_px
 
 
 @dataclass(frozen=True)
@@ -179,7 +153,7 @@ def measure(choices: dict[str, Any]) -> dict[str, str]:
         return row | {"problem": str(error)}
     bench, pitch = _bench(config.columns, config.neumann), scene_pixel_pitch_mm(config.columns)
     monitor = Monitor()
-    depth = depth_px(bench.frames, config, synthetic(), monitor)
+    depth = Twin(synthetic(), config).depth_px(bench.frames, monitor)
     percent = errors(depth, bench.reference)
     rms = np.array(percent["rms_percent_of_peak"], float)
     largest = np.array(percent["max_percent_of_peak"], float)

@@ -4,8 +4,8 @@
 `python -m commands.study.architecture` writes them between the two marks of the page, from the models.
 """
 
-from commands.common.markdown import compact, with_tables
 from commands.common.repository import ROOT
+from commands.common.tabular import compact, with_tables
 from commands.cost.cost import KINDS, Cost, cost
 from tactile_depth.chip import latency
 from tactile_depth.chip.configuration import Configuration

@@ -19,7 +19,7 @@ import scipy.fft
 
 from tactile_depth.base import files
 from tactile_depth.depth import reference
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 
 matplotlib.use("Agg")
 

@@ -38,16 +38,17 @@ import matplotlib
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import markdown, published, recorded, repository, variables
+from commands.common import published, recorded, repository, tabular, variables
 from commands.common.machine import machine
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
-from tactile_depth.chip.configuration import COLUMNS, Configuration, most_lanes
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
+from tactile_depth.chip.limits import COLUMNS, most_lanes
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.depth import reference
-from tactile_depth.sensor.built_in import synthetic
 from tactile_depth.sensor.scenes import render
+from tactile_depth.sensor.synthetic import synthetic
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
@@ -431,7 +432,7 @@ def plot(path: Path, document: dict[str, Any], rows: Sequence[dict[str, Any]]) -
 
 
 def show(document: dict[str, Any]) -> str:
-    parts = [f"{title}\n\n{markdown.table(head, rows)}" for title, head, rows in tables(document)]
+    parts = [f"{title}\n\n{tabular.table(head, rows)}" for title, head, rows in tables(document)]
     return "\n\n".join([setting(document), *parts, "\n".join(sentences(document))])
 
 

@@ -31,7 +31,7 @@ from scipy.ndimage import distance_transform_edt
 from tqdm import tqdm
 
 import tactile_depth as td
-from commands.common import markdown, recorded, repository, variables
+from commands.common import recorded, repository, tabular, variables
 from commands.common.run_request import camera_choice
 from commands.run.calibrate import data_folder
 from commands.study.accuracy import VERSION
@@ -54,7 +54,7 @@ from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate.fitting import Fit, fit_presses
 from tactile_depth.calibrate.presses import AT_REST, GridPresses, PressPictures, camera_pitch_mm, gather, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
-from tactile_depth.chip.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS
+from tactile_depth.chip.limits import COEFFICIENT_WIDTHS, DATA_WIDTHS
 from tactile_depth.depth.pipeline import BOUNDARIES
 from tactile_depth.pictures.frames import read_picture
 from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
@@ -388,7 +388,7 @@ def run(request: Request) -> None:
         document = {"setting": used, "without": missing, "sources": sources}
         print(f"{setting(document)}\n")
         for title, head, rows in tables(document):
-            print(f"{title}\n\n{markdown.table(head, rows)}\n")
+            print(f"{title}\n\n{tabular.table(head, rows)}\n")
         (work / RESULTS[0]).write_text(json.dumps(document, indent=1) + "\n")
         plot(work / RESULTS[1], document)
         files.replace(work, RESULTS, request.out)

@@ -16,15 +16,17 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 from tqdm import tqdm
 
-from commands.common import markdown, repository, run_request, variables
+from commands.common import repository, run_request, tabular, variables
 from commands.common import simulator as simulation
 from commands.run import sim, sim_table
 from commands.study.certificate import Node, certify, slope_response
 from tactile_depth.base import files
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import GRADIENT_MODELS, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.gradient_lookup import gradient_codes
+from tactile_depth.chip.limits import GRADIENT_MODELS
 from tactile_depth.chip.tactile_depth import tactile_depth
+from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, camera_scale
 from tactile_depth.sensor.sensor import Sensor
 
@@ -134,7 +136,7 @@ def table(nodes: list[Node]) -> str:
         form = (str(node.form.width), str(node.form.fraction), f"{node.form.limit:.5g}")
         slopes = (f"{node.slopes:.5g}", bits(node.slopes_headroom_bits))
         rows.append((node.name, *form, *slopes, f"{node.depths:.5g}", bits(node.depths_headroom_bits)))
-    return markdown.table(head, rows)
+    return tabular.table(head, rows)
 
 
 def summary(nodes: list[Node], config: Configuration, pixel_pitch_mm: float) -> list[str]:
@@ -189,18 +191,14 @@ class Streamed:
 def stream(request: run_request.Request, config: Configuration, calibration: Sensor, frames: np.ndarray) -> Streamed:
     """Send uint8 frames (frames, rows, columns, 3) through the RTL as often as the request says."""
     labels = tuple(str(index) for index in range(len(frames)))
-    monitor = Monitor()
-    model = tactile_depth(frames, calibration, config, monitor)
-    clipped = {node: count * request.repeat for node, count in sorted(monitor.saturations.items())}
+    twin = Twin(calibration, config)
+    model, _, clipped = twin.played(frames, request.repeat)
     with files.temporary() as folder:
         played = sim.simulate(request, config, Frames(frames, 1.0, "", labels), calibration, folder)
-    codes = played.codes.reshape(request.repeat, *model.shape)
+    codes = twin.upright(played.codes.reshape(request.repeat, *model.shape[1:]))
     report = {"frames": request.repeat * len(frames), "saturations": clipped, **sim_table.measure(played)}
     differences = sim_table.check_registers(played.registers, report, request.stalls)
-    exact = bool((codes == model).all())
-    if config.solver == "tridiagonal":  # this solver puts the bottom row out first
-        codes = codes[..., ::-1, :]
-    return Streamed(codes, clipped, played.registers, exact, differences)
+    return Streamed(codes, clipped, played.registers, bool((codes == model).all()), differences)
 
 
 def run(request: run_request.Request, rtl: bool = True) -> int:

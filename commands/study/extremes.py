@@ -14,24 +14,26 @@ import sys
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import markdown, repository, run_request, variables
+from commands.common import repository, run_request, tabular, variables
 from commands.common import simulator as simulation
+from commands.common.tabular import Column
 from commands.study import certify as certificate
-from commands.study import sensor_extremes, transform_noise
+from commands.study import sensor_extremes
 from commands.study.accuracy import errors
 from commands.study.certificate import certify
 from commands.study.transform_noise import BIAS, Compliance, compliance
 from tactile_depth.base import files
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import COLUMNS, ROWS, Configuration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import COLUMNS, ROWS
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.chip.tactile_depth import tactile_depth
 from tactile_depth.depth import reference
+from tactile_depth.depth.twin import Twin
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.scenes import REST, SENSOR_WIDTH_MM, Press, photograph, render
 
@@ -64,19 +66,19 @@ class Extreme:
 class Row:
     """Result of one case. Errors against double precision, in % of the peak (None without one) and in codes."""
 
-    extreme: str
-    solver: str
-    grid: str
-    data_width: int
+    extreme: Annotated[str, Column("what comes in")]
+    solver: Annotated[str, Column("solver")]
+    grid: Annotated[str, Column("grid")]
+    data_width: Annotated[int, Column("bits")]
     coeff_width: int
-    frames: int
-    rms_percent: float | None
-    max_percent: float | None
-    rms_codes: float
-    max_codes: float
-    saturations: dict[str, int]
-    flagged: bool  # sticky bit of the hardware
-    wrapped: int
+    frames: Annotated[int, Column("frames", ",")]
+    rms_percent: Annotated[float | None, Column("RMS, % of peak", ".5f")]
+    max_percent: Annotated[float | None, Column("largest, %", ".5f")]
+    rms_codes: Annotated[float, Column("RMS, codes", ",.1f")]
+    max_codes: Annotated[float, Column("largest, codes", ",.0f")]
+    saturations: Annotated[dict[str, int], Column("values clipped", tabular.counts)]
+    flagged: Annotated[bool, Column("status bit set", lambda flag: "yes" if flag else "no")]  # the sticky bit
+    wrapped: Annotated[int, Column("wrapped")]
     bit_exact: bool
     registers_agree: bool
 
@@ -240,15 +242,14 @@ def model_drift(solver: str, size: int, count: int, advance: Callable[[int], obj
     """
     config = Configuration(columns=size, solver=solver)
     calibration = load(CALIBRATION)
-    monitor = Monitor()
+    twin, monitor = Twin(calibration, config), Monitor()
     squares, largest_error, percent, wrapped = [], 0.0, [], 0
     for start in range(0, count, BATCH):
         scenes = [
             render("contacts", size, seed=start + index + 1).frames for index in range(min(BATCH, count) // 8 + 1)
         ]
         frames = np.concatenate(scenes)[: min(BATCH, count - start)]
-        codes = tactile_depth(frames, calibration, config, monitor)
-        codes = codes[..., ::-1, :] if solver == "tridiagonal" else codes
+        codes = twin.codes(frames, monitor)
         exact = reference.depth(frames, calibration)
         error = codes - exact / config.depth_lsb_px
         squares.append(np.sqrt((error**2).mean(axis=(1, 2))))
@@ -275,23 +276,6 @@ def model_drift(solver: str, size: int, count: int, advance: Callable[[int], obj
 def as_document(rows: list[Row], measured: list[Compliance]) -> dict[str, list[dict[str, Any]]]:
     """Return the content of extremes.json."""
     return {"extremes": [asdict(row) for row in rows], "compliance": [asdict(row) for row in measured]}
-
-
-HEAD = (
-    *("what comes in", "solver", "grid", "bits", "frames", "RMS, % of peak", "largest, %", "RMS, codes"),
-    *("largest, codes", "values clipped", "status bit set", "wrapped"),
-)
-
-
-def cells(row: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return a row of extremes.json as text, below HEAD."""
-    clipped = ", ".join(f"{node} {count:,}" for node, count in row["saturations"].items()) or "-"
-    return (
-        *(row["extreme"], row["solver"], row["grid"], str(row["data_width"]), f"{row['frames']:,}"),
-        *("-" if row[name] is None else f"{row[name]:.5f}" for name in ("rms_percent", "max_percent")),
-        *(f"{row['rms_codes']:,.1f}", f"{row['max_codes']:,.0f}", clipped, "yes" if row["flagged"] else "no"),
-        str(row["wrapped"]),
-    )
 
 
 def run(size: int, simulator: str, out: Path, short: bool) -> int:
@@ -328,8 +312,8 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
         if row.mean_in_standard_errors > BIAS:
             broken.append(f"{row.core}, {row.input}: the mean error is {row.mean:.5f}, a bias")
     document = as_document(rows, measured)
-    print(markdown.table(HEAD, [cells(row) for row in document["extremes"]]), end="\n\n")
-    print(markdown.table(transform_noise.HEAD, [transform_noise.cells(row) for row in document["compliance"]]))
+    print(tabular.table_of(Row, rows), end="\n\n")
+    print(tabular.table_of(Compliance, measured))
     with files.workspace(out, RESULTS) as work:
         (work / RESULTS[0]).write_text(json.dumps(document, indent=1) + "\n")
         files.replace(work, RESULTS, out)

@@ -17,17 +17,19 @@ from typing import Any
 import numpy as np
 
 from commands.common import published, recorded, run_request, variables
-from commands.common.markdown import compact
 from commands.common.repository import ROOT
+from commands.common.tabular import compact
+from commands.common.zero_offset import untouched
 from commands.cost.cost import CAMERAS, cost
 from commands.hardware import estimate, lut_runs, memory_model, synth
 from commands.hardware.targets import DEFAULT_TARGET, TARGETS
-from commands.run import sim
 from commands.run.sim_table import coefficient_words
 from commands.study import baselines, budget, trade_front
 from commands.study.accuracy import errors
-from tactile_depth.chip.configuration import Configuration, most_lanes
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
+from tactile_depth.chip.limits import most_lanes
+from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import load_frames, on_grid
 
 PAGES = [ROOT / "docs" / f"{name}.md" for name in ("results", "hardware", "software", "error-budget")]
@@ -46,14 +48,10 @@ def error_percent(arguments: list[str]) -> tuple[Configuration, str]:
     frames = load_frames(request.frames, size, request.reference, request.seed, request.press, request.camera)
     calibration = on_grid(calibration, frames)
     config = run_request.configure(request, calibration)
-    light = sim.light_of_stream(frames.pixels, calibration, config, 1)
-    no_contact = sim.untouched(request, frames)
-    zero = sim.zero_of(no_contact, calibration, config)
-    codes, _ = sim.expected(frames.pixels, calibration, config, 1, zero, light)
-    down = -1 if config.solver == "tridiagonal" else 1
-    exact = sim.exact_depth(frames.pixels, no_contact, calibration, config, None if light is None else light[0])
-    depth_px = codes.reshape(-1, *size)[:, ::down] * config.depth_lsb_px
-    rms = [value for value in errors(depth_px, exact)["rms_percent_of_peak"] if value is not None]
+    twin = Twin(calibration, config, untouched(request, frames))
+    codes, light, _ = twin.played(frames.pixels)
+    exact = twin.exact_px(frames.pixels, None if light is None else light[0])
+    rms = [value for value in errors(codes[0] * config.depth_lsb_px, exact)["rms_percent_of_peak"] if value is not None]
     return config, f"{np.mean(rms):.4f} ({max(rms):.4f})"
 
 

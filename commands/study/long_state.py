@@ -8,9 +8,11 @@ to their largest value first.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
+from commands.common.tabular import Column
 from commands.study.drawn_light import DrawnLight
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.contact_events import WORD_BITS, ContactEvents, Settings
@@ -50,12 +52,14 @@ class LightState:
         Codes after FRAMES frames, of red, green and blue.
     """
 
-    light: str
-    rate: int
-    settled_after: int
-    period: int
-    off_percent: float
-    gains: tuple[int, ...]
+    light: Annotated[str, Column("light")]
+    rate: Annotated[int, Column("LIGHT.rate")]
+    settled_after: Annotated[
+        int, Column("goes round after", lambda after: "no round found" if after < 0 else f"{after:,}")
+    ]
+    period: Annotated[int, Column("period", ",")]
+    off_percent: Annotated[float, Column("gain x light off 1 by, %", ".3f")]
+    gains: Annotated[tuple[int, ...], Column(f"gains after {FRAMES:,}", lambda gains: ", ".join(map(str, gains)))]
 
 
 def light_states(drawn: DrawnLight, sensor: Sensor, config: Configuration, exposure: float) -> list[LightState]:
@@ -92,22 +96,6 @@ def light_state(name: str, relative: np.ndarray, lights: np.ndarray, light: Ligh
     return LightState(name, rate, settled_after, period, 100 * float(np.abs(product - 1).max()), tuple(after.tolist()))
 
 
-LIGHT_HEAD = (
-    "light",
-    "LIGHT.rate",
-    "goes round after",
-    "period",
-    "gain x light off 1 by, %",
-    f"gains after {FRAMES:,}",
-)
-
-
-def light_cells(state: LightState) -> tuple[str, ...]:
-    after = "no round found" if state.settled_after < 0 else f"{state.settled_after:,}"
-    off = f"{state.off_percent:.3f}"
-    return state.light, f"{state.rate}", after, f"{state.period:,}", off, ", ".join(map(str, state.gains))
-
-
 @dataclass(frozen=True)
 class LongCount:
     """A register that counts, after FRAMES frames and at its end.
@@ -120,9 +108,9 @@ class LongCount:
         Value one event after its largest one.
     """
 
-    register: str
-    share_percent: float
-    after_the_end: int
+    register: Annotated[str, Column("register")]
+    share_percent: Annotated[float, Column(f"range used after {FRAMES:,} frames, %", ",.2f")]
+    after_the_end: Annotated[int, Column("after its largest value", ",")]
 
 
 def counts(config: Configuration, clipped_per_frame: int, clocks_per_frame: int) -> list[LongCount]:
@@ -147,10 +135,3 @@ def counts(config: Configuration, clipped_per_frame: int, clocks_per_frame: int)
 
 def _count(name: str, per_frame: int, after: int) -> LongCount:
     return LongCount(name, 100 * FRAMES * per_frame / 2.0**WORD_BITS, after)
-
-
-COUNT_HEAD = ("register", f"range used after {FRAMES:,} frames, %", "after its largest value")
-
-
-def count_cells(count: LongCount) -> tuple[str, ...]:
-    return count.register, f"{count.share_percent:,.2f}", f"{count.after_the_end:,}"

@@ -17,14 +17,14 @@ import numpy as np
 from tqdm import tqdm
 
 import tactile_depth as td
-from commands.common import markdown, variables
 from commands.common import simulator as simulation
+from commands.common import tabular, variables
 from commands.run import bench
 from commands.run.calibrate import data_folder
 from tactile_depth.base import files
 from tactile_depth.calibrate.fitting import DRAWN_OUT, errors_by_number, fit_presses
 from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
-from tactile_depth.chip.configuration import LIGHT_GAIN
+from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.registers.axil_registers import GAINS
 from tactile_depth.pictures.frames import read_picture
 from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
@@ -126,7 +126,7 @@ def table(values: Sequence[Measured], central: np.ndarray) -> str:
         *("presses", "height RMS, um", "caps, mean", "RMS error", "untouched gel, RMS and largest, mm"),
         *("centroid off, mean and most, mm", "area over circle, mean and range"),
     ]
-    return markdown.table(head, rows)
+    return tabular.table(head, rows)
 
 
 def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
@@ -166,14 +166,14 @@ def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
             ]
         )
     head = ["light, of red, green, blue", "caps over those in the same light, mean", "largest change", "areas, mean"]
-    print(f"\n{markdown.table(head, rows)}")
+    print(f"\n{tabular.table(head, rows)}")
     numbers = [number for number in NUMBERS if number + DRAWN_OUT <= len(presses.views)]
     if numbers and central.sum() >= DRAWN_OUT:
         by_number = errors_by_number(
             presses, numbers, progress=lambda each: tqdm(each, "fits", leave=False, disable=None)
         )
         rows = [[str(number), f"{cap:.3f}", f"{1000 * rms:.1f}"] for number, (cap, rms) in by_number.items()]
-        print(f"\n{markdown.table(['presses fitted', 'caps, RMS error in the middle', 'height RMS, um'], rows)}")
+        print(f"\n{tabular.table(['presses fitted', 'caps, RMS error in the middle', 'height RMS, um'], rows)}")
     if simulator is not None:
         total = len(views) * presses.grid[0] * presses.grid[1]
         print(f"\nRTL on {simulator}: {total - differing:,} of {total:,} codes equal the model's")

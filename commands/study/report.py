@@ -19,20 +19,21 @@ from typing import Any
 import matplotlib
 import numpy as np
 
-from commands.common import run_request, variables
+from commands.common import run_request, tabular, variables
 from commands.common.published import CLOCK_MHZ, FIRST_DEPTH_CYCLES, RMS_PERCENT, WORST_RMS_PERCENT
 from commands.common.repository import ROOT
 from commands.hardware import asic, synth
 from commands.run import reflex, reflex_tables, sim
-from commands.study import baselines, budget, extremes, sweep, trade, trade_front, transform_noise
+from commands.study import baselines, budget, extremes, sweep, trade, trade_front
 from commands.study.accuracy import WORST
 from commands.study.rows import Row
 from tactile_depth.base import files
-from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth
+from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.depth import reference
-from tactile_depth.sensor.built_in import synthetic
 from tactile_depth.sensor.scenes import BENCH, SENSOR_WIDTH_MM, render
+from tactile_depth.sensor.synthetic import synthetic
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
@@ -40,6 +41,7 @@ from matplotlib.ticker import MaxNLocator
 
 from commands.study.report_lanes import lanes_figure
 from commands.study.report_page import LOOKS, PUBLISHED_LOOK, Figure, page, picture, results, shown, table, titled
+from commands.study.transform_noise import Compliance
 
 DEFAULT_OUT = ROOT / "build" / "report"
 SIZE = 128
@@ -273,13 +275,18 @@ def extremes_figures(folder: Path) -> list[Figure]:
     """Return the figures that `make extremes` left in a folder."""
     document = json.loads((folder / "extremes.json").read_text())
 
-    rows = [extremes.cells(row) for row in document["extremes"]]
     text = (
         "Errors against double precision; where there is no depth to speak of, in codes. Where values are clipped the "
         "sticky status bit says so; none wraps."
     )
-    edges = Figure("extremes", "At the extremes", text, EXTREMES_COMMAND, table(extremes.HEAD, rows))
-    blocks = table(transform_noise.HEAD, [transform_noise.cells(row) for row in document["compliance"]])
+    edges = Figure(
+        "extremes",
+        "At the extremes",
+        text,
+        EXTREMES_COMMAND,
+        table(*tabular.shown(extremes.Row, document["extremes"])),
+    )
+    blocks = table(*tabular.shown(Compliance, document["compliance"]))
     text = (
         "Peak, mean square and mean error of the transform cores over blocks of random words, in codes of their output."
     )

@@ -14,17 +14,18 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import markdown, run_request
-from commands.common.zero_offset import zero_of
+from commands.common import run_request, tabular
 from commands.run import sim, sim_table
 from commands.run.flags import flags
 from commands.study import long_state
 from commands.study.drawn_light import DrawnLight, Height, exact
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError, InputWarning
-from tactile_depth.chip.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WIDTHS, Configuration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WIDTHS
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.depth.pipeline import Pipeline
+from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, camera_scale
 from tactile_depth.sensor.presets import CHIP
 from tactile_depth.sensor.sensor import Sensor
@@ -268,15 +269,14 @@ def measure(case: Case, request: run_request.Request, drawn: DrawnLight, rtl: bo
     reference, frames, height_mm = _shown(case, drawn)
     sensor = on_grid(drawn, reference)
     config = run_request.configure(request, sensor)
-    zero = zero_of(reference[None], sensor, config)
-    light = sim.light_of_stream(frames, sensor, config, 1)
-    codes, clipped = sim.expected(frames, sensor, config, 1, zero, light)
+    twin = Twin(sensor, config, reference[None])
+    codes, light, clipped = twin.played(frames)
     bit_exact, differences, status = True, [], 0
     if rtl:
         with files.temporary() as folder:
             labels = tuple(map(str, range(len(frames))))
-            played = sim.simulate(request, config, Frames(frames, 1.0, "", labels), sensor, folder, zero, light)
-        bit_exact = bool((played.codes.reshape(codes.shape) == codes).all())
+            played = sim.simulate(request, config, Frames(frames, 1.0, "", labels), sensor, folder, twin.zero, light)
+        bit_exact = bool((twin.upright(played.codes.reshape(codes.shape)) == codes).all())
         report = {"frames": len(frames), "saturations": clipped, **sim_table.measure(played)}
         differences = sim_table.check_registers(played.registers, report, request.stalls)
         status = played.registers["status"]
@@ -284,8 +284,8 @@ def measure(case: Case, request: run_request.Request, drawn: DrawnLight, rtl: bo
     dark = flags(frames, sensor, config, "", light[0]).dark.any()
     expected = tuple(bit for bit, is_set in zip(STATUS_BITS, (bool(clipped), dark), strict=True) if is_set)
     shown = tuple(bit for bit in STATUS_BITS if status & REGISTERS["STATUS"].field(bit).mask) if rtl else expected
-    depth_mm = codes[0, :, ::-1] * config.depth_lsb_px * drawn.pitch_mm  # the bottom row leaves first
-    ideal_mm = sim.exact_depth(frames, reference[None], sensor, config, light[0]) * drawn.pitch_mm
+    depth_mm = codes[0] * config.depth_lsb_px * drawn.pitch_mm
+    ideal_mm = twin.exact_px(frames, light[0]) * drawn.pitch_mm
     lit = np.any(case.lights, axis=-1)
     by_frame = [None if height_mm is None else errors_of(each, height_mm) for each in depth_mm]
     size = [0.0 if each is None else abs(each.height) for each in by_frame]
@@ -424,9 +424,9 @@ def run(request: run_request.Request, out: Path, rtl: bool) -> int:
     counts = long_state.counts(config, clipped, config.rows * config.columns)
     for words in dict.fromkeys(row.words for row in rows):
         print(f"words, coefficients and gains of {words} bits; errors in mm\n")
-        print(markdown.table(HEAD, [cells(row) for row in rows if row.words == words]), end="\n\n")
-    print(markdown.table(long_state.LIGHT_HEAD, [long_state.light_cells(each) for each in lights]), end="\n\n")
-    print(markdown.table(long_state.COUNT_HEAD, [long_state.count_cells(each) for each in counts]))
+        print(tabular.table(HEAD, [cells(row) for row in rows if row.words == words]), end="\n\n")
+    print(tabular.table_of(long_state.LightState, lights), end="\n\n")
+    print(tabular.table_of(long_state.LongCount, counts))
     document = {
         "sensor": [asdict(row) for row in rows],
         "light": [asdict(state) for state in lights],

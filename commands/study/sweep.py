@@ -10,7 +10,6 @@ import logging
 import os
 import re
 import sys
-import zipfile
 from collections.abc import Generator, Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -19,14 +18,13 @@ from typing import Any
 import joblib
 
 from commands.common import published, variables
-from commands.common.markdown import table
 from commands.common.repository import ROOT
-from commands.study import accuracy
+from commands.common.tabular import table
 from commands.study.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
 from commands.study.rows import Row, Table, Wanted
-from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
-from tactile_depth.chip.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration, most_lanes
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, most_lanes
 
 DEFAULT_OUT = ROOT / "build" / "sweep"
 GRIDS = (32, 64, 128, 256, 512)
@@ -102,15 +100,13 @@ def cluster(address: str) -> Iterator[Any]:
 
 
 def on_cluster(client: Any, rows: list[Choices]) -> Generator[Row]:
-    """Yield the rows from the workers of a cluster, which get the models; they need numpy and scipy.
+    """Yield the rows from the workers of a cluster, which run in clones of this commit.
 
     Raises InputError: workers keep another version of the models; RuntimeError: the cluster failed on the way.
     """
     from dask.distributed import as_completed
 
     try:
-        with files.temporary() as folder:
-            client.upload_file(str(_packed(folder)))
         futures = client.map(measure, rows, pure=False)
         for _, row in as_completed(futures, with_results=True):
             if row["models"] != VERSION:
@@ -121,16 +117,6 @@ def on_cluster(client: Any, rows: list[Choices]) -> Generator[Row]:
     except Exception as error:  # a remote machine can fail in any way
         what = " ".join(f"{type(error).__name__} {error}".split())
         raise RuntimeError(f"DASK_SCHEDULER: the cluster failed ({what}); what it measured is kept") from error
-
-
-def _packed(folder: Path) -> Path:
-    """Return the models as a package that workers can import."""
-    path = folder / "tactile_depth_models.zip"
-    with zipfile.ZipFile(path, "w") as archive:
-        package = Path(accuracy.__file__).parent
-        for source in sorted([*package.rglob("*.py"), *package.rglob("*.json")]):
-            archive.write(source, source.relative_to(package.parent))
-    return path
 
 
 def sweep(rows: list[Choices], folder: Path, scheduler: str | None = None) -> list[Row]:

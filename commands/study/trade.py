@@ -29,7 +29,7 @@ import tactile_depth as td
 from commands.common import recorded, run_request, variables
 from commands.common import simulator as simulation
 from commands.common.repository import ROOT
-from commands.common.zero_offset import untouched, zero_of
+from commands.common.zero_offset import untouched
 from commands.cost.cost import ECP5, cost
 from commands.run import sim
 from commands.run.calibrate import data_folder
@@ -44,14 +44,14 @@ from tactile_depth.calibrate.fitting import fit_folds
 from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import Configuration, most_lanes
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact import threshold_comparator
 from tactile_depth.chip.contact.contact_events import Settings
 from tactile_depth.chip.latency import last_pixel_to_first_depth
+from tactile_depth.chip.limits import most_lanes
 from tactile_depth.chip.poisson.cores import fastest
-from tactile_depth.chip.poisson.divergence import divergence
-from tactile_depth.chip.tactile_depth import light_of, slope_codes, slope_tables, solve, zeroed
 from tactile_depth.depth.result import Recorder
+from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, load_frames, on_grid, read_picture
 from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
 from tactile_depth.sensor.sensor import Sensor
@@ -269,11 +269,8 @@ def _measured(
 ) -> list[tuple[Measured, bool, float]]:
     """Return what was measured of each press, if it is in the middle, and the cycles from last pixel to contact."""
     sensor, pixels = data.sensor, data.frames.pixels
-    zero = zero_of(untouched(request, data.frames), sensor, config)
-    tables = slope_tables(sensor, config)
-    light = light_of(pixels, tables, config, cores=fastest())
-    slopes = slope_codes(pixels, sensor, config, monitor, tables=tables, light=light)
-    streamed = zeroed(solve(divergence(slopes, config.neumann), config, monitor, fastest()), config, monitor, zero)
+    twin = Twin(sensor, config, untouched(request, data.frames), fastest())
+    every = twin.codes(pixels, monitor)
     bottom_first = config.solver == "tridiagonal"
     pitch = sensor.pixel_pitch_mm
     lsb = config.depth_lsb_px * pitch
@@ -283,12 +280,12 @@ def _measured(
     )
     values: list[tuple[Measured, bool, float]] = []
     for number, press in data.presses.items():
-        codes = streamed[number][::-1] if bottom_first else streamed[number]
+        codes = every[number]
         empty = np.zeros((0, 0, 2))
         result = td.Result(
             codes.astype(np.int32), codes * lsb, empty, empty[..., 0] > 0, None, {}, recorder, lsb, pitch, np.inf, None
         )
-        touching = streamed[number].reshape(-1) > threshold
+        touching = twin.upright(codes).reshape(-1) > threshold
         first = int(touching.argmax()) if touching.any() else touching.size
         cycles = last_pixel_to_first_depth(config) + first // config.lanes + threshold_comparator.LATENCY
         values.append((measured(result, press), press.name in study.middle, cycles))

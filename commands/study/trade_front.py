@@ -16,8 +16,8 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from commands.common.markdown import table
 from commands.common.published import CLOCK_MHZ
+from commands.common.tabular import table
 from commands.hardware.targets import TARGETS
 from commands.study.rows import Row
 from tactile_depth.base import files

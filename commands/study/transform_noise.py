@@ -6,13 +6,14 @@ limits of the standard are for one 8 x 8 transform of 9-bit words. Noise spreads
 range of each, so single modes at full amplitude are measured too.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 from scipy.fft import dst, idst
 
+from commands.common.tabular import Column
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson import spectral_solver
@@ -28,19 +29,19 @@ FEWEST = 32  # random blocks: fewer give no standard error
 class Compliance:
     """Errors of a transform core against double precision, in steps of its output word."""
 
-    core: str
-    size: int
-    input: str
-    blocks: int
-    amplitude: int
-    peak: float
-    worst_mean_square: float
-    mean_square: float
-    worst_mean: float
-    mean: float
-    mean_in_standard_errors: float
-    saturations: int
-    zero_in_zero_out: bool
+    core: Annotated[str, Column("transform")]
+    size: Annotated[int, Column("size")]
+    input: Annotated[str, Column("input")]
+    blocks: Annotated[int, Column("blocks", ",")]
+    amplitude: Annotated[int, Column("amplitude", ",")]
+    peak: Annotated[float, Column("peak error, codes", ".2f")]
+    worst_mean_square: Annotated[float, Column("worst mean square", ".3f")]
+    mean_square: Annotated[float, Column("mean square error", ".3f")]
+    worst_mean: Annotated[float, Column("worst mean", ".4f")]
+    mean: Annotated[float, Column("mean error", ".5f")]
+    mean_in_standard_errors: Annotated[float, Column("in standard errors", ".2f")]
+    saturations: Annotated[int, Column("clipped", ",")]
+    zero_in_zero_out: Annotated[bool, Column("zero in, zero out", lambda zero: "yes" if zero else "NO")]
 
 
 def transforms(config: Configuration) -> dict[str, tuple[Callable, Callable, int]]:
@@ -153,28 +154,3 @@ def _standard_errors(error: np.ndarray) -> float:
     means = error.reshape(len(error), -1).mean(axis=1)
     spread = float(means.std(ddof=1)) / np.sqrt(len(means))
     return float(abs(means.mean())) / spread if spread else 0.0
-
-
-HEAD = (
-    *(
-        "transform",
-        "size",
-        "input",
-        "blocks",
-        "amplitude",
-        "peak error, codes",
-        "worst mean square",
-        "mean square error",
-    ),
-    *("worst mean", "mean error", "in standard errors", "clipped", "zero in, zero out"),
-)
-
-
-def cells(row: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return a `Compliance`, as extremes.json holds it, as text, below HEAD."""
-    return (
-        *(row["core"], str(row["size"]), row["input"], f"{row['blocks']:,}", f"{row['amplitude']:,}"),
-        *(f"{row['peak']:.2f}", f"{row['worst_mean_square']:.3f}", f"{row['mean_square']:.3f}"),
-        *(f"{row['worst_mean']:.4f}", f"{row['mean']:.5f}", f"{row['mean_in_standard_errors']:.2f}"),
-        *(f"{row['saturations']:,}", "yes" if row["zero_in_zero_out"] else "NO"),
-    )

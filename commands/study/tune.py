@@ -22,17 +22,18 @@ from tqdm import tqdm
 
 from commands.common import published, repository, run_request, variables
 from commands.common import simulator as simulation
-from commands.common.zero_offset import untouched, zero_of
+from commands.common.zero_offset import untouched
 from commands.cost.cost import Cost
 from commands.hardware.targets import TARGETS
 from commands.run import sim
-from commands.study.accuracy import SMALLEST_PEAK_PX, depth_px, errors
+from commands.study.accuracy import SMALLEST_PEAK_PX, errors
 from commands.study.tune_search import ALL_FRAMES, Judgement, Limits, Search, Widths
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
-from tactile_depth.chip.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration, most_lanes
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_pixel_to_last_depth
-from tactile_depth.chip.tactile_depth import light_of, slope_tables
+from tactile_depth.chip.limits import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, most_lanes
+from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, load_frames, on_grid
 from tactile_depth.sensor.scenes import AS_EVER
 from tactile_depth.sensor.sensor import Sensor
@@ -233,7 +234,7 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
         raise refusals[-1]
     widest = build(Widths(solvers[0], DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1], lanes[solvers[0]]))
     assert widest is not None
-    exact = sim.exact_depth(frames.pixels, None, calibration, widest, _light(frames, calibration, widest))
+    exact = Twin(calibration, widest).exact_px(frames.pixels)
     tuning, proving, how = split(frames, np.abs(exact).max(axis=(1, 2)), request.seed)
     files.check(out, ("config.json", "report.json"))
     run_request.announce(request, widest)
@@ -333,10 +334,6 @@ def _check_grid(request: run_request.Request, solvers: list[str]) -> None:
     raise refused[0]
 
 
-def _light(frames: Frames, calibration: Sensor, config: Configuration) -> np.ndarray | None:
-    return light_of(frames.pixels, slope_tables(calibration, config), config)
-
-
 def _measurement(
     request: run_request.Request,
     tuning: Frames,
@@ -345,13 +342,11 @@ def _measurement(
     judgement: Judgement,
     bar: tqdm,
 ) -> Callable[[Configuration], float]:
-    light = _light(tuning, calibration, any_of_them)  # the same for all: no width changes a gain
     no_contact = untouched(request, tuning)
-    exact = sim.exact_depth(tuning.pixels, no_contact, calibration, any_of_them, light)
+    exact = Twin(calibration, any_of_them, no_contact).exact_px(tuning.pixels)  # no width changes a light gain
 
     def measure(config: Configuration) -> float:
-        zero = zero_of(no_contact, calibration, config)
-        rms = errors(depth_px(tuning.pixels, config, calibration, zero=zero), exact)["rms_percent_of_peak"]
+        rms = errors(Twin(calibration, config, no_contact).depth_px(tuning.pixels), exact)["rms_percent_of_peak"]
         bar.update()
         return judgement.of(rms)
 

@@ -10,7 +10,8 @@ from statistics import fmean
 from commands.cost.cost import Cost, cost
 from commands.cost.devices import Device
 from commands.hardware.targets import DEFAULT_TARGET, TARGETS, Target
-from tactile_depth.chip.configuration import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WIDTHS, Configuration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WIDTHS
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 import tomllib
 
-from commands.common import markdown, repository, variables
+from commands.common import repository, tabular, variables
 from tb import functional_coverage
 from tb.settings import RunSettings
 
@@ -155,7 +155,7 @@ def table(points: Mapping[Point, int]) -> str:
 
     files = sorted({point.file for point in points})
     rows = [row(file, {point: hits for point, hits in points.items() if point.file == file}) for file in files]
-    return markdown.table(("file", *GATES), [*rows, row("all", points)])
+    return tabular.table(("file", *GATES), [*rows, row("all", points)])
 
 
 def gate(points: Mapping[Point, int]) -> list[str]:

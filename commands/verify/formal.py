@@ -18,7 +18,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from commands.common import markdown, variables
+from commands.common import tabular, variables
 from commands.common.repository import ROOT, chosen, cores, sources, stated, tested, units
 from commands.hardware.yosys import in_wheel
 from commands.verify import items, sign_off
@@ -26,7 +26,7 @@ from formal.entries import Cone, Proof
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 
 BENCHES = ROOT / "formal"
 ITEMS = "formal/test_proofs.py::test_proof"
@@ -240,7 +240,7 @@ def table(proofs: Sequence[Proof | Cone], outcomes: Mapping[str, Mapping[str, Ou
         parameters = " ".join(f"{key}={value}" for key, value in proof.parameters.items())
         seconds = f"{sum(outcome.seconds for outcome in mine.values()):.1f}"
         rows.append((proof.core, parameters, proof.claim, proof.engine, seconds, combined(mine)))
-    return markdown.table(head, rows)
+    return tabular.table(head, rows)
 
 
 def listing(proofs: Sequence[Proof | Cone], others: Mapping[str, str]) -> str:
@@ -250,8 +250,8 @@ def listing(proofs: Sequence[Proof | Cone], others: Mapping[str, str]) -> str:
         sizes = ", ".join(f"{key} {value}" for key, value in proof.parameters.items())
         entries.setdefault((proof.core, proof.claim, proof.sufficient), []).append(sizes)
     rows = [(core, claim, "; ".join(sizes) or "the defaults", why) for (core, claim, why), sizes in entries.items()]
-    proven = markdown.compact(("core", "proven", "sizes", "why they suffice"), rows)
-    unproven = markdown.compact(("core", "no proof, because"), list(others.items()))
+    proven = tabular.compact(("core", "proven", "sizes", "why they suffice"), rows)
+    unproven = tabular.compact(("core", "no proof, because"), list(others.items()))
     return f"{proven}\n{unproven}" if others else proven
 
 

@@ -25,9 +25,10 @@ from commands.hardware import fpga
 from commands.hardware import yosys as yosys_runner
 from commands.verify import items
 from tactile_depth.chip.camera.register_lists import pins, write_list
-from tactile_depth.chip.configuration import COLUMNS, POLYNOMIAL, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.depth.zero_offset import no_zero
 from tactile_depth.chip.gradient.flat_field import unit_gains
+from tactile_depth.chip.limits import COLUMNS, POLYNOMIAL
 from tactile_depth.chip.rom_files import (
     write_gains,
     write_nodes,

@@ -21,9 +21,10 @@ from commands.common import repository, variables
 from commands.common import simulator as simulation
 from commands.hardware import yosys
 from commands.verify import items, mutants, mutate
-from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 from tb.settings import RunSettings
 from tb.structures import Structure
 

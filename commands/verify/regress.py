@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from commands.common import markdown, repository, variables
+from commands.common import repository, tabular, variables
 from commands.verify import items
 from tactile_depth.base.errors import InputError
 from tb.settings import RunSettings
@@ -75,7 +75,7 @@ def table(parts: list[Part]) -> str:
         rows.append((part.name, verdict, "", *(f"{figure:,}" for figure in sums), f"{part.seconds:.0f}"))
         failures += [f"    {part.name}: {failure}" for failure in part.failures]
     head = ("part", "what", "simulator", "runs", "codes", "different", "seconds")
-    return "\n".join([markdown.table(head, rows), *failures])
+    return "\n".join([tabular.table(head, rows), *failures])
 
 
 def matrix(part: Part) -> str:
@@ -86,7 +86,7 @@ def matrix(part: Part) -> str:
             counts.setdefault(kind, Counter())[f"{line['grid']} {line['simulator']}"] += number
     devices = sorted({device for row in counts.values() for device in row})
     rows = [(device, *(f"{row[device]:,}" for row in counts.values())) for device in devices]
-    return markdown.table(("device", *counts), rows)
+    return tabular.table(("device", *counts), rows)
 
 
 def main() -> None:

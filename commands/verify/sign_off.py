@@ -11,7 +11,7 @@ import sys
 from collections.abc import Mapping
 from typing import Any
 
-from commands.common import markdown, repository, variables
+from commands.common import repository, tabular, variables
 from commands.common.repository import ROOT, git
 
 RESULTS = ROOT / "docs" / "sign-off.json"
@@ -94,7 +94,7 @@ def document() -> str:
     """Return docs/sign-off.md."""
     results, units = load(), repository.units()
     rows = [row(core, results.get(core, {})) for core in repository.cores() if core not in units]
-    return TEXT + markdown.compact(HEAD, rows)
+    return TEXT + tabular.compact(HEAD, rows)
 
 
 def main() -> None:

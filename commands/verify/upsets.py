@@ -8,11 +8,11 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from commands.common import markdown, repository, variables
+from commands.common import repository, tabular, variables
 from commands.common import simulator as simulation
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 from tb.settings import RunSettings
 
 CASES: dict[str, dict[str, Any]] = {
@@ -62,7 +62,7 @@ def table(results: list[dict[str, Any]]) -> str:
             rows.setdefault(row, Counter())[result["outcome"]] += 1
     names = sorted(rows, key=lambda row: (row.startswith(("all", "settings")), row))
     cells = [(name, *(f"{rows[name][outcome]}" for outcome in OUTCOMES)) for name in names]
-    return markdown.table(("module", *OUTCOMES), cells)
+    return tabular.table(("module", *OUTCOMES), cells)
 
 
 def main() -> None:

@@ -18,8 +18,8 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.gradient_lookup import gradient_codes
 from tactile_depth.chip.registers.register_map import REGISTERS, TABLES
 from tactile_depth.chip.tactile_depth import Tables, tactile_depth
-from tactile_depth.sensor.built_in import synthetic
 from tactile_depth.sensor.scenes import render
+from tactile_depth.sensor.synthetic import synthetic
 
 
 async def write(master: AxiLiteMaster, register: str, value: int) -> None:

@@ -13,7 +13,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "models"), str(HERE)]
 from commands.common import repository, simulator, wrapper  # noqa: E402
 from tactile_depth.chip.configuration import Configuration  # noqa: E402
 from tactile_depth.chip.tactile_depth import top_parameters, write_roms  # noqa: E402
-from tactile_depth.sensor.built_in import synthetic  # noqa: E402
+from tactile_depth.sensor.synthetic import synthetic  # noqa: E402
 
 CHOICES: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal", "bits_per_channel": 2}
 

@@ -9,8 +9,8 @@ from cocotb.triggers import ClockCycles, ReadOnly, RisingEdge
 
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import tactile_depth
-from tactile_depth.sensor.built_in import synthetic
 from tactile_depth.sensor.scenes import render
+from tactile_depth.sensor.synthetic import synthetic
 
 CONFIG = Configuration(columns=16, rows=8, solver="tridiagonal")  # as fingertip.core has it
 

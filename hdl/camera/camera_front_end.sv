@@ -8,7 +8,7 @@
 // A malformed picture raises one fault for one cycle (camera_window.sv). It leaves as one frame with a row too short or
 // too long, which the frame_guard behind drops whole and flags once; m_axis carries no other malformed frame.
 // Latency: 23 cycles from the word that completes a block, gaps or not; YUYV 25, or 26 from the second pixel of a pair.
-// A stalled sink stops all of it. Parameters: models/tactile_depth/chip/camera/camera_front_end.py, the bit-accurate model.
+// A stalled sink stops all of it. Bit-accurate model, parameters: models/tactile_depth/chip/camera/camera_front_end.py.
 
 `default_nettype none
 

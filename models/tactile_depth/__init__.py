@@ -16,6 +16,8 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from tactile_depth.base.moved import refuse_old_paths
+
 if TYPE_CHECKING:
     __version__: str
     from tactile_depth.base.errors import InputError, InputWarning
@@ -27,7 +29,8 @@ if TYPE_CHECKING:
     from tactile_depth.device.device import Device
     from tactile_depth.device.errors import DeviceError
     from tactile_depth.device.frame import DeviceFrame
-    from tactile_depth.sensor.built_in import identify, load
+    from tactile_depth.pictures.identify import identify
+    from tactile_depth.sensor.built_in import load
     from tactile_depth.sensor.samples import Sample, sample
     from tactile_depth.sensor.sensor import Camera, HeightError, Sensor
 
@@ -55,7 +58,8 @@ __all__ = [
 
 _MODULES = {
     "calibrate.ball_press": ("BallPress",),
-    "sensor.built_in": ("identify", "load"),
+    "pictures.identify": ("identify",),
+    "sensor.built_in": ("load",),
     "device.device": ("Device",),
     "device.errors": ("DeviceError",),
     "device.frame": ("DeviceFrame",),
@@ -69,6 +73,8 @@ _MODULES = {
 }
 _PLACES = {name: module for module, names in _MODULES.items() for name in names}
 
+refuse_old_paths()
+
 
 def __getattr__(name: str) -> Any:
     """Import a public name on first use, so that a testbench that needs one model does not wait for the others."""
@@ -80,4 +86,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return [*__all__, "__version__"]

@@ -25,8 +25,8 @@ from tactile_depth.chip.link.uart import BITS, transmit
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.tactile_depth import tactile_depth
 from tactile_depth.chip.video.frame_guard import frame_guard
-from tactile_depth.sensor.built_in import synthetic
 from tactile_depth.sensor.scenes import render
+from tactile_depth.sensor.synthetic import synthetic
 from tb.pixels import unpack
 from tb.selection import Level, case
 from tb.stream import CLOCK_NS, configuration, parameters

@@ -10,7 +10,6 @@ from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.common.td_node_map import node_map
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import DEVIATION, RATIO
 from tactile_depth.chip.gradient.flat_field import (
     CODE,
     LATENCY,
@@ -20,6 +19,7 @@ from tactile_depth.chip.gradient.flat_field import (
     ratios,
     unit_gains,
 )
+from tactile_depth.chip.limits import DEVIATION, RATIO
 from tactile_depth.chip.registers.register_map import TABLES
 from tb import pins
 from tb.cases import on_bench

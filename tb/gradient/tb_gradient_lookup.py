@@ -13,7 +13,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 from tactile_depth.chip.common.td_banked_table import BankedTable
 from tactile_depth.chip.gradient.gradient_lookup import LATENCY, gradient_codes, gradient_lookup
 from tactile_depth.chip.registers.register_map import TABLES
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 from tb.cases import on_bench
 from tb.pins import by_name
 from tb.pixels import pack, unpack

@@ -10,8 +10,8 @@ import numpy as np
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.common.td_block_sum import CYCLES_TO_SUM
-from tactile_depth.chip.configuration import DARKEST_LOG2
 from tactile_depth.chip.gradient.reference_capture import reference_capture, reference_capture_clocks
+from tactile_depth.chip.limits import DARKEST_LOG2
 from tb.cases import on_bench
 from tb.common.capture_bench import request, request_after
 from tb.pins import by_name

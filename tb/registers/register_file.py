@@ -9,7 +9,7 @@ from typing import Any
 
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.chip.configuration import LIGHT_GAIN
+from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.registers.axil_port import LATE_CLOCKS, Response, response, strobed_bits
 from tactile_depth.chip.registers.axil_registers import RECORD, AxilRegisters, Build, Events, Live
 from tactile_depth.chip.registers.event_registers import EVENTS, LEVELS

@@ -19,7 +19,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.video.frame_guard import Word
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 from tb import functional_coverage
 from tb.axil import Master, RegisterClient
 from tb.axis import AxisMonitor, AxisSink, AxisSource, BeatMonitor, positions, profile, video

@@ -16,12 +16,12 @@ import numpy as np
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.flat_field import pixel_gains
 from tactile_depth.chip.gradient.polynomial_gradient import coefficient_map
+from tactile_depth.chip.limits import CUBIC
 from tactile_depth.chip.registers.axil_port import Response
 from tactile_depth.chip.registers.register_map import REGISTERS, TABLES
 from tactile_depth.chip.table_entries import ONE_WORD, table_entries
 from tactile_depth.chip.tactile_depth import Tables
-from tactile_depth.sensor.built_in import synthetic
-from tactile_depth.sensor.sensor import CUBIC
+from tactile_depth.sensor.synthetic import synthetic
 from tb.axil import RegisterClient
 
 COMMIT = REGISTERS["TABLE_COMMIT"]

@@ -20,7 +20,7 @@ from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.tactile_depth import slope_codes, solve, zeroed
 from tactile_depth.chip.video.frame_guard import Frame, frame_guard
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 from tb.axil import RegisterClient
 from tb.axis import AxisMonitor
 from tb.pixels import unpack

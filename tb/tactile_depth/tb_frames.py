@@ -7,8 +7,8 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.chip.configuration import COLUMNS
 from tactile_depth.chip.latency import first_depth_latency
+from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.tactile_depth import default_parameters, top_parameters
 from tb.axis import PROFILES

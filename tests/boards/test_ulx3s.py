@@ -12,7 +12,7 @@ from commands.common.repository import BOARDS, ROOT
 from tactile_depth.chip.camera.register_lists import setup_parameters, write_list
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import top_parameters, write_roms
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 from tb.boards.tb_ulx3s_camera_bench import camera_of, sensor
 from tb.structures import VERILATOR, Structure
 

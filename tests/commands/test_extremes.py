@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from commands.common import run_request
+from commands.common import run_request, tabular
 from commands.study import extremes, long_state, sensor_extremes, transform_noise
 from commands.study.drawn_light import DrawnLight
 from commands.study.extremes import EXTREMES, drift, faults, largest, measure, model_drift, smallest
-from commands.study.transform_noise import compliance, transforms
+from commands.study.transform_noise import Compliance, compliance, transforms
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.chip.tactile_depth import slope_tables
 
 SIZE = 16
@@ -123,9 +124,9 @@ def test_the_file_it_leaves() -> None:
     document = json.loads(json.dumps(extremes.as_document([row], measured)))
     assert document["extremes"][0]["solver"] == "spectral"
     assert len(document["compliance"]) == len(measured)
-    for module, rows in ((extremes, document["extremes"]), (transform_noise, document["compliance"])):
-        for each in rows:
-            assert len(module.cells(each)) == len(module.HEAD)
+    for kind, rows in ((extremes.Row, [row]), (Compliance, measured)):
+        part = "compliance" if kind is Compliance else "extremes"
+        assert tabular.shown(kind, document[part]) == tabular.shown(kind, rows)
 
 
 # Rows of a real sensor.

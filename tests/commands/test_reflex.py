@@ -13,8 +13,9 @@ import pytest
 from commands.common import published
 from commands.run import bench, reflex, reflex_model
 from commands.study import report
-from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_pixel_to_first_depth
+from tactile_depth.chip.limits import COLUMNS
 
 SMALL = ("N=16", "SIM=icarus", "CLOCK_MHZ=0.5", "TRIALS=2")
 TRIALS = 20_000

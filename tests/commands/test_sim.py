@@ -15,10 +15,11 @@ from commands.common import published, run_request
 from commands.run import sim
 from commands.run.draw import painted
 from commands.run.flags import Flags
-from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.depth.zero_capture import captured_zero
 from tactile_depth.chip.depth.zero_offset import zero_offset
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth
+from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.samples import sample

@@ -22,8 +22,9 @@ from commands.cost.cost import cost
 from commands.run import sim
 from commands.study import accuracy, sweep
 from commands.study.rows import line
-from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_last_depth
+from tactile_depth.chip.limits import COLUMNS
 
 SMALL = [{"columns": 16, "solver": solver, "data_width": width} for solver in COLUMNS for width in (12, 18, 24) * 1] + [
     {"columns": 16, "neumann": True}
@@ -221,25 +222,23 @@ def free_port() -> int:
 
 @pytest.fixture
 def cluster(tmp_path: Path) -> Iterator[list[str]]:
-    """Start the cluster of docs/sweep-cluster.md without the models; yield the arguments of its `make sweep`.
-
-    The address is one of this machine. The commands run in another folder, where nothing of the repository is in reach.
-    """
+    """Start the cluster of docs/sweep-cluster.md at an address of this machine; yield the arguments of its sweep."""
     pytest.importorskip("distributed", reason="Dask is not installed: run `make setup`")
     page = (repository.ROOT / "docs" / "sweep-cluster.md").read_text()
     page = page.replace("192.0.2.1", "127.0.0.1").replace("8786", str(free_port()))
     *servers, last = (line.split() for line in re.findall(r"^    (.*)$", page, re.MULTILINE))
-    assert [words[:2] for words in servers] == [[".venv/bin/dask", role] for role in ("scheduler", "worker", "worker")]
+    assert [words[:3] for words in servers] == [[".venv/bin/python", "-m", "dask"]] * 3
     assert last[:2] == ["make", "sweep"]
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     started = []
     try:
         for number, (_, *words) in enumerate(servers):
             away = tmp_path / f"machine {number}"
             away.mkdir()
             with (away / "log").open("w") as log:
-                command = [sys.executable, "-m", "dask", *words]
-                started.append(subprocess.Popen(command, cwd=away, env=environment, stdout=log, stderr=log))
+                command = [sys.executable, *words, "--local-directory", str(away)][
+                    : -2 if "scheduler" in words else None
+                ]
+                started.append(subprocess.Popen(command, cwd=repository.ROOT, stdout=log, stderr=log))
         yield last[2:]
     finally:
         for process in reversed(started):

@@ -16,7 +16,7 @@ from commands.hardware import synth
 from commands.hardware.fpga_memory import Memory, memories, path_of
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 
 TINY = Configuration(columns=16, rows=8, solver="tridiagonal", bits_per_channel=1)
 XCZU7EV = synth.TARGETS["xczu7ev"]

@@ -19,8 +19,9 @@ from commands.run import sim
 from commands.study import tune
 from commands.study.tune_search import WORST_FRAME, Limits, Search, Widths
 from tactile_depth.calibrate.presses import gather
-from tactile_depth.chip.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_pixel_to_last_depth
+from tactile_depth.chip.limits import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS
 from tactile_depth.pictures.frames import load_frames
 from tactile_depth.sensor.presets import CHIP
 from tests import ball_presses

@@ -7,9 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.chip.configuration import COLUMNS, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact import contact_events
 from tactile_depth.chip.contact.contact_events import WORDS, ContactEvents, Record, Settings, record
+from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.chip.tactile_depth import tactile_depth
 from tactile_depth.pictures.frames import load_frames, on_grid
 from tactile_depth.sensor.built_in import load

@@ -28,6 +28,7 @@ from tactile_depth.chip.depth.zero_capture import captured_zero
 from tactile_depth.chip.gradient.flat_field import captured_gains, pixel_gains
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
 from tactile_depth.chip.gradient.polynomial_gradient import coefficient_map
+from tactile_depth.chip.limits import CUBIC
 from tactile_depth.chip.link import device as link
 from tactile_depth.chip.link.device import LinkDevice
 from tactile_depth.chip.poisson.divergence import divergence
@@ -38,7 +39,6 @@ from tactile_depth.chip.registers.table_banks import CAPTURES
 from tactile_depth.chip.table_entries import one_word, reference_entries
 from tactile_depth.chip.tactile_depth import Tables, slope_codes, solve, top_parameters, zeroed
 from tactile_depth.chip.video.frame_guard import Word
-from tactile_depth.sensor.sensor import CUBIC
 
 SETTINGS = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
 SIGNED = 1 << 31

@@ -9,7 +9,7 @@ import pytest
 from formal.entries import ROUNDING, WORD_FREE, Proof
 from formal.tables import gain_rom
 from tactile_depth.chip.common.td_node_map import node_map
-from tactile_depth.chip.configuration import DEVIATION, RATIO, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import Format
 from tactile_depth.chip.gradient.flat_field import (
     CODE,
@@ -20,6 +20,7 @@ from tactile_depth.chip.gradient.flat_field import (
     ratios,
     unit_gains,
 )
+from tactile_depth.chip.limits import DEVIATION, RATIO
 from tactile_depth.chip.rom_files import write_gains
 from tb.nodes import Grid
 from tb.structures import ICARUS, VERILATOR, Structure

@@ -12,8 +12,8 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.chip.rom_files import write_gradient
 from tactile_depth.depth import reference
-from tactile_depth.sensor.built_in import synthetic
 from tactile_depth.sensor.sensor import Sensor
+from tactile_depth.sensor.synthetic import synthetic
 from tb.settings import RUN
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import ULTRA, Configuration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import ULTRA
 from tactile_depth.chip.poisson import spectral_solver
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.poisson.tridiagonal_solver import tridiagonal_solver

@@ -10,7 +10,7 @@ from commands.common import simulator
 from commands.verify import mutants
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 from tb.structures import Structure
 
 TRIDIAGONAL: dict[str, Any] = {

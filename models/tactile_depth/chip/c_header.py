@@ -11,13 +11,13 @@ from types import MappingProxyType
 import numpy as np
 
 from tactile_depth.chip import registers
+from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.registers.axil_registers import Build
 from tactile_depth.chip.registers.register_map import REGISTERS, TABLES, WORD
 from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
 from tactile_depth.chip.table_entries import ONE_WORD, table_entries
 from tactile_depth.chip.tactile_depth import top_parameters
-from tactile_depth.sensor.sensor import Sensor
 
 FILE = "tactile_depth_tables.h"
 PREFIX = "TACTILE_DEPTH_"
@@ -37,7 +37,7 @@ ABOUT = """\
 
 
 def c_header(
-    calibration: Sensor,
+    calibration: Calibration,
     config: Configuration,
     zero: np.ndarray | None = None,
     gains: np.ndarray | None = None,
@@ -82,7 +82,7 @@ def word(value: int) -> str:
     return f"0x{value & WORD:08x}u"
 
 
-def _units(calibration: Sensor, config: Configuration) -> str:
+def _units(calibration: Calibration, config: Configuration) -> str:
     """Return the name of the calibration, the grid and the units."""
     name = re.sub(r"[^\w .,()+-]", "_", calibration.name, flags=re.ASCII)
     pitch_mm = calibration.pixel_pitch_mm
@@ -100,7 +100,7 @@ def _units(calibration: Sensor, config: Configuration) -> str:
     )
 
 
-def _device(calibration: Sensor, config: Configuration) -> str:
+def _device(calibration: Calibration, config: Configuration) -> str:
     """Return the words of the registers of a device that fits."""
     build = Build(top_parameters(config, calibration.pixel_pitch_mm))
     device = REGISTERS["DEVICE"]

@@ -11,16 +11,16 @@ import numpy as np
 
 from tactile_depth.base.files import new_files
 from tactile_depth.chip import c_header
+from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import config_value, top_parameters, write_roms
-from tactile_depth.sensor.sensor import Sensor
 
 PARAMETERS = "parameters.json"
 
 
 def write_hardware(
     folder: Path,
-    sensor: Sensor,
+    sensor: Calibration,
     config: Configuration,
     zero: np.ndarray,
     gains: np.ndarray,
@@ -30,7 +30,7 @@ def write_hardware(
 
     Parameters
     ----------
-    sensor : Sensor
+    sensor : Calibration
         Calibration on the grid of the configuration.
     zero, gains
         See `tactile_depth.chip.tactile_depth`.

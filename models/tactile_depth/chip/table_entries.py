@@ -5,19 +5,19 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.depth.zero_offset import no_zero
 from tactile_depth.chip.gradient.flat_field import reference_gains
 from tactile_depth.chip.gradient.gradient_lookup import gradient_codes
 from tactile_depth.chip.gradient.polynomial_gradient import correction_entries, polynomial_words
-from tactile_depth.sensor.sensor import Sensor
 
 ONE_WORD = ("coefficients", "reference", "zero")
 """Tables whose entries have no upper word."""
 
 
 def table_entries(
-    calibration: Sensor, config: Configuration, zero: np.ndarray | None = None, gains: np.ndarray | None = None
+    calibration: Calibration, config: Configuration, zero: np.ndarray | None = None, gains: np.ndarray | None = None
 ) -> dict[str, np.ndarray]:
     """Return the entries of every table that the hardware of a configuration has, by the table's name in TABLE_SELECT.
 

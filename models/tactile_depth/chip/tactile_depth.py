@@ -13,22 +13,12 @@ from types import MappingProxyType
 import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError
+from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.camera.camera_unit import DEFAULT, camera_fields
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.common import td_node_map
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import (
-    COLOUR_COEFFICIENT,
-    CORRECTION_BITS,
-    CORRECTION_WIDTH,
-    DARKEST_LOG2,
-    DEVIATION,
-    GUARD_BITS,
-    LIGHT_GAIN,
-    POLYNOMIAL,
-    RATIO,
-    Configuration,
-)
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.depth.zero_offset import no_zero, zero_offset
 from tactile_depth.chip.gradient.flat_field import (
@@ -54,12 +44,23 @@ from tactile_depth.chip.gradient.polynomial_gradient import (
 )
 from tactile_depth.chip.gradient.reference_capture import reference_capture_parameters
 from tactile_depth.chip.latency import frame_latency
+from tactile_depth.chip.limits import (
+    COLOUR_COEFFICIENT,
+    CORRECTION_BITS,
+    CORRECTION_WIDTH,
+    CUBIC,
+    DARKEST_LOG2,
+    DEVIATION,
+    GUARD_BITS,
+    LIGHT_GAIN,
+    POLYNOMIAL,
+    RATIO,
+)
 from tactile_depth.chip.poisson import spectral_solver, tridiagonal_solver, wide_solver
 from tactile_depth.chip.poisson.cores import NUMPY, Cores
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.device_description import description_parameters
 from tactile_depth.chip.rom_files import write_gains, write_gradient, write_polynomials, write_solver, write_zero
-from tactile_depth.sensor.sensor import CUBIC, Sensor
 
 CONSTANTS = {
     "GuardBits": (GUARD_BITS, "bits of the arithmetic below a stored word"),
@@ -100,7 +101,7 @@ class Tables:
     corrections: np.ndarray | None = None
 
 
-def slope_tables(calibration: Sensor, config: Configuration, gains: np.ndarray | None = None) -> Tables:
+def slope_tables(calibration: Calibration, config: Configuration, gains: np.ndarray | None = None) -> Tables:
     """Compute the tables of a calibration; for `gains` see `tactile_depth`.
 
     Raises
@@ -130,7 +131,7 @@ def require_nodes(name: Argument, nodes: np.ndarray, shape: tuple[int, ...]) -> 
 
 def tactile_depth(
     frames: np.ndarray,
-    calibration: Sensor,
+    calibration: Calibration,
     config: Configuration,
     monitor: Monitor | None = None,
     gains: np.ndarray | None = None,
@@ -175,7 +176,7 @@ def zeroed(
 
 def slope_codes(
     frames: np.ndarray,
-    calibration: Sensor,
+    calibration: Calibration,
     config: Configuration,
     monitor: Monitor | None = None,
     gains: np.ndarray | None = None,
@@ -320,7 +321,7 @@ def _colour_parameters(config: Configuration) -> dict[str, int]:
 
 def write_roms(
     folder: Path,
-    calibration: Sensor,
+    calibration: Calibration,
     config: Configuration,
     zero: np.ndarray | None = None,
     gains: np.ndarray | None = None,

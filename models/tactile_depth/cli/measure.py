@@ -18,7 +18,7 @@ from tactile_depth.device.device import Device
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.frame import DeviceFrame
 from tactile_depth.pictures.frames import read_picture
-from tactile_depth.sensor.built_in import synthetic
+from tactile_depth.sensor.synthetic import synthetic
 
 DEVICE = "device:"
 SENT = 4  # times that each press is sent, so that the light gains have settled at the last

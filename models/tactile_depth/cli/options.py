@@ -10,10 +10,12 @@ from typing import Any, get_args
 import numpy as np
 
 from tactile_depth.base.errors import InputError
-from tactile_depth.chip.configuration import GRADIENT_MODELS, Configuration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import GRADIENT_MODELS
 from tactile_depth.depth.pipeline import ARITHMETICS, Pipeline
 from tactile_depth.pictures.frames import read_stack
-from tactile_depth.sensor.built_in import identify, load
+from tactile_depth.pictures.identify import identify
+from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import BUILT_IN
 from tactile_depth.sensor.presets import SENSOR, Boundary, Solver
 from tactile_depth.sensor.sensor import Sensor

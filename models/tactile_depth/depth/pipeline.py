@@ -13,7 +13,7 @@ import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import LIGHT_GAIN, Configuration, ExactConfiguration, is_grid_of_hardware
+from tactile_depth.chip.configuration import Configuration, ExactConfiguration, is_grid_of_hardware
 from tactile_depth.chip.contact.contact_events import Settings
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tactile_depth.chip.depth.zero_offset import exact_zero, no_zero
@@ -21,6 +21,7 @@ from tactile_depth.chip.gradient.flat_field import captured_gains, dark_pixels, 
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.hardware_files import write_hardware
+from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.tactile_depth import Tables, light_of, slope_codes, slope_tables, solve, zeroed

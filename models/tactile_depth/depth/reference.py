@@ -9,8 +9,9 @@ from functools import cache
 import numpy as np
 from scipy.fft import dctn, dstn, idctn, idstn
 
-from tactile_depth.chip.configuration import DARKEST_LOG2, LIGHT_GAIN, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.flat_field import PixelGains, flat_codes, hold_dark, pixel_gains, reference_gains
+from tactile_depth.chip.limits import DARKEST_LOG2, LIGHT_GAIN
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.poisson.transform.orders import read_only
 from tactile_depth.sensor.sensor import Sensor, grid_terms

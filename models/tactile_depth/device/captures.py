@@ -10,8 +10,9 @@ from contextlib import contextmanager, nullcontext, suppress
 import numpy as np
 import numpy.typing as npt
 
-from tactile_depth.chip.configuration import LIGHT_GAIN, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.flat_field import pixel_gains
+from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.chip.registers.axil_registers import GAINS
 from tactile_depth.chip.registers.register_map import REGISTERS

@@ -10,9 +10,9 @@ import numpy.typing as npt
 
 from tactile_depth.base.by_value import ByValue
 from tactile_depth.base.errors import Argument, one_of
-from tactile_depth.sensor.built_in import synthetic
 from tactile_depth.sensor.scenes import BENCH, Press, render, scene_pixel_pitch_mm
 from tactile_depth.sensor.sensor import Camera, Sensor
+from tactile_depth.sensor.synthetic import synthetic
 
 CAMERA = Camera(240, 320)
 

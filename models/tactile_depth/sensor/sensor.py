@@ -16,22 +16,20 @@ from tactile_depth.base import files
 from tactile_depth.base.by_value import ByValue
 from tactile_depth.base.errors import Argument, InputError, Part, is_number
 from tactile_depth.chip.camera_configuration import FORMATS
-from tactile_depth.chip.configuration import (
+from tactile_depth.chip.configuration import Configuration, ExactConfiguration
+from tactile_depth.chip.limits import (
     COEFFICIENT_LIMITS,
     CORRECTION_BITS,
+    CUBIC,
     GRADIENT_MODELS,
     SMALLEST_DEPTH_RANGE_PX,
-    Configuration,
-    ExactConfiguration,
 )
 
 MODELS = GRADIENT_MODELS
 FORMAT_VERSION = 3
 PIXEL_FORMATS = tuple(FORMATS)
 BITS_PER_CHANNEL = (1, 6)
-COEFFICIENTS, CUBIC = (2, 3, 6), (2, 3, 10)  # slope, colour, term
 CORRECTIONS = (*(1 << CORRECTION_BITS,) * 3, 2)  # red, green, blue; slope
-SAMPLES = 16  # along a side of a grid: what is true of polynomials there is true of the whole grid
 ROUNDING = 2.0**-8  # largest relative increase of a slope by rounding to a table's format
 ASPECTS_AGREE = 0.005  # largest relative difference between the aspect ratios of a picture and of the calibrated camera
 LIGHTING_BLOCKS = (4, 4)  # rows and columns of `Sensor.lighting`
@@ -273,8 +271,8 @@ class Sensor(ByValue):
         return max(COEFFICIENT_LIMITS[0], 2.0 ** (math.floor(math.log2(largest)) + 1) if largest else 0)
 
     def grid_coefficients(self, config: Configuration) -> np.ndarray:
-        """Return the coefficients at `samples` of a configuration's grid, float64 (2, 3, `SAMPLES`, `SAMPLES`)."""
-        terms = grid_terms(*samples(config), (config.rows, config.columns), self.pixel_pitch_mm)
+        """Return the coefficients at `Configuration.samples`, float64 (2, 3, `SAMPLES`, `SAMPLES`)."""
+        terms = grid_terms(*config.samples, (config.rows, config.columns), self.pixel_pitch_mm)
         return np.tensordot(self.polynomials(config.gradient_model), terms, (-1, -1))
 
     def depth_range_px(self, depth_range_mm: float) -> float:
@@ -394,13 +392,6 @@ class Sensor(ByValue):
             held = {key: value for key, value in arrays.items() if value is not None}
             np.savez_compressed(work / path.name, **held)
             files.replace(work, (path.name,), path.parent)
-
-
-def samples(config: Configuration) -> tuple[np.ndarray, np.ndarray]:
-    """Return rows and columns, from corner to corner of a grid, float64 (`SAMPLES`, `SAMPLES`) each."""
-    sides = (np.linspace(0, length - 1, SAMPLES) for length in (config.rows, config.columns))
-    row, column = np.meshgrid(*sides, indexing="ij")
-    return row, column
 
 
 def grid_terms(row: np.ndarray, column: np.ndarray, grid: tuple[int, int], pixel_pitch_mm: float) -> np.ndarray:

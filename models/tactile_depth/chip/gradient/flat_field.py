@@ -23,13 +23,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, Part
+from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.common import td_node_map
 from tactile_depth.chip.common.td_block_sum import block_sum
 from tactile_depth.chip.common.td_node_map import node_map
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_half_even, round_saturate
-from tactile_depth.chip.configuration import DARKEST_LOG2, DEVIATION, RATIO, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import Format
-from tactile_depth.sensor.sensor import Sensor
+from tactile_depth.chip.limits import DARKEST_LOG2, DEVIATION, RATIO
 
 LATENCY = td_node_map.latency(1, 1) + 3
 
@@ -64,7 +65,7 @@ def flat_field_parameters(config: Configuration, output: Format) -> dict[str, in
     }
 
 
-def reference_gains(calibration: Sensor, config: Configuration) -> np.ndarray:
+def reference_gains(calibration: Calibration, config: Configuration) -> np.ndarray:
     """Return the gains of a calibration's reference frame, int64 (node rows, node columns, 3)."""
     if calibration.reference is None:
         return unit_gains(config)

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.sensor.sensor import Sensor
 
 LATENCY = 4
 
 
-def gradient_codes(calibration: Sensor, config: Configuration) -> np.ndarray:
+def gradient_codes(calibration: Calibration, config: Configuration) -> np.ndarray:
     """Return the slope codes gx, gy by bin {red, green, blue}, int64 (bins, 2); slope = code * config.gradient_lsb."""
     slopes = calibration.table.reshape(-1, 2)
     return np.rint(slopes / config.gradient_lsb).astype(np.int64)

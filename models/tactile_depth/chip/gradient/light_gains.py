@@ -24,8 +24,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_half_even, round_saturate
-from tactile_depth.chip.configuration import DEVIATION, LIGHT_GAIN, RATIO, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import Format
+from tactile_depth.chip.limits import DEVIATION, LIGHT_GAIN, RATIO
 
 LATENCY = 2
 NEAR_LOG2 = 3

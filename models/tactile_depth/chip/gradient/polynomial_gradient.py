@@ -25,18 +25,18 @@ import math
 import numpy as np
 
 from tactile_depth.base.errors import InputError
+from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
-from tactile_depth.chip.configuration import (
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.gradient_lookup import gradient_lookup
+from tactile_depth.chip.limits import (
     COLOUR_COEFFICIENT,
     CORRECTION_BITS,
     CORRECTION_WIDTH,
     DEVIATION,
     FINE_BITS,
     POLYNOMIAL,
-    Configuration,
 )
-from tactile_depth.chip.gradient.gradient_lookup import gradient_lookup
-from tactile_depth.sensor.sensor import Sensor, samples
 
 UNIT_BITS = 12  # of the unit of a correction, from its first: a correction is right within 2**-12 of itself
 LATENCY = 12
@@ -46,7 +46,7 @@ DEGREES = ((0, 0), (1, 0), (2, 0), (3, 0), (0, 1), (0, 2), (1, 1), (0, 3), (1, 2
 IS_FINE = np.array([sum(degree) == 3 for degree in DEGREES])  # terms with `fine_bits` more fraction bits
 
 
-def polynomial_words(calibration: Sensor, config: Configuration) -> np.ndarray:
+def polynomial_words(calibration: Calibration, config: Configuration) -> np.ndarray:
     """Return the words of a calibration's polynomials on its grid.
 
     Returns
@@ -60,7 +60,7 @@ def polynomial_words(calibration: Sensor, config: Configuration) -> np.ndarray:
     """
     # The coefficients on the grid, in units of a word's last bit, as differences: those of third degree are rounded
     # first, and each lower degree takes up, in least squares over the grid, what the degrees above have left.
-    row, column = samples(config)
+    row, column = config.samples
     basis = np.stack([_falling(column, across) * _falling(row, down) for across, down in DEGREES], axis=-1)
     form = config.polynomial
     wanted = calibration.grid_coefficients(config) / config.coefficient_unit
@@ -150,7 +150,7 @@ def correction_codes(deviation: np.ndarray) -> np.ndarray:
     )
 
 
-def correction_entries(calibration: Sensor, config: Configuration) -> np.ndarray | None:
+def correction_entries(calibration: Calibration, config: Configuration) -> np.ndarray | None:
     """Return the entries of the table of corrections, int64 (2**(3 b), 2); None unless the model is `cubic`."""
     if config.gradient_model != "cubic":
         return None

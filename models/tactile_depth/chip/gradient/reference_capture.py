@@ -8,8 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from tactile_depth.chip.common import td_divide
-from tactile_depth.chip.configuration import PIXEL_WIDTH, Configuration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.flat_field import captured_gains
+from tactile_depth.chip.limits import PIXEL_WIDTH
 
 LARGEST_LOG2 = 8
 """Base-2 logarithm of the most frames in a capture; large blocks reduce it (`largest_log2_frames`)."""

@@ -12,13 +12,13 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from tactile_depth.chip.limits import CUBIC
 from tactile_depth.chip.registers.axil_port import Response, offset_of, strobed_bits
 from tactile_depth.chip.registers.event_registers import LEVELS, STATUS, EventRegisters
 from tactile_depth.chip.registers.register_map import MAP, REGISTERS, TABLES
 from tactile_depth.chip.registers.setting_registers import SettingRegisters
 from tactile_depth.chip.registers.table_access import PORTS, SIZE, TableAccess
 from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT, TableBanks
-from tactile_depth.sensor.sensor import CUBIC
 
 BY_OFFSET = {register.offset: register for register in MAP}
 SELECT = REGISTERS["TABLE_SELECT"].field("select")

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Calibration as the chip takes it, so that no model of hardware depends on how a sensor is calibrated."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from tactile_depth.chip.configuration import Configuration
+
+
+class Calibration(Protocol):
+    """What models, tables and headers take of a `tactile_depth.sensor.sensor.Sensor`, whose docstring describes it."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def pixel_pitch_mm(self) -> float: ...
+    @property
+    def pixel_aspect(self) -> float: ...
+    @property
+    def reference(self) -> np.ndarray | None: ...
+    @property
+    def table(self) -> np.ndarray: ...
+    @property
+    def corrections(self) -> np.ndarray | None: ...
+    def grid_coefficients(self, config: Configuration) -> np.ndarray: ...
+    def check(self, config: Configuration, gains_given: bool = False) -> None: ...

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The sensor that took a picture, found by its lighting."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactile_depth.base.errors import Argument, InputError
+from tactile_depth.base.npy import HasArray, HasInterface, is_array
+from tactile_depth.pictures.exchanges import exchange_of
+from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.calibration_file import BUILT_IN
+from tactile_depth.sensor.sensor import LIGHTING_AGREES, Sensor
+
+PICTURE = "uint8 (rows, columns, 3), RGB"
+
+
+def identify(reference: np.ndarray | HasArray | HasInterface) -> Sensor:
+    """Return the built-in calibration of the sensor that took a picture without contact, found by its lighting.
+
+    Parameters
+    ----------
+    reference : uint8 array (rows, columns, 3), RGB, or a PIL image
+        Full picture of the sensor's camera.
+
+    Raises
+    ------
+    InputError
+        No built-in calibration has the aspect ratio and the lighting of the picture.
+    """
+    if not is_array(reference):
+        raise InputError("the ", Argument("reference"), f" is a {type(reference).__name__}", accepted=PICTURE)
+    reference = np.asarray(reference)
+    if reference.dtype != np.uint8 or reference.ndim != 3 or reference.shape[-1] != 3 or min(reference.shape) < 3:
+        raise InputError("the ", Argument("reference"), f" is {reference.dtype} {reference.shape}", accepted=PICTURE)
+    rows, columns = reference.shape[:2]
+    nearest, reasons = None, []
+    for sensor in map(load, BUILT_IN):
+        if sensor.camera is None or sensor.lighting is None:
+            continue
+        difference = sensor.lighting_difference(reference)
+        try:
+            sensor.zoom((rows, columns))
+        except InputError:
+            camera = sensor.camera
+            reasons.append(f"{sensor.name} takes {camera.columns} x {camera.rows}, this has {columns} x {rows} pixels")
+            continue
+        exchange = exchange_of(sensor, reference)
+        if difference > LIGHTING_AGREES or exchange:
+            reasons.append(
+                f"its lighting differs from {sensor.name} by {100 * difference:.0f} %, accepted are "
+                f"{100 * LIGHTING_AGREES:.0f} %{exchange and f', but {exchange}'}"
+            )
+        elif nearest is None or difference < nearest[0]:
+            nearest = difference, sensor
+    if nearest is None:
+        raise InputError(
+            f"the reference looks like no sensor with a built-in calibration ({'; '.join(reasons)})",
+            remedy=("give the ", Argument("calibration"), " of the sensor that took it"),
+        )
+    return nearest[1]
