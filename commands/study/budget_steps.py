@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -18,7 +18,7 @@ from tactile_depth.chip.depth.zero_offset import exact_zero
 from tactile_depth.chip.gradient.light_gains import Light, settled
 from tactile_depth.chip.limits import RATIO
 from tactile_depth.chip.poisson.divergence import divergence
-from tactile_depth.depth import reference
+from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler
 
 FRONT = ("quantisation", "pixel format", "camera noise and 8 bits", "light drift", "calibration")
@@ -42,31 +42,25 @@ class Exact:
     rest: np.ndarray
 
     @cached_property
-    def tables(self) -> reference.Tables:
-        config = self.pipeline.config
-        tables = reference.slope_tables(self.pipeline.sensor, config)
-        return replace(tables, gains=reference.gains(self.rest, config))
+    def twin(self) -> Twin:
+        return Twin(self.pipeline.sensor, self.pipeline.config, rest=self.rest)
 
     @cached_property
     def zero(self) -> np.ndarray:
         """The zero offset, rows from the top."""
-        depth = self.solved(self.slopes(self.rest))[::-1]
+        depth = self.twin.solved(self.slopes(self.rest))[::-1]
         return -exact_zero(np.zeros_like(depth), depth, self.pipeline.config)[::-1]
 
     def slopes(self, frame: np.ndarray, follow: bool = True) -> np.ndarray:
         """Return slopes; `follow`: with light gains, as in the hardware."""
-        config, light = self.pipeline.config, None
+        light = None
         if follow:
-            ratios = np.rint(frame * self.tables.gains * 2.0**RATIO.fraction).astype(np.int64)
-            light = settled(ratios, Light.of(config))
-        return reference.slopes_of(frame, self.pipeline.sensor, config, self.tables, light)
-
-    def solved(self, slopes: np.ndarray) -> np.ndarray:
-        neumann = self.pipeline.config.neumann
-        return reference.solve(divergence(slopes, neumann), neumann)
+            ratios = np.rint(frame * self.twin.exact_tables.gains * 2.0**RATIO.fraction).astype(np.int64)
+            light = settled(ratios, Light.of(self.pipeline.config))
+        return self.twin.exact_slopes(frame, light)
 
     def depth(self, slopes: np.ndarray) -> np.ndarray:
-        return self.solved(slopes) - self.zero
+        return self.twin.solved(slopes) - self.zero
 
 
 def framed(slopes: np.ndarray, height: np.ndarray) -> np.ndarray:
@@ -148,8 +142,8 @@ def parts_of(seen: Seen, camera: Camera, exact: Sequence[Exact], follow: bool) -
     calibrated = levels.slopes(camera.average(seen.steady), follow)
     depths.append(levels.depth(calibrated))
     if seen.known is not None:
-        depths.append(levels.solved(np.where(seen.known, seen.slopes, calibrated)))
-    depths += [levels.solved(seen.slopes), framed(seen.slopes, seen.height), seen.height]
+        depths.append(levels.twin.solved(np.where(seen.known, seen.slopes, calibrated)))
+    depths += [levels.twin.solved(seen.slopes), framed(seen.slopes, seen.height), seen.height]
     return -np.diff(depths, axis=0) * pipeline.pixel_pitch_mm
 
 

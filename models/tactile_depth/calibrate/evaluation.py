@@ -23,8 +23,7 @@ from tactile_depth.calibrate.presses import (
     to_grid,
 )
 from tactile_depth.chip.poisson.cores import fastest
-from tactile_depth.chip.poisson.divergence import divergence
-from tactile_depth.chip.tactile_depth import light_of, slope_codes, slope_tables, solve
+from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.pictures import Picture
 from tactile_depth.pictures.reference_check import check_reference
 from tactile_depth.sensor.sensor import HeightError, Sensor
@@ -224,10 +223,9 @@ def slopes_and_depths(
     on_grid = replace(sensor, pixel_pitch_mm=presses.grid_pitch_mm, reference=presses.background_on_grid)
     rows, columns = presses.grid
     config = on_grid.configuration(model, columns=columns, rows=rows, solver="tridiagonal", neumann=True)
-    frames, tables = np.stack([view.frame for view in views]), slope_tables(on_grid, config)
-    codes = slope_codes(frames, on_grid, config, tables=tables, light=light_of(frames, tables, config, cores=fastest()))
-    depth = solve(divergence(codes, config.neumann), config, cores=fastest())[:, ::-1]
-    return codes * config.gradient_lsb, depth * config.depth_lsb_px
+    twin = Twin(on_grid, config, cores=fastest())
+    codes, depth, _ = twin.chip(np.stack([view.frame for view in views]))
+    return codes * config.gradient_lsb, twin.upright(depth) * config.depth_lsb_px
 
 
 def _score(view: View, slopes: np.ndarray, depth: np.ndarray, pitch_mm: float) -> Score:

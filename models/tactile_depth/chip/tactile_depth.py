@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -185,18 +185,37 @@ def slope_codes(
     light: np.ndarray | LightFilter | None = None,
 ) -> np.ndarray:
     """Return the slope codes of frames, int64 (..., rows, columns, 2), by the gradient model of the configuration."""
-    if tables is None:
-        tables = slope_tables(calibration, config, gains)
-    if config.polynomials:
-        assert tables.gains is not None
-        if config.light_gains:
-            deviation = _lit_deviations(frames, tables.gains, config, dark_level, monitor, light)
-        else:
-            deviation = deviations(frames, tables.gains, config, dark_level, monitor)
-        return polynomial_gradient(deviation, tables.slopes, config, monitor, tables.corrections)
-    if tables.gains is not None:
-        frames = flat_codes(frames, tables.gains, config, dark_level, monitor)
-    return gradient_lookup(frames, tables.slopes, config.bits_per_channel)
+    tables = slope_tables(calibration, config, gains) if tables is None else tables
+    return slopes_and_light(frames, config, tables, monitor, dark_level, light)[0]
+
+
+def slopes_and_light(
+    frames: np.ndarray,
+    config: Configuration,
+    tables: Tables,
+    monitor: Monitor | None = None,
+    dark_level: int = 0,
+    light: np.ndarray | LightFilter | Callable[[np.ndarray, Light], np.ndarray] | None = None,
+) -> tuple[np.ndarray, np.ndarray | None]:
+    """Return slope codes, int64 (..., rows, columns, 2), and the light gains of each frame, None without them.
+
+    `light` is that of `tactile_depth`, or the function of `Cores` that finds the gains of single pictures.
+    """
+    if not config.polynomials:
+        if tables.gains is not None:
+            frames = flat_codes(frames, tables.gains, config, dark_level, monitor)
+        return gradient_lookup(frames, tables.slopes, config.bits_per_channel), None
+    assert tables.gains is not None
+    if not config.light_gains:
+        deviation, light = deviations(frames, tables.gains, config, dark_level, monitor), None
+    else:
+        relative, rule = ratios(frames, tables.gains, config, dark_level, monitor), Light.of(config)
+        if callable(light):
+            light = light(relative, rule)
+        elif not isinstance(light, np.ndarray):
+            light = (light or LightFilter(rule)).take_all(relative)
+        deviation = rule.deviations(relative, light[..., None, None, :], monitor)
+    return polynomial_gradient(deviation, tables.slopes, config, monitor, tables.corrections), light
 
 
 def light_of(
@@ -212,23 +231,6 @@ def light_of(
     assert tables.gains is not None
     relative = ratios(frames, tables.gains, config)
     return cores.settled(relative, Light.of(config)) if stream is None else stream.take_all(relative)
-
-
-def _lit_deviations(
-    frames: np.ndarray,
-    gains: PixelGains,
-    config: Configuration,
-    dark_level: int,
-    monitor: Monitor | None,
-    light: np.ndarray | LightFilter | None,
-) -> np.ndarray:
-    """Return the deviations of frames with their light gains; for `light` see `tactile_depth`."""
-    relative = ratios(frames, gains, config, dark_level, monitor)
-    if light is None:
-        light = LightFilter(Light.of(config))
-    if isinstance(light, LightFilter):
-        light = light.take_all(relative)
-    return Light.of(config).deviations(relative, light[..., None, None, :], monitor)
 
 
 def solve(f: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY) -> np.ndarray:

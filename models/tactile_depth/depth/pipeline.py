@@ -15,19 +15,18 @@ from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, 
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration, ExactConfiguration, is_grid_of_hardware
 from tactile_depth.chip.contact.contact_events import Settings
-from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2, captured_zero
+from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.depth.zero_offset import exact_zero, no_zero
-from tactile_depth.chip.gradient.flat_field import captured_gains, dark_pixels, pixel_gains, require_light, unit_gains
+from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gains, require_light
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.hardware_files import write_hardware
 from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.poisson.cores import fastest
-from tactile_depth.chip.poisson.divergence import divergence
-from tactile_depth.chip.tactile_depth import Tables, light_of, slope_codes, slope_tables, solve, zeroed
-from tactile_depth.depth import reference as exact
+from tactile_depth.chip.tactile_depth import zeroed
 from tactile_depth.depth.result import Recorder, Result
 from tactile_depth.depth.stream import Stream
+from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.blocks import Rest
 from tactile_depth.pictures.doubts import Doubt, UnusablePicture, Warned, tell
 from tactile_depth.pictures.frames import camera_scale
@@ -164,15 +163,11 @@ class Pipeline:
         threshold, area = (round(depth / self.depth_lsb_mm) for depth in (threshold_mm, area_threshold_mm))
         settings = Settings(threshold, threshold, area, minimum_area=1, debounce=1)
         self._recorder = Recorder(settings, data_width, self.config.solver == "tridiagonal")
-        self._gains = unit_gains(self.config)
         self._zero = no_zero(self.config)
         self._exact_zero = np.zeros(self.grid)
-        if rest is None:
-            self._prepare()
-        else:
-            self._use_reference(rest)
-            if zero_offset:
-                self._use_zero(rest)
+        self._use_reference(rest)
+        if zero_offset and rest is not None:
+            self._use_zero(rest)
 
     def __call__(self, pictures: Pictures, stream: Stream | None = None, name: str = "") -> Result:
         """Return the depth of pictures.
@@ -205,26 +200,24 @@ class Pipeline:
             The heights of a picture are uncertain.
         """
         frames, checked, single = self._checked(pictures, name or PICTURES)
-        monitor = Monitor()
-        gains = light_of(frames, self._tables, self.config, None if stream is None else stream.light, fastest())
+        monitor, twin, followed = Monitor(), self._twin, None if stream is None else stream.light
         if self.arithmetic == "chip":
-            slopes, depth = self._chip(frames, monitor, gains)
-            depth = zeroed(depth, self.config, monitor, self._zero)
+            slope_codes, streamed_codes, gains = twin.chip(frames, monitor, followed)
+            slopes = slope_codes * self.config.gradient_lsb
+            depth = twin.upright(zeroed(streamed_codes, self.config, monitor, self._zero))
         else:
-            slopes, depth = self._exact(frames, gains)
-            depth = depth - self._exact_zero
-        codes = np.rint(depth).astype(np.int32)
-        codes, depth_mm = self._upright(codes), self._upright(depth) * self.depth_lsb_mm
+            gains = twin.light(frames, followed)
+            slopes = twin.exact_slopes(frames, gains)
+            depth = twin.solved(slopes) / self.config.depth_lsb_px - self._exact_zero
+        codes, depth_mm = np.rint(depth).astype(np.int32), depth * self.depth_lsb_mm
         streamed = None
         if stream is not None:
             streamed = tuple(self._recorder.next(frame, stream.events) for frame in codes)
-        reference = self._tables.gains
-        dark = np.zeros(codes.shape, bool) if reference is None else dark_pixels(frames, reference, self.config)
         result = Result(
             codes,
             depth_mm,
             slopes if self.sensor.pixel_aspect == 1 else slopes / (self.sensor.pixel_aspect, 1),
-            dark,
+            twin.dark(frames),
             None if gains is None else gains * LIGHT_GAIN.lsb,
             dict(monitor.saturations),
             self._recorder,
@@ -388,53 +381,22 @@ class Pipeline:
         thresholds = {name: getattr(self._recorder.settings, field) for name, field in THRESHOLDS.items()}
         return write_hardware(Path(folder), self.sensor, self.config, self._zero, self._gains, thresholds)
 
-    # Arithmetic. Each function returns slopes, and depth in codes before the zero offset, rows in stream order.
-
-    def _chip(self, frames: np.ndarray, monitor: Monitor, light: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-        """Compute slopes and depth as the RTL does, bit for bit."""
-        step = max(1, PIXELS_AT_ONCE // (self.config.rows * self.config.columns))
-        slopes, depths = [], []
-        for start in range(0, len(frames), step):
-            part = frames[start : start + step]
-            gains = None if light is None else light[start : start + step]
-            codes = slope_codes(part, self.sensor, self.config, monitor, tables=self._tables, light=gains)
-            slopes.append(codes * self.config.gradient_lsb)
-            depths.append(solve(divergence(codes, self.config.neumann), self.config, monitor, fastest()))
-        return np.concatenate(slopes), np.concatenate(depths)
-
-    def _exact(self, frames: np.ndarray, light: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-        """Compute slopes and depth in double precision."""
-        slopes = exact.slopes_of(frames, self.sensor, self.config, self._exact_tables, light)
-        depth = exact.solve(divergence(slopes, self.config.neumann), self.config.neumann)
-        return slopes, self._upright(depth / self.config.depth_lsb_px)
-
-    def _upright(self, depths: np.ndarray) -> np.ndarray:
-        """Convert between the row orders of stream and picture; the tridiagonal solver starts at the bottom row."""
-        return depths[..., ::-1, :] if self.config.solver == "tridiagonal" else depths
-
     # Captures.
 
-    def _use_reference(self, frames: np.ndarray) -> None:
-        gains = captured_gains(frames, self.config)
-        require_light(gains, self.config)
-        self._rest = Rest.of(frames)
-        self._gains, self._sensor = gains, replace(self.sensor, reference=frames)
-        self._prepare()
-
-    def _prepare(self) -> None:
-        """Compute the tables that all frames use until the reference changes."""
-        gains = self._gains if self.config.flat_field else None
-        if self._is_of_hardware:
-            self._tables = slope_tables(self.sensor, self.config, gains)
-        else:
-            self._tables = Tables(None if gains is None else pixel_gains(gains, self.config), np.empty(0, np.int64))
-        self._exact_tables = exact.slope_tables(self.sensor, self.config)
+    def _use_reference(self, frames: np.ndarray | None) -> None:
+        if frames is not None:
+            require_light(captured_gains(frames, self.config), self.config)
+            self._rest, self._sensor = Rest.of(frames), replace(self.sensor, reference=frames)
+        self._twin = Twin(self.sensor, self.config, cores=fastest())
+        self._gains = reference_gains(self.sensor, self.config)
+        _ = self._twin.tables, self._twin.exact_tables  # now, because they may refuse the sensor
 
     def _use_zero(self, frames: np.ndarray) -> None:
-        light = light_of(frames, self._tables, self.config, cores=fastest())
+        twin = self._twin
         if self._is_of_hardware:
-            self._zero = captured_zero(self._chip(frames, Monitor(), light)[1], self.config)
-        self._exact_zero = -exact_zero(np.zeros(self.grid), self._exact(frames, light)[1], self.config)
+            self._zero = twin.captured_zero(frames)
+        depth = twin.upright(twin.solved(twin.exact_slopes(frames, twin.light(frames))) / self.config.depth_lsb_px)
+        self._exact_zero = twin.upright(-exact_zero(np.zeros(self.grid), depth, self.config))
 
     # Checks of pictures.
 

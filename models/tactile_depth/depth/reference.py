@@ -97,8 +97,8 @@ class Tables:
     table_gains: PixelGains | None = None
 
 
-def slope_tables(calibration: Sensor, config: Configuration) -> Tables:
-    """Compute the tables of a calibration on its grid.
+def slope_tables(calibration: Sensor, config: Configuration, rest: np.ndarray | None = None) -> Tables:
+    """Compute the tables of a calibration on its grid; `rest`: colours in place of its reference, of any type.
 
     Raises
     ------
@@ -112,7 +112,8 @@ def slope_tables(calibration: Sensor, config: Configuration) -> Tables:
         coefficients = polynomials_at_pixels(config.rows, config.columns, held, calibration.pixel_pitch_mm)
         dead = pixel_gains(reference_gains(calibration, config), config).dead
         corrections = calibration.corrections if config.gradient_model == "cubic" else None
-        return Tables(gains(calibration.reference, config), coefficients, dead if dead.any() else None, corrections)
+        colours = calibration.reference if rest is None else rest
+        return Tables(gains(colours, config), coefficients, dead if dead.any() else None, corrections)
     if config.flat_field:
         return Tables(table_gains=pixel_gains(reference_gains(calibration, config), config))
     return Tables()
