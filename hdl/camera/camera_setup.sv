@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // camera_setup: writes registers into a camera over SCCB, reads each back, and drives the camera's other pins.
 //
-// camera.hex has the list, an entry in a word {kind[1:0], address[15:0], data[7:0]}, by models/tactile_depth/chip/camera/
-// register_lists.py:
+// camera.hex has the list, an entry in a word {kind[1:0], address[15:0], data[7:0]}, by
+// models/tactile_depth/chip/camera/register_lists.py:
 //   0  write the register `address`, read it back, compare      2  read, and compare with data: the product ID
 //   1  write it; it does not read back what was written         3  {power_down, reset_n} = address[1:0], then data ms
 // A comparison that fails repeats its entry, Attempts times in all; then the list ends with `failed`, and `entry` and

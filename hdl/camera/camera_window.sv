@@ -14,7 +14,8 @@
 // Stream in: AXI4-Stream Video, WordsPerPixel words for a pixel, of which the lowest bytes are then put together, the
 // first below. PixelPairs 1: the other pixel of a pair that the window cuts counts as one of the window's.
 // Stream out: pixels of the picture in raster order, out_inside with those of the window, their marks, and whether row
-// and column are odd. Latency: 1 cycle; en low: nothing moves. Model: models/tactile_depth/chip/camera/camera_window.py.
+// and column are odd. Latency: 1 cycle; en low: nothing moves. Model:
+// models/tactile_depth/chip/camera/camera_window.py.
 
 `default_nettype none
 

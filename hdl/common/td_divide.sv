@@ -6,7 +6,8 @@
 // `start` takes the numerator and abandons a division under way. The divisor is held from `start` to `done`. Quotient,
 // remainder and overflow are valid in the cycle of `done` alone; the next `start` may come in that cycle. `overflow`:
 // the quotient has more than QuotientWidth bits, or the divisor is 0, so quotient and remainder mean nothing.
-// Latency: QuotientWidth + 1 cycles from start to done. Bit-accurate model: models/tactile_depth/chip/common/td_divide.py.
+// Latency: QuotientWidth + 1 cycles from start to done. Bit-accurate model:
+// models/tactile_depth/chip/common/td_divide.py.
 
 `default_nettype none
 

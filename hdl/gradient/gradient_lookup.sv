@@ -5,8 +5,8 @@
 //
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0 (the order of AMD's video cores). Stream out: slopes dz/dx, dz/dy,
 // z positive into the gel. Latency: 4 cycles; a gap in, a gap out. Table port: docs/streams.md; both banks hold the
-// calibration at power-up. Bit-accurate model: models/tactile_depth/chip/gradient/gradient_lookup.py, which also writes the
-// table.
+// calibration at power-up. Bit-accurate model: models/tactile_depth/chip/gradient/gradient_lookup.py, which also writes
+// the table.
 
 `default_nettype none
 

@@ -16,7 +16,8 @@
 //
 // Table port: docs/streams.md; the 60 words, at (3 axis + colour) 10 + term, terms A, B, D, T, E, F, H, U, G, W.
 // table_in_use follows a frame's first pixel after 4 cycles. Both banks hold the calibration at power-up. Bit-accurate
-// model: models/tactile_depth/chip/gradient/polynomial_gradient.py; models/tactile_depth/chip/rom_files.py writes the words.
+// model: models/tactile_depth/chip/gradient/polynomial_gradient.py; models/tactile_depth/chip/rom_files.py writes the
+// words.
 
 `default_nettype none
 

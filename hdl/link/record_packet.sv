@@ -5,7 +5,8 @@
 // The record is fixed when the first byte is taken; until then a newer one replaces it. One that comes while a packet
 // is being sent waits for its end; the next one then replaces it as it begins. Latency: the first byte is offered in
 // the clock after the last word. A byte takes a clock, and 2 more before each word. Memory: two banks. Models:
-// RecordPacket in models/tactile_depth/chip/link/packets.py, models/tactile_depth/chip/link/bank_choice.py for the banks.
+// RecordPacket in models/tactile_depth/chip/link/packets.py, models/tactile_depth/chip/link/bank_choice.py for the
+// banks.
 
 `default_nettype none
 

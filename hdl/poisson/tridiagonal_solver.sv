@@ -6,7 +6,8 @@
 // Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes, bottom row first,
 // one burst of Columns cycles a row. Latency: fixed, 3.5 Columns and a few registers behind the last pixel; in the
 // model. Several depth codes a clock: wide_solver. Formats:
-// models/tactile_depth/chip/configuration.py. Bit-accurate model: models/tactile_depth/chip/poisson/tridiagonal_solver.py.
+// models/tactile_depth/chip/configuration.py. Bit-accurate model:
+// models/tactile_depth/chip/poisson/tridiagonal_solver.py.
 
 `default_nettype none
 

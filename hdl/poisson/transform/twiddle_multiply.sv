@@ -5,7 +5,8 @@
 //
 // Stream in: bursts of Size complex words. Stream out: the same. Latency: 7 cycles; en low: nothing moves.
 // A factor of 1 is 2^(CoeffWidth-1) - 1, so with Drop = CoeffWidth - 1 the gain is 1 - 2^(1 - CoeffWidth).
-// Bit-accurate model: models/tactile_depth/chip/poisson/transform/twiddle_multiply.py, which also says what the ROMs hold.
+// Bit-accurate model: models/tactile_depth/chip/poisson/transform/twiddle_multiply.py, which also says what the ROMs
+// hold.
 
 `default_nettype none
 

@@ -26,8 +26,7 @@ from tactile_depth.chip.gradient.flat_field import (
     CODE_WIDTH,
     FLAT_CODE,
     PixelGains,
-    deviations,
-    flat_codes,
+    colours,
     flat_field_parameters,
     pixel_gains,
     ratios,
@@ -201,20 +200,18 @@ def slopes_and_light(
 
     `light` is that of `tactile_depth`, or the function of `Cores` that finds the gains of single pictures.
     """
+    if tables.gains is not None:
+        frames = colours(frames, tables.gains, config, dark_level, monitor)
     if not config.polynomials:
-        if tables.gains is not None:
-            frames = flat_codes(frames, tables.gains, config, dark_level, monitor)
         return gradient_lookup(frames, tables.slopes, config.bits_per_channel), None
-    assert tables.gains is not None
     if not config.light_gains:
-        deviation, light = deviations(frames, tables.gains, config, dark_level, monitor), None
-    else:
-        relative, rule = ratios(frames, tables.gains, config, dark_level, monitor), Light.of(config)
-        if callable(light):
-            light = light(relative, rule)
-        elif not isinstance(light, np.ndarray):
-            light = (light or LightFilter(rule)).take_all(relative)
-        deviation = rule.deviations(relative, light[..., None, None, :], monitor)
+        return polynomial_gradient(frames, tables.slopes, config, monitor, tables.corrections), None
+    rule = Light.of(config)
+    if callable(light):
+        light = light(frames, rule)
+    elif not isinstance(light, np.ndarray):
+        light = (light or LightFilter(rule)).take_all(frames)
+    deviation = rule.deviations(frames, light[..., None, None, :], monitor)
     return polynomial_gradient(deviation, tables.slopes, config, monitor, tables.corrections), light
 
 

@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,6 @@ from tactile_depth.base import files
 from tactile_depth.base.by_value import ByValue
 from tactile_depth.base.errors import Argument, InputError, Part, is_number
 from tactile_depth.chip.camera_configuration import FORMATS
-from tactile_depth.chip.configuration import Configuration, ExactConfiguration
 from tactile_depth.chip.limits import (
     COEFFICIENT_LIMITS,
     CORRECTION_BITS,
@@ -24,6 +23,9 @@ from tactile_depth.chip.limits import (
     GRADIENT_MODELS,
     SMALLEST_DEPTH_RANGE_PX,
 )
+
+if TYPE_CHECKING:
+    from tactile_depth.chip.configuration import Configuration
 
 MODELS = GRADIENT_MODELS
 FORMAT_VERSION = 3
@@ -228,7 +230,7 @@ class Sensor(ByValue):
         self,
         model: str = "",
         light_gains: bool | None = None,
-        kind: type[Configuration] = Configuration,
+        kind: type[Configuration] | None = None,
         **choices: Any,
     ) -> Configuration:
         """Return the configuration that fits this sensor on its grid.
@@ -240,7 +242,7 @@ class Sensor(ByValue):
         light_gains : bool or None
             A gain for each colour follows the light; None: unless the model is `lut`.
         kind : class
-            `Configuration`, or `ExactConfiguration` for double precision alone.
+            `Configuration`, the default, or `ExactConfiguration` for double precision alone.
         choices
             Arguments of `Configuration` that do not follow from the sensor.
 
@@ -249,6 +251,9 @@ class Sensor(ByValue):
         InputError
             The sensor does not have the model, or the configuration cannot be built.
         """
+        from tactile_depth.chip.configuration import Configuration, ExactConfiguration  # not for who only reads a file
+
+        kind = kind or Configuration
         flat_field = self.reference is not None
         model = model or (self.model if flat_field else GRADIENT_MODELS[0])
         self.require_model(model)

@@ -143,6 +143,18 @@ def _at_pixels(gains: np.ndarray | PixelGains, config: Configuration) -> PixelGa
 # The functions below take the gains of the nodes (node rows, node columns, 3) or the result of `pixel_gains`.
 
 
+def colours(
+    frames: np.ndarray,
+    gains: np.ndarray | PixelGains,
+    config: Configuration,
+    dark_level: int = 0,
+    monitor: Monitor | None = None,
+) -> np.ndarray:
+    """Return the colours of frames relative to the reference, as the gradient model of a configuration takes them."""
+    kind = (ratios if config.light_gains else deviations) if config.polynomials else flat_codes
+    return kind(frames, gains, config, dark_level, monitor)
+
+
 def flat_codes(
     frames: np.ndarray,
     gains: np.ndarray | PixelGains,
