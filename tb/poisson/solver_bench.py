@@ -7,7 +7,7 @@ import cocotb
 import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.latency import solver_latency
+from tactile_depth.chip.latency import by_solver_core
 from tactile_depth.chip.tactile_depth import solve
 from tb.lanes import BeatMonitor
 from tb.stream import (
@@ -37,7 +37,7 @@ async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrup
     sink = BeatMonitor(dut, "out", config.columns // config.lanes, config.lanes)
     await bench.start()
     words = f.reshape(-1, 1).tolist()
-    latency = solver_latency(config)
+    latency = sum(cycles for _, cycles in by_solver_core(config))
 
     async def send(count: int) -> None:
         await send_apart(bench, driver, words[:count], gap, pixels)

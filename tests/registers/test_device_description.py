@@ -14,7 +14,6 @@ from tactile_depth.chip.registers.axil_registers import AxilRegisters, Build
 from tactile_depth.chip.registers.device_description import (
     MANTISSA_BITS,
     NM_PER_MM,
-    RELATIVE_ERROR,
     depth_lsb_mm,
     gradient_lsb,
     scaled,
@@ -29,6 +28,7 @@ CONFIGURATIONS = {
         columns=32, data_width=32, flat_field=True, gradient_model="cubic", zero_offset=True, gain_width=17
     ),
 }
+RELATIVE_ERROR = 2.0**-MANTISSA_BITS  # largest, of a unit that `scaled` rounds
 NAMES = ("DEVICE", "DEPTH_UNIT", "SLOPE_UNIT", "PITCH")
 
 

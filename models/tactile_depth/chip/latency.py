@@ -42,11 +42,6 @@ def by_solver_core(config: Configuration) -> list[tuple[str, int]]:
     return solver.latency_by_core(config.columns)
 
 
-def solver_latency(config: Configuration) -> int:
-    """Return the cycles of the solver from the last divergence word of a frame to its first depth, for any gaps."""
-    return sum(cycles for _, cycles in by_solver_core(config))
-
-
 def frame_latency(config: Configuration) -> int:
     """Return the cycles from the last pixel of a frame out of the guard to its first depth out of the solver."""
     return sum(cycles for unit, _, cycles in by_core(config) if unit in ("gradient_unit", "poisson_unit"))

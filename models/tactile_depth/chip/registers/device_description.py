@@ -11,8 +11,6 @@ from tactile_depth.chip.registers.register_map import REGISTERS
 
 DEPTH_UNIT, SLOPE_UNIT = REGISTERS["DEPTH_UNIT"], REGISTERS["SLOPE_UNIT"]
 MANTISSA_BITS = DEPTH_UNIT.field("mantissa").width
-RELATIVE_ERROR = 2.0**-MANTISSA_BITS
-"""Largest relative error of a unit that `scaled` rounds."""
 NM_PER_MM = 1_000_000
 
 
