@@ -106,7 +106,7 @@ formal: $(TOOLS)
 # Run mutants of cores through their testbenches, and settle survivors by proof. CORE=a,b
 mutate: $(TOOLS)
 
-# Write docs/sign-off.md from the results of make formal and make mutate.
+# Write docs/generated/sign-off.md from the results of make formal and make mutate.
 sign-off: $(STAMP)
 
 # Measure contact to command and to motion, with the RTL in the loop and through a host.
@@ -118,8 +118,8 @@ baselines: $(BASELINES)
 # Write an HTML page with figures of latency, throughput, error, cost and extremes.
 report: $(STAMP)
 
-# Write the tables of docs/results.md, docs/hardware.md and docs/software.md.
-figures: $(STAMP)
+# Write the tables of docs/results.md, docs/hardware.md and docs/software.md, and draw what pages show.
+figures: $(TOOLS)
 
 # Fit a calibration file to ball presses of known diameter. PRESSES=folder OUT=mine.npz
 calibrate: $(STAMP)

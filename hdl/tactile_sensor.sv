@@ -6,7 +6,8 @@
 //
 // Stream in: AXI4-Stream Video of the camera's pictures in its format (hdl/camera/pixel_format.sv). Streams out, reset
 // and registers: those of tactile_depth; the registers of the camera are at 0x100 to 0x13F of the same port
-// (docs/camera-registers.md). Latency and models: models/tactile_depth/chip/latency.py, and those of the two parts.
+// (docs/generated/camera-registers.md). Latency and models: models/tactile_depth/chip/latency.py, and those of the two
+// parts.
 
 `default_nettype none
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Registers of a device in memory, by the rules of docs/registers.md, for tests of programs in C.
+// Registers of a device in memory, by the rules of docs/generated/registers.md, for tests of programs in C.
 //
 // Every write is printed. A frame begins at the read of TABLE_COMMIT whose number is given, and at the end.
 

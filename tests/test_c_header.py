@@ -15,6 +15,7 @@ import pytest
 
 import tactile_depth as td
 from commands.common.repository import ROOT
+from commands.hardware import registers
 from tactile_depth.chip.c_header import FILE, c_header
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.hardware_files import write_hardware
@@ -120,7 +121,8 @@ class Program:
 def program_of(folder: Path, config: Configuration, pitch_mm: float) -> Program:
     """Compile the program with the header in a folder; the header by the strictest rules of C99."""
     gcc, path = tool("gcc"), folder / "load_tables"
-    common = (*WARNINGS, f"-I{folder}", f"-I{ROOT / 'registers'}", "-c")
+    registers.c_header(registers.PIPELINE, folder)
+    common = (*WARNINGS, f"-I{folder}", "-c")
     compiled(gcc, "-std=gnu11", *common, ROOT / "tests" / "register_file.c", "-o", folder / "device.o")
     strict = ("-Wconversion", "-Wshadow")
     compiled(gcc, "-std=c99", *strict, *common, ROOT / "tests" / "load_tables.c", "-o", folder / "main.o")
@@ -301,8 +303,10 @@ def test_values_for_the_user(tmp_path: Path) -> None:
     assert area == round(pipeline.area_threshold_mm / pipeline.depth_lsb_mm)
     addresses = {name.removesuffix("_ADDRESS"): value for name, value in values.items() if name.endswith("_ADDRESS")}
     assert {name: int(value, 16) for name, value in addresses.items()} == {
-        name: REGISTERS[name].offset for name in addresses
+        name: register.offset for name, register in REGISTERS.items()
     }
+    fields = {f"{r.name}_{f.name.upper()}": f.mask for r in REGISTERS.values() for f in r.fields if f.name != "value"}
+    assert {name: int(values[name].rstrip("u"), 16) for name in fields} == fields
 
 
 @pytest.mark.parametrize("standard", ["c++11", "c++20"])

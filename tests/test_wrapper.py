@@ -13,6 +13,7 @@ import pytest
 
 from commands.common import repository, wrapper
 from commands.common import simulator as simulation
+from commands.hardware import registers
 from tactile_depth.chip.c_header import FILE, c_header
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.depth.zero_capture import captured_zero
@@ -90,6 +91,9 @@ def test_the_command_writes_the_module_and_its_tables(tmp_path: Path) -> None:
     assert written == {path.name: path.read_text() for path in (tmp_path / "direct").glob("*.hex")}
     header = c_header(SENSOR, Configuration(columns=16, solver="tridiagonal"))
     assert (tmp_path / FILE).read_text() == header
+    (tmp_path / "described").mkdir()
+    described = registers.ip_xact(registers.PIPELINE, tmp_path / "described")
+    assert (tmp_path / described.name).read_text() == described.read_text()
 
 
 def test_the_zero_offset_is_in_its_table(tmp_path: Path) -> None:

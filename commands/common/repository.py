@@ -20,6 +20,7 @@ from tb.structures import Mutants, Structure
 
 ROOT = Path(__file__).resolve().parents[2]
 HDL = ROOT / "hdl"
+GENERATED = ROOT / "docs" / "generated"  # pages and drawings that commands write as a whole
 BOARDS = {name: sorted((ROOT / "boards" / name).glob("*.sv")) for name in ("ulx3s", "nexus")}
 TECHNOLOGY = sorted((ROOT / "boards" / "ecp5").glob("*.sv"))  # in place of cores of the same name
 PACKAGE = "_pkg"  # end of the name of a SystemVerilog package, which is no core

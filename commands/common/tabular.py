@@ -9,6 +9,7 @@ class Row:
 print(table_of(Row, rows))
 """
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -82,3 +83,17 @@ def with_tables(page: Path, begin: str, end: str, tables: str) -> str:
     """Return the text of a page with `tables` between its two marks, and the rest as it is."""
     before, _, after = page.read_text().partition(begin)
     return f"{before}{begin}\n\n{tables}\n{end}{after.partition(end)[2]}"
+
+
+def records(document: Any, indent: str = "") -> str:
+    """Return a document as JSON that a repository keeps: each innermost record has a line of its own."""
+    named = isinstance(document, dict)
+    if named:
+        held = [(f"{json.dumps(key)}: ", value) for key, value in document.items()]
+    else:
+        held = [("", value) for value in document] if isinstance(document, list) else []
+    if not any(value and isinstance(value, (dict, list)) for _, value in held):
+        return json.dumps(document)
+    lines = ",\n".join(f"{indent} {key}{records(value, indent + ' ')}" for key, value in held)
+    begin, end = "{}" if named else "[]"
+    return f"{begin}\n{lines}\n{indent}{end}"

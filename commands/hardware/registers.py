@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make registers`: writes all files that the maps in registers/ describe, and the list of sources for FuseSoC.
 
-There are two maps: tactile_depth.rdl of the pipeline, and camera.rdl of the camera front end. Five files of each are
-committed, so that nobody needs these tools to use them: the page by peakrdl-markdown, the C header by peakrdl-cheader,
-the IP-XACT of IEEE 1685-2014 by peakrdl-ipxact, a package of SystemVerilog, because no exporter writes one that Icarus
-11 reads, and the JSON that register_map.py reads, because a run then needs no compiler of 40 MB. The Python access
-layer of peakrdl-python goes to build/: it has thousands of lines, most of them its library.
+There are two maps: tactile_depth.rdl of the pipeline, and camera.rdl of the camera front end. Three files of each are
+committed, so that nobody needs these tools to use them: the page by peakrdl-markdown, a package of SystemVerilog,
+because no exporter writes one that Icarus 11 reads, and the JSON that register_map.py reads, because a run then needs
+no compiler of 40 MB. The C header by peakrdl-cheader, the IP-XACT of IEEE 1685-2014 by peakrdl-ipxact and the Python
+access layer of peakrdl-python go to build/: they have thousands of lines.
 """
 
-import json
 import re
 import sys
 from dataclasses import dataclass
@@ -22,17 +21,18 @@ from peakrdl_ipxact import IPXACTExporter
 from peakrdl_markdown import MarkdownExporter
 from peakrdl_python.exporter import PythonExporter
 from systemrdl.compiler import RDLCompiler
-from systemrdl.node import AddrmapNode, FieldNode, RegNode, RootNode
+from systemrdl.node import FieldNode, RegNode, RootNode
 
 from commands.common import variables, wrapper
-from commands.common.repository import ROOT, sources
+from commands.common.repository import GENERATED, ROOT, sources
+from commands.common.tabular import records
 from tactile_depth.base import files
 from tactile_depth.chip.camera.pixel_format import chroma_codes
 from tactile_depth.chip.camera_configuration import FORMATS
 
 FUSESOC = ROOT / "tactile_depth.core"
 VENDOR = "tactile-depth"  # of the IP-XACT components
-LAYER = ROOT / "build" / "registers"
+BUILT = ROOT / "build" / "registers"
 LAYER_NAME = "tactile_depth_registers"  # `tactile_depth` is the package of models
 
 
@@ -273,14 +273,26 @@ def fusesoc_core() -> str:
     return re.sub(r"(?<=  rtl:\n    files:\n)( {6}- .*\n)+", files, FUSESOC.read_text())
 
 
-def ip_xact(of: Map, top: AddrmapNode, path: Path) -> str:
-    """Return the text of the IP-XACT component of a map, which is first written to `path`."""
+def c_header(of: Map, folder: Path) -> Path:
+    """Write the C header of a map into a folder."""
+    path = folder / f"{of.name}.h"
+    # Names by position, not by type: a type that is used twice would get a hash for its name.
+    CHeaderExporter().export(compiled(of.source).top, str(path), reuse_typedefs=False, std=CStandard.gnu11)
+    path.write_text(f"// SPDX-License-Identifier: Apache-2.0\n// {of.written_by}\n{path.read_text()}")
+    return path
+
+
+def ip_xact(of: Map, folder: Path) -> Path:
+    """Write the IP-XACT component of a map into a folder."""
     identity = re.search(r"^name: .*:(\w+):([\w.]+)$", FUSESOC.read_text(), re.MULTILINE)
     assert identity is not None
     name, version = identity.groups()
-    IPXACTExporter(vendor=VENDOR, library=name, version=version).export(top, str(path))
+    path = folder / f"{of.name}.xml"
+    IPXACTExporter(vendor=VENDOR, library=name, version=version).export(compiled(of.source).top, str(path))
     declaration, _, body = path.read_text().partition("\n")
-    return f"{declaration}\n<!-- SPDX-License-Identifier: Apache-2.0 -->\n<!-- {of.written_by} -->\n{body}"
+    notice = f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n<!-- {of.written_by} -->"
+    path.write_text(f"{declaration}\n{notice}\n{body}")
+    return path
 
 
 def generated(of: Map) -> dict[Path, str]:
@@ -289,16 +301,11 @@ def generated(of: Map) -> dict[Path, str]:
     registers = [register_of(node) for node in top.registers(unroll=True)]
     described = {"written_by": of.written_by, "address_width": address_width(registers), "registers": registers}
     with files.temporary() as folder:
-        page, header = folder / of.page, folder / f"{of.name}.h"
+        page = folder / of.page
         MarkdownExporter().export(top, str(page), input_files=[str(of.source.relative_to(ROOT))])
-        # Names by position, not by type: a type that is used twice would get a hash for its name.
-        CHeaderExporter().export(top, str(header), reuse_typedefs=False, std=CStandard.gnu11)
         return {
-            ROOT / "docs" / of.page: f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n{page.read_text()}",
-            of.source.with_suffix(".h"): f"// SPDX-License-Identifier: Apache-2.0\n// {of.written_by}\n"
-            + header.read_text(),
-            of.source.with_suffix(".xml"): ip_xact(of, top, folder / f"{of.name}.xml"),
-            ROOT / "models" / "tactile_depth" / "chip" / "registers" / of.data: json.dumps(described, indent=1) + "\n",
+            GENERATED / of.page: f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n{page.read_text()}",
+            ROOT / "models" / "tactile_depth" / "chip" / "registers" / of.data: records(described) + "\n",
             of.package: package(of, registers),
         }
 
@@ -331,5 +338,7 @@ def run() -> None:
         changed = not path.exists() or path.read_text() != text
         path.write_text(text)
         print(f"{'wrote' if changed else 'same '} {path.relative_to(ROOT)}")
-    python_layer(LAYER)
-    print(f"wrote {LAYER.relative_to(ROOT)}/{LAYER_NAME}")
+    BUILT.mkdir(parents=True, exist_ok=True)
+    python_layer(BUILT)
+    for path in (BUILT / LAYER_NAME, *(write(of, BUILT) for of in MAPS for write in (c_header, ip_xact))):
+        print(f"wrote {path.relative_to(ROOT)}")

@@ -2,11 +2,11 @@
 """`make wrap NAME=finger`: a module tactile_depth_finger with every parameter of a configuration inside.
 
 Takes NAME, OUT, TABLES (where simulator and synthesis find the table files) and the variables of `make sim` that choose
-a configuration. The module has the ports of tactile_depth. It, its table files, and a C header that loads the same
-tables over the registers go into the folder OUT; with ZERO the table of the zero offset holds what a capture of those
-frames measures. Modules for several configurations fit into one design, if each has its own folder of tables. With
-CAMERA, and BAYER and WINDOW, the module is tactile_sensor_finger: its s_axis takes the words of that camera, and it has
-the pins of dvp_receive and camera_setup.
+a configuration. The module has the ports of tactile_depth. It, its table files, a C header that loads the same tables
+over the registers, and the registers in IP-XACT go into the folder OUT; with ZERO the table of the zero offset holds
+what a capture of those frames measures. Modules for several configurations fit into one design, if each has its own
+folder of tables. With CAMERA, and BAYER and WINDOW, the module is tactile_sensor_finger: its s_axis takes the words of
+that camera, and it has the pins of dvp_receive and camera_setup.
 """
 
 import os
@@ -14,7 +14,7 @@ import sys
 
 from commands.common import repository, run_request, variables, wrapper
 from commands.common.zero_offset import untouched
-from commands.hardware import synth, synthesis
+from commands.hardware import registers, synth, synthesis
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip import c_header
@@ -41,6 +41,8 @@ def main() -> None:
             write_roms(work, calibration, config, zero)
             count = len(list(work.glob("*.hex")))
             (work / c_header.FILE).write_text(c_header.c_header(calibration, config, zero))
+            for of in registers.MAPS if frames.camera else (registers.PIPELINE,):
+                registers.ip_xact(of, work)
             names = [file.name for file in work.iterdir()]
             files.replace(work, names, out)
         run_request.announce(request, config)

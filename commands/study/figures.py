@@ -1,23 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make figures`: write the tables of docs/results.md, hardware.md, software.md and error-budget.md.
+"""`make figures`: write the tables of docs/results.md, hardware.md, software.md and error-budget.md, and draw.
 
 Cycles, multipliers, bits and errors of the arithmetic are computed here, by the models that the RTL is compared with.
 Figures of runs that take minutes come from docs/figures.json, each with its commit, and with "changed" where the RTL,
-parameters and tables of the run, or the code that was timed, are no longer those of that commit.
+parameters and tables of the run, or the code that was timed, are no longer those of that commit. Waveforms and diagrams
+of pages are drawn from docs/waves/*.json and docs/*.dot.
 """
 
 import json
 import re
+import subprocess
 import sys
+import sysconfig
 import textwrap
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import wavedrom
 
 from commands.common import published, recorded, run_request, variables
-from commands.common.repository import ROOT
+from commands.common.repository import GENERATED, ROOT
 from commands.common.tabular import compact
 from commands.common.zero_offset import untouched
 from commands.cost.cost import CAMERAS, cost
@@ -321,8 +325,22 @@ def document(page: Path) -> str:
     return TABLE.sub(lambda found: f"{found[1]}\n{TABLES[found[2]]()}{found[3]}", page.read_text())
 
 
+def drawings() -> dict[Path, str]:
+    """Return each waveform and diagram that pages show, as SVG."""
+    draw = [f"{sysconfig.get_path('scripts')}/graphviz-pure", "-Tsvg"]
+    docs = ROOT / "docs"
+    waves = {file: wavedrom.render(file.read_text()).tostring() + "\n" for file in docs.glob("waves/*.json")}
+    diagrams = {
+        file: subprocess.run([*draw, file], capture_output=True, text=True, check=True).stdout
+        for file in docs.glob("*.dot")
+    }
+    return {GENERATED / f"{file.stem}.svg": text for file, text in (waves | diagrams).items()}
+
+
 def main() -> None:
     with variables.reported("figures"):
         variables.given(sys.argv[1:], ())
+        for drawing, text in drawings().items():
+            drawing.write_text(text)
         for page in PAGES:
             page.write_text(document(page))

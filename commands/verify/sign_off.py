@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make sign-off`: write docs/sign-off.md from docs/sign-off.json.
+"""`make sign-off`: write docs/generated/sign-off.md from docs/sign-off.json.
 
 `make mutate` and `make formal` add results to that file. Each has the commit of its run and a fingerprint of the core's
 file without comments, so that the page tells whether its RTL has changed since.
@@ -15,20 +15,21 @@ from commands.common import repository, tabular, variables
 from commands.common.repository import ROOT, git
 
 RESULTS = ROOT / "docs" / "sign-off.json"
-PAGE = ROOT / "docs" / "sign-off.md"
+PAGE = repository.GENERATED / "sign-off.md"
 COUNTED = ("killed", "equivalent", "different", "open")
 TEXT = """<!-- SPDX-License-Identifier: Apache-2.0 -->
 <!-- written by make sign-off -->
 # Sign-off
 
-Each row is the newest result of a core: whether its proofs hold (`make formal`, [formal.md](formal.md)), how many
-mutants its testbench kills (`make mutate`, [mutation.md](mutation.md)), and at which commit. 32a97ff is version 0.1.0.
+Each row is the newest result of a core: whether its proofs hold (`make formal`, [formal.md](../formal.md)), how many
+mutants its testbench kills (`make mutate`, [mutation.md](../mutation.md)), and at which commit. 32a97ff is version
+0.1.0.
 
 A result holds for the RTL of its commit. *changed* says that the core's file differs since, comments aside: run the
 command again. Until commit f935620, which moved and renamed cores, git compared contents under the old names; its files
-count as the first ones. *Open* mutants, which no step settled in time, count as holes; [mutation.md](mutation.md) lists
-some. The score is killed / (mutants - equivalent). The stages of [verification.md](verification.md) follow: V2 needs a
-proof that holds, V3 a score of 100 % too, both unchanged.
+count as the first ones. *Open* mutants, which no step settled in time, count as holes; [mutation.md](../mutation.md)
+lists some. The score is killed / (mutants - equivalent). The stages of [verification.md](../verification.md) follow: V2
+needs a proof that holds, V3 a score of 100 % too, both unchanged.
 
 """
 HEAD = ("core", "proofs", "commit", "RTL since", "mutants", "score", "commit", "RTL since", "stage")
@@ -65,7 +66,7 @@ def record(core: str, kind: str, figures: Mapping[str, int]) -> None:
         return
     rtl = fingerprint(file.read_text())
     results[core][kind] = {**figures, "commit": commit.decode().strip(), "rtl": rtl}
-    RESULTS.write_text(json.dumps(dict(sorted(results.items())), indent=1) + "\n")
+    RESULTS.write_text(tabular.records(dict(sorted(results.items()))) + "\n")
 
 
 def row(core: str, results: Mapping[str, Any]) -> tuple[str, ...]:
@@ -91,7 +92,7 @@ def row(core: str, results: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def document() -> str:
-    """Return docs/sign-off.md."""
+    """Return the text of `PAGE`."""
     results, units = load(), repository.units()
     rows = [row(core, results.get(core, {})) for core in repository.cores() if core not in units]
     return TEXT + tabular.compact(HEAD, rows)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_camera_registers: each register as docs/camera-registers.md has it, and the outputs that show the settings.
+// fv_camera_registers: each register as docs/generated/camera-registers.md has it, and the outputs that
+// show the settings.
 //
 // Nothing is assumed of the port, the front end, the set-up or reset.
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_axil_registers: the rules of AXI4-Lite, and every register as docs/registers.md has it, at the widths in use.
+// fv_axil_registers: the rules of AXI4-Lite, and every register as docs/generated/registers.md has it, at the widths in
+// use.
 //
 // Nothing is assumed of the master, the pipeline, the tables or reset; the registers of the camera answer at their offsets
 // alone. The registers of the specification change by

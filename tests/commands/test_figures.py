@@ -22,6 +22,12 @@ def test_the_tables_of_a_page_are_current(page: Path) -> None:
     assert page.read_text() == figures.document(page), "run make figures"
 
 
+def test_every_drawing_is_current() -> None:
+    drawn = figures.drawings()
+    assert drawn.keys() == set(repository.GENERATED.glob("*.svg"))
+    assert [path.name for path, text in drawn.items() if path.read_text() != text] == [], "run make figures"
+
+
 @pytest.mark.parametrize("page", figures.PAGES, ids=lambda page: page.stem)
 def test_a_page_has_no_other_tables_of_figures(page: Path) -> None:
     by_hand = figures.TABLE.sub("", page.read_text())

@@ -68,7 +68,7 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "AXI4-Lite rules; every register reads, counts, sticks and clears as docs/registers.md says",
+        "AXI4-Lite rules; every register reads, counts, sticks and clears as docs/generated/registers.md says",
         f"{FULL_WIDTH}; each gradient model, with a camera or without, all options",
         {"Polynomial": polynomial, "Corrections": corrections, "Camera": camera},
         depth=16,

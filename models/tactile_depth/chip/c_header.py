@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""C header with the tables of a calibration, and with the function that loads them over the registers."""
+"""C header with the tables of a calibration, the function that loads them over the registers, and the registers."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from importlib import resources
 from types import MappingProxyType
 
@@ -14,8 +14,8 @@ from tactile_depth.chip import registers
 from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.registers.axil_registers import Build
-from tactile_depth.chip.registers.register_map import REGISTERS, TABLES, WORD
-from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
+from tactile_depth.chip.registers.register_map import MAP, REGISTERS, TABLES, WORD
+from tactile_depth.chip.registers.table_banks import COMMIT
 from tactile_depth.chip.table_entries import ONE_WORD, table_entries
 from tactile_depth.chip.tactile_depth import top_parameters
 
@@ -23,8 +23,6 @@ FILE = "tactile_depth_tables.h"
 PREFIX = "TACTILE_DEPTH_"
 SHOWN = ("ID", "GRID", "FORMAT", "DEVICE", "DEPTH_UNIT", "SLOPE_UNIT")
 """Registers that a device of the configuration shows; of DEVICE all fields but the lanes."""
-ACCESSED = ("TABLE_SELECT", "TABLE_INDEX", "TABLE_HIGH", "TABLE_LOW", "TABLE_COMMIT", "TABLE_SIZE", "PITCH")
-"""Registers that the function accesses beside these and those of the captures."""
 WORDS_OF_LINE = 8
 NO_THRESHOLDS: Mapping[str, int] = MappingProxyType({})
 ABOUT = """\
@@ -64,7 +62,7 @@ def c_header(
         _units(calibration, config),
         _device(calibration, config),
         _thresholds(thresholds),
-        _addresses(thresholds),
+        _registers(),
         _tables(tables),
         loader,
         "#endif\n",
@@ -108,10 +106,9 @@ def _device(calibration: Calibration, config: Configuration) -> str:
     words = {"ID": REGISTERS["ID"].reset or 0, **build.description, "PITCH": build.parameters["PitchNm"]}
     words["DEVICE"] &= mask
     return (
-        "/* Words that a device that fits shows; the word that is written to PITCH; bits of fields. */\n"
+        "/* Words that a device that fits shows; the word that is written to PITCH. */\n"
         + "".join(define(name, word(words[name])) for name in (*SHOWN, "PITCH"))
         + define("DEVICE_MASK", word(mask))
-        + "".join(define(f"{capture.name}_BUSY", word(capture.pack(busy=1))) for capture in CAPTURES.values())
     )
 
 
@@ -123,12 +120,15 @@ def _thresholds(thresholds: Mapping[str, int]) -> str:
     return "/* Values for the registers of these names, which tactile_depth_load does not write. */\n" + listed
 
 
-def _addresses(thresholds: Iterable[str]) -> str:
-    """Return the byte addresses of registers."""
-    names = (*SHOWN, *ACCESSED, *(capture.name for capture in CAPTURES.values()), *thresholds)
-    return "/* Byte addresses. */\n" + "".join(
-        define(f"{name}_ADDRESS", f"0x{REGISTERS[name].offset:02x}u") for name in names
-    )
+def _registers() -> str:
+    """Return the byte address of each register, and the bits of its fields, unless the register is one number."""
+    text = "/* Byte address of each register, and the bits of each field. */\n"
+    for register in MAP:
+        text += define(f"{register.name}_ADDRESS", f"0x{register.offset:02x}u")
+        for field in register.fields:
+            if field.name != "value":
+                text += define(f"{register.name}_{field.name.upper()}", word(field.mask))
+    return text
 
 
 def _tables(tables: Mapping[str, np.ndarray]) -> str:

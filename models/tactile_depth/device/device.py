@@ -72,8 +72,8 @@ class Device(AbstractContextManager["Device"]):
     depth_format : str
     registers : mapping of str to int
         Registers of the device by name, as `registers["FRAMES_OUT"]`, and their fields, as
-        `registers["CONTROL.hold_contact"]`. Each access goes to the device; assignment writes. docs/registers.md lists
-        them. A register with a signed value gives a signed number.
+        `registers["CONTROL.hold_contact"]`. Each access goes to the device; assignment writes.
+        docs/generated/registers.md lists them. A register with a signed value gives a signed number.
 
     Raises
     ------

@@ -12,6 +12,7 @@ from tactile_depth.chip.registers.register_map import REGISTERS, WORD, Field, Re
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
 
+REMEDY = "docs/generated/registers.md says when"
 VALUE = "value"  # the field of a register that holds a single number
 
 
@@ -22,7 +23,7 @@ def read_words(line: Channel, names: Sequence[str]) -> dict[str, int]:
     """
     words = line.read([REGISTERS[name].offset for name in names])
     if len(words) < len(names):
-        raise DeviceError(f"the device refuses to read {names[len(words)]}", remedy="docs/registers.md says when")
+        raise DeviceError(f"the device refuses to read {names[len(words)]}", remedy=REMEDY)
     return dict(zip(names, words, strict=True))
 
 
@@ -31,7 +32,7 @@ def write_words(line: Channel, pairs: Sequence[tuple[str, int]]) -> None:
     done = line.write([(REGISTERS[name].offset, word & WORD) for name, word in pairs])
     if done < len(pairs):
         problem = f"the device refuses to write {pairs[done][0]} ({done} of {len(pairs)} accesses are done)"
-        raise DeviceError(problem, remedy="docs/registers.md says when")
+        raise DeviceError(problem, remedy=REMEDY)
 
 
 class Registers(MutableMapping[str, int]):
