@@ -23,6 +23,7 @@ from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
 from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse
 from tactile_depth.chip.poisson.transform.orders import makhoul
 from tactile_depth.chip.poisson.transform.row_reorder import row_reorder
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.transpose import transpose
 
 # Inputs that attain the bounds. Everything is linear, so a node's value is the sum of its responses to single
@@ -55,10 +56,10 @@ class Nodes(Monitor):
 
 def responses(size: Any) -> Any:
     """Return responses of a row's transforms to each sample: forward (N, nodes), inverse (N, nodes), modes (N, N)."""
-    wide: dict[str, Any] = {"input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
+    wide = Transform(0, 62, 50, 0, 62)
     forward, inverse = Nodes(), Nodes()
-    modes = dst_forward(np.eye(size)[:, makhoul(size)], monitor=forward, **wide)
-    dst_inverse(modes, monitor=inverse, **wide)
+    modes = dst_forward(np.eye(size)[:, makhoul(size)], wide, forward)
+    dst_inverse(modes, wide, inverse)
     return *(np.hstack(list(nodes.values.values())) for nodes in (forward, inverse)), modes
 
 
@@ -94,12 +95,12 @@ def depth_patterns(size: int) -> Any:
 
 def ideal(frames: Any) -> Any:
     """Return the values at the nodes when the transforms work on floats, in both directions."""
-    wide: dict[str, Any] = {"input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
+    wide = Transform(0, 62, 50, 0, 62)
     nodes = Nodes()
-    rows = dst_forward(row_reorder(frames, True), monitor=nodes, node="row_forward", **wide)
-    modes = dst_forward(transpose(rows, False, True), monitor=nodes, node="column_forward", **wide)
-    columns = dst_inverse(modes, monitor=nodes, node="column_inverse", **wide)
-    dst_inverse(transpose(columns, True, False), monitor=nodes, node="row_inverse", **wide)
+    rows = dst_forward(row_reorder(frames, True), wide, nodes, "row_forward")
+    modes = dst_forward(transpose(rows, False, True), wide, nodes, "column_forward")
+    columns = dst_inverse(modes, wide, nodes, "column_inverse")
+    dst_inverse(transpose(columns, True, False), wide, nodes, "row_inverse")
     nodes.values["column_inverse.modes"] = modes
     return nodes
 

@@ -13,6 +13,7 @@ from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.light_gains import Light
 from tactile_depth.chip.poisson import cores
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.pictures.picture_check import Checked
 
 fast = pytest.importorskip(
@@ -45,9 +46,9 @@ def test_a_transform_is_that_of_the_model(name: str, alternate: bool, size: int,
     words = DRAWS[draw](np.random.default_rng(1), (3, 47, size))  # more bursts than are transformed side by side
     clipped = 0
     for drops in ((0, 0), (-2, 5), (3, -1)):
-        clipped += compare(name, words, drops[0], 27, 18, drops[1], 24, alternate=alternate)
+        clipped += compare(name, words, Transform(drops[0], 27, 18, drops[1], 24, alternate))
     assert (clipped > 0) is (draw != "small")
-    compare(name, words[0, 0], 0, 27, 18, 0, 24)
+    compare(name, words[0, 0], Transform(0, 27, 18, 0, 24))
 
 
 @pytest.mark.parametrize("neumann", [False, True])

@@ -25,7 +25,7 @@ from tactile_depth.chip.bounds import Responses, l1
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import Format
-from tactile_depth.chip.poisson import spectral_solver, tridiagonal_solver, wide_solver
+from tactile_depth.chip.poisson import spectral_solver, tridiagonal_solver
 from tactile_depth.chip.poisson.back_substitution import back_substitution
 from tactile_depth.chip.poisson.forward_elimination import forward_elimination
 from tactile_depth.chip.poisson.frame_stack import frame_stack
@@ -181,7 +181,7 @@ class _Survey:
         self.modes = stages.row_forward(unit, config, forward)  # (column, mode's position)
         # (mode's position, column); a row alone in its pair
         self.to_row = (
-            wide_solver.row_inverse(unit[:, None], config, inverse)[:, 0]
+            stages.row_inverse(unit[:, None], config, inverse)[:, 0]
             if self.wide
             else stages.row_inverse(unit, config, inverse)
         )

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
 from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse
 from tactile_depth.chip.poisson.transform.orders import eigenvalues, makhoul
+from tactile_depth.chip.poisson.transform.transform import Transform
 
 
 @dataclass(frozen=True)
@@ -39,16 +39,9 @@ def _variation(response: np.ndarray) -> np.ndarray:
     return l1(np.diff(response, axis=0, append=0))
 
 
-def wide_arithmetic(neumann: bool) -> dict[str, Any]:
-    """Return the arguments of a nearly ideal transform of floats."""
-    return {
-        "alternate": not neumann,
-        "input_drop": 0,
-        "width": 62,
-        "coefficient_width": 50,
-        "output_drop": 0,
-        "output_width": 62,
-    }
+def wide_arithmetic(neumann: bool) -> Transform:
+    """Return the formats of a nearly ideal transform of floats."""
+    return Transform(0, 62, 50, 0, 62, alternate=not neumann)
 
 
 @cache
@@ -60,7 +53,7 @@ def difference_bounds(rows: int, columns: int, neumann: bool) -> tuple[np.ndarra
     and 1 / |c| is largest in the first row. The bounds hold for f alone too, the modes at the input.
     """
     eigenvalue = eigenvalues(columns, neumann)
-    modes = dst_forward(np.eye(columns)[:, makhoul(columns)], **wide_arithmetic(neumann))
+    modes = dst_forward(np.eye(columns)[:, makhoul(columns)], wide_arithmetic(neumann))
     length = l1(modes)
     inner = np.diff(modes, axis=0, append=modes[-1:] if neumann else 0)  # Neumann: no slope across the edge
     variation = l1(inner)
@@ -91,8 +84,8 @@ def bounds(size: int, neumann: bool = False) -> Bounds:
     wide = wide_arithmetic(neumann)
     unit = np.eye(size)[:, makhoul(size)]  # row j: sample j alone, in burst order
     forward, inverse = Responses(), Responses()
-    modes = dst_forward(unit, monitor=forward, node="forward", **wide)
-    dst_inverse(modes, monitor=inverse, node="inverse", **wide)
+    modes = dst_forward(unit, wide, forward, "forward")
+    dst_inverse(modes, wide, inverse, "inverse")
 
     def largest(nodes: Responses, norm) -> float:  # type: ignore[no-untyped-def]
         return max(float(norm(response).max()) for response in nodes.nodes.values())

@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -48,6 +47,7 @@ from tactile_depth.chip.limits import (
     most_lanes,
 )
 from tactile_depth.chip.poisson.transform.sdf_fft import twiddle_stages
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
 
 
@@ -384,13 +384,16 @@ class Configuration:
         """Return the HDL parameters that both solvers share."""
         return {"Columns": self.columns, "Width": self.arithmetic_width, "CoeffWidth": self.coefficient_width}
 
-    def transform_arguments(self) -> dict[str, Any]:
-        """Return the arguments of the models of the transforms that both solvers share."""
-        return {
-            "width": self.arithmetic_width,
-            "coefficient_width": self.coefficient_width,
-            "alternate": not self.neumann,
-        }
+    def transform(self, before: Format, inside: Format, behind: Format) -> Transform:
+        """Return the formats of a transform of a solver, from those of the words before, inside and behind it."""
+        return Transform(
+            before.fraction - inside.fraction,
+            self.arithmetic_width,
+            self.coefficient_width,
+            inside.fraction - behind.fraction,
+            behind.width,
+            alternate=not self.neumann,
+        )
 
     # Gain.
 

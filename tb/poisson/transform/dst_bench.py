@@ -13,6 +13,7 @@ from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
 from tactile_depth.chip.poisson.transform.dst_forward import latency as dst_forward_latency
 from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse
 from tactile_depth.chip.poisson.transform.dst_inverse import latency as dst_inverse_latency
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tb.stream import MANY, check_bursts, extremes, parameters, parametrize, sample, uniform, with_and_without_en
 
 CORES: dict[str, tuple[Any, Any]] = {
@@ -24,11 +25,11 @@ CLOCKS_OF_A_BURST_EDGE = 12  # cycles in which a burst begins to enter, or to le
 
 async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
     """Send bursts (count, size, 1) and compare the output with the model of the device."""
-    *formats, alternate = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Sine")
+    formats: Any = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Sine")
     transform, latency = CORES[dut._name]
 
     def model(words: Any, monitor: Any) -> Any:
-        return transform(words[..., 0], *formats, monitor, alternate=bool(alternate))
+        return transform(words[..., 0], Transform(*formats), monitor)
 
     return await check_bursts(
         dut, words, model, latency(words.shape[1]), in_fields=["data"], out_fields=["data"], **behaviour

@@ -7,6 +7,7 @@ import cocotb
 import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.wide_dst_forward import latency as wide_dst_forward_latency
 from tactile_depth.chip.poisson.transform.wide_dst_forward import wide_dst_forward
 from tb.stream import MANY, extremes, parameters, parametrize, sample, uniform, with_and_without_en
@@ -18,12 +19,11 @@ CLOCKS_OF_A_BURST_EDGE = 12  # cycles in which a burst begins to enter, or to le
 
 async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
     """Send bursts (count, beats, words, 1) and compare the output with the model of the device."""
-    formats = parameters(dut, "Width", "CoeffWidth", "OutputDrop", "OutWidth")
-    (alternate,) = parameters(dut, "Sine")
+    formats: Any = parameters(dut, "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Sine")
     size, paths = parameters(dut, "Size", "Words")
 
     def model(words: Any, monitor: Monitor) -> Any:
-        return TRANSFORM(words[..., 0], *formats, monitor, alternate=bool(alternate))[..., None]
+        return TRANSFORM(words[..., 0], Transform(0, *formats), monitor)[..., None]
 
     return await check_wide(
         dut, words, model, wide_dst_forward_latency(size, paths), fields=["data"], paths=paths, **behaviour

@@ -7,6 +7,7 @@ import cocotb
 import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.wide_commutator import LEAD
 from tactile_depth.chip.poisson.transform.wide_corner_turn import wide_corner_turn
 from tactile_depth.chip.poisson.transform.wide_dst_inverse import latency as wide_dst_inverse_latency
@@ -25,8 +26,7 @@ def shape(dut: Any, bursts: int) -> tuple[int, ...]:
 
 
 async def check(dut: Any, bursts: Any, **behaviour: Any) -> None:
-    formats = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth")
-    (alternate,) = parameters(dut, "Sine")
+    formats: Any = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Sine")
     size, words = parameters(dut, "Size", "Words")
     beats = size // words
 
@@ -35,7 +35,7 @@ async def check(dut: Any, bursts: Any, **behaviour: Any) -> None:
         rows = rows_of_bursts(beats_in, single)
         samples = np.zeros_like(rows)
         for out, pair, count in zip(samples, rows, 2 - single, strict=True):
-            out[:count] = TRANSFORM(pair[:count], *formats, monitor, alternate=bool(alternate))
+            out[:count] = TRANSFORM(pair[:count], Transform(*formats), monitor)
         return wide_corner_turn(samples, words // 2)
 
     await check_row_pairs(
@@ -67,14 +67,14 @@ async def many_bursts(dut: Any, amplitude: float) -> None:
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
 async def every_stage_clips_at_once(dut: Any) -> None:
-    formats = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth")
-    in_width, sine = parameters(dut, "InWidth", "Sine")
+    formats: Any = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Sine")
+    (in_width,) = parameters(dut, "InWidth")
 
     def model(beats: Any, monitor: Monitor) -> Any:
-        return TRANSFORM(rows_of_bursts(beats, alone(beats)), *formats, monitor, alternate=bool(sine))
+        return TRANSFORM(rows_of_bursts(beats, alone(beats)), Transform(*formats), monitor)
 
     def width_of(node: str) -> int:
-        return formats[-1] if node.endswith("output") else formats[1]
+        return formats[4] if node.endswith("output") else formats[1]
 
     await check(dut, all_stages_clip(shape(dut, 20 * MANY), in_width, model, width_of))
 

@@ -15,6 +15,7 @@ from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
 from tactile_depth.chip.poisson.transform.dst_forward import latency as dst_forward_latency
 from tactile_depth.chip.poisson.transform.orders import bit_reversed, makhoul
 from tactile_depth.chip.poisson.transform.sdf_fft import halvings, twiddle_stages
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
 from tactile_depth.chip.rom_files import write_transform
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
@@ -50,7 +51,7 @@ PROOFS = (
 
 def transform(x: np.ndarray, coeff: int, width: int = 40) -> Any:
     """Transform rows in natural order, at full precision except for the coefficients."""
-    return dst_forward(x[..., makhoul(x.shape[-1])], 0, width, coeff, 0, width)
+    return dst_forward(x[..., makhoul(x.shape[-1])], Transform(0, width, coeff, 0, width))
 
 
 def ideal(x: Any) -> Any:

@@ -16,6 +16,7 @@ from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse
 from tactile_depth.chip.poisson.transform.dst_inverse import latency as dst_inverse_latency
 from tactile_depth.chip.poisson.transform.orders import bit_reversed, makhoul
 from tactile_depth.chip.poisson.transform.sdf_fft import halvings, twiddle_stages
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
 from tactile_depth.chip.rom_files import write_transform
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
@@ -50,7 +51,7 @@ PROOFS = (
 
 
 def inverse(modes: Any, coeff: int, width: int = 40) -> Any:
-    return dst_inverse(modes, 0, width, coeff, 0, width)
+    return dst_inverse(modes, Transform(0, width, coeff, 0, width))
 
 
 @pytest.mark.parametrize("coeff", [18, 24])
@@ -58,7 +59,7 @@ def inverse(modes: Any, coeff: int, width: int = 40) -> Any:
 def test_inverse_of_forward_is_the_gain_but_for_rounded_coefficients(size: int, coeff: int) -> None:
     x = np.random.default_rng(size).integers(-(2**30), 2**30, (20, size))
     transforms = 2 * (twiddle_stages(size) + 1)
-    back = inverse(dst_forward(x, 0, 40, coeff, 0, 40), coeff)
+    back = inverse(dst_forward(x, Transform(0, 40, coeff, 0, 40)), coeff)
     error = np.std(back - x * coefficient_gain(coeff) ** transforms) / np.std(x)
     assert error < coefficient_noise(transforms, coeff)
 
@@ -83,7 +84,7 @@ def test_model_is_the_inverse_dst_but_for_rounded_coefficients(size: int, coeff:
 )
 def test_there_and_back_stays_within_steps(size: int, rms: Any, largest: int) -> None:
     x = np.random.default_rng(size).integers(-(2**12), 2**12, (200, size))
-    error = inverse(dst_forward(x, 0, 30, 30, 0, 30), 30, 30) - x
+    error = inverse(dst_forward(x, Transform(0, 30, 30, 0, 30)), 30, 30) - x
     assert np.std(error) < rms
     assert np.abs(error).max() <= largest
 

@@ -9,6 +9,7 @@ import pytest
 from formal.entries import Proof
 from formal.tables import wide_roms
 from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.wide_dst_inverse import latency as wide_dst_inverse_latency
 from tactile_depth.chip.poisson.transform.wide_dst_inverse import wide_dst_inverse
 from tactile_depth.chip.rom_files import write_direction
@@ -54,12 +55,12 @@ PROOFS = (
 @pytest.mark.parametrize(("size", "largest"), [(16, 4), (64, 5), (128, 6)])
 def test_rows_of_a_pair_are_those_alone_within_steps(size: int, largest: int) -> None:
     modes = np.random.default_rng(size).integers(-(2**12), 2**12, (100, 2, size))
-    pairs = wide_dst_inverse(modes, 0, 30, 30, 0, 30)
-    assert np.abs(pairs - dst_inverse(modes, 0, 30, 30, 0, 30)).max() <= largest
+    pairs = wide_dst_inverse(modes, Transform(0, 30, 30, 0, 30))
+    assert np.abs(pairs - dst_inverse(modes, Transform(0, 30, 30, 0, 30))).max() <= largest
 
 
 def test_an_odd_row_is_one_beside_zeros() -> None:
     modes = np.random.default_rng(1).integers(-1000, 1000, (3, 16))
-    rows = wide_dst_inverse(modes, 0, 27, 18, 0, 27)
+    rows = wide_dst_inverse(modes, Transform(0, 27, 18, 0, 27))
     beside = np.stack((modes[2], np.zeros(16, np.int64)))
-    np.testing.assert_array_equal(rows[2], wide_dst_inverse(beside, 0, 27, 18, 0, 27)[0])
+    np.testing.assert_array_equal(rows[2], wide_dst_inverse(beside, Transform(0, 27, 18, 0, 27))[0])

@@ -21,6 +21,7 @@ from tactile_depth.chip.poisson.forward_elimination import coefficient_rows, sto
 from tactile_depth.chip.poisson.thomas_table import thomas_table
 from tactile_depth.chip.poisson.transform.orders import mirror, read_only
 from tactile_depth.chip.poisson.transform.sdf_fft import stages
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors
 
 BURSTS = 128  # bursts at most that are transformed side by side: words of one position are loops of that length
@@ -254,46 +255,31 @@ def _nodes(node: str, first: str, last: str, graph: Graph) -> list[str]:
 
 
 def dst_forward(
-    x: np.ndarray,
-    input_drop: int,
-    width: int,
-    coefficient_width: int,
-    output_drop: int,
-    output_width: int,
-    monitor: Monitor | None = None,
-    node: str = "dst_forward",
-    alternate: bool = True,
+    x: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_forward"
 ) -> np.ndarray:
     """Model poisson/transform/dst_forward.py."""
-    size, drop = x.shape[-1], coefficient_width - 1
-    graph = _graph(size, False, coefficient_width)
-    phase, nodes = phase_factors(size, False, coefficient_width), _nodes(node, "input", "phase", graph)
+    size, drop = x.shape[-1], formats.coefficient_drop
+    graph = _graph(size, False, formats.coefficient_width)
+    phase, nodes = phase_factors(size, False, formats.coefficient_width), _nodes(node, "input", "phase", graph)
     y, counts = np.empty(x.shape, np.int64), np.zeros((len(nodes), 2), np.int64)
-    formats = (width, drop, output_width)
-    _forward(_bursts(x), alternate, input_drop, graph, phase, drop + output_drop, formats, y.reshape(-1, size), counts)
+    last, widths = drop + formats.output_drop, (formats.width, drop, formats.output_width)
+    _forward(_bursts(x), formats.alternate, formats.input_drop, graph, phase, last, widths, y.reshape(-1, size), counts)
     _give(monitor, nodes, counts)
     return y
 
 
 def dst_inverse(
-    modes: np.ndarray,
-    input_drop: int,
-    width: int,
-    coefficient_width: int,
-    output_drop: int,
-    output_width: int,
-    monitor: Monitor | None = None,
-    node: str = "dst_inverse",
-    alternate: bool = True,
+    modes: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_inverse"
 ) -> np.ndarray:
     """Model poisson/transform/dst_inverse.py."""
-    size, drop = modes.shape[-1], coefficient_width - 1
-    graph = _graph(size, True, coefficient_width)
-    phase, nodes = (phase_factors(size, True, coefficient_width), mirror(size)), _nodes(node, "phase", "output", graph)
+    size, drop = modes.shape[-1], formats.coefficient_drop
+    graph = _graph(size, True, formats.coefficient_width)
+    phase = phase_factors(size, True, formats.coefficient_width), mirror(size)
+    nodes = _nodes(node, "phase", "output", graph)
     y, counts = np.empty(modes.shape, np.int64), np.zeros((len(nodes), 2), np.int64)
-    formats = (width, drop, output_width)
+    first, widths = drop + formats.input_drop, (formats.width, drop, formats.output_width)
     _inverse(
-        _bursts(modes), alternate, drop + input_drop, graph, phase, output_drop, formats, y.reshape(-1, size), counts
+        _bursts(modes), formats.alternate, first, graph, phase, formats.output_drop, widths, y.reshape(-1, size), counts
     )
     _give(monitor, nodes, counts)
     return y

@@ -68,60 +68,32 @@ def row_forward(
     rows: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
 ) -> np.ndarray:
     """Return the modes of rows in natural order, for the first frame store."""
-    return cores.dst_forward(
-        row_reorder(rows, to_burst=True),
-        input_drop=config.divergence.fraction - config.row_forward.fraction,
-        output_drop=config.row_forward.fraction - config.row_modes.fraction,
-        output_width=config.row_modes.width,
-        node="row_forward",
-        monitor=monitor,
-        **config.transform_arguments(),
-    )
+    formats = config.transform(config.divergence, config.row_forward, config.row_modes)
+    return cores.dst_forward(row_reorder(rows, to_burst=True), formats, monitor, "row_forward")
 
 
 def column_forward(
     columns: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
 ) -> np.ndarray:
     """Return the modes of columns in Makhoul order."""
-    return cores.dst_forward(
-        columns,
-        input_drop=config.row_modes.fraction - config.column_forward.fraction,
-        output_drop=0,
-        output_width=config.arithmetic_width,
-        node="column_forward",
-        monitor=monitor,
-        **config.transform_arguments(),
-    )
+    formats = config.transform(config.row_modes, config.column_forward, config.column_forward)
+    return cores.dst_forward(columns, formats, monitor, "column_forward")
 
 
 def column_inverse(
     modes: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
 ) -> np.ndarray:
     """Return columns in Makhoul order from their modes, for the second frame store."""
-    return cores.dst_inverse(
-        modes,
-        input_drop=0,
-        output_drop=config.column_inverse.fraction - config.depth_modes.fraction,
-        output_width=config.depth_modes.width,
-        node="column_inverse",
-        monitor=monitor,
-        **config.transform_arguments(),
-    )
+    formats = config.transform(config.column_inverse, config.column_inverse, config.depth_modes)
+    return cores.dst_inverse(modes, formats, monitor, "column_inverse")
 
 
 def row_inverse(
     modes: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
 ) -> np.ndarray:
     """Return rows of depth in natural order from their modes."""
-    depth = cores.dst_inverse(
-        modes,
-        input_drop=config.depth_modes.fraction - config.row_inverse.fraction,
-        output_drop=config.row_inverse.fraction - config.depth.fraction,
-        output_width=config.depth.width,
-        node="row_inverse",
-        monitor=monitor,
-        **config.transform_arguments(),
-    )
+    formats = config.transform(config.depth_modes, config.row_inverse, config.depth)
+    depth = cores.dst_inverse(modes, formats, monitor, "row_inverse")
     return row_reorder(depth, to_burst=False)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.fixed_point import Format
 from tactile_depth.chip.poisson.back_substitution import LATENCY as BACK_SUBSTITUTION
 from tactile_depth.chip.poisson.cores import NUMPY, Cores
 from tactile_depth.chip.poisson.forward_elimination import LATENCY as FORWARD_ELIMINATION
@@ -80,31 +81,18 @@ def row_forward(
     rows: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
 ) -> np.ndarray:
     """Return the modes of rows (..., columns) in natural order, codes of `config.elimination`."""
-    return cores.dst_forward(
-        row_reorder(rows, to_burst=True),
-        input_drop=0,
-        output_drop=row_forward_drop(config),
-        output_width=config.arithmetic_width,
-        node="row_forward",
-        monitor=monitor,
-        **config.transform_arguments(),
-    )
+    modes = Format(config.arithmetic_width, config.elimination.fraction - config.depth_limit_log2)
+    formats = config.transform(config.row_forward, config.row_forward, modes)
+    return cores.dst_forward(row_reorder(rows, to_burst=True), formats, monitor, "row_forward")
 
 
 def row_inverse(
     modes: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
 ) -> np.ndarray:
-    """Return rows of depth in natural order from their modes."""
-    input_drop, output_drop = row_inverse_drops(config)
-    depth = cores.dst_inverse(
-        modes,
-        input_drop=input_drop,
-        output_drop=output_drop,
-        output_width=config.depth.width,
-        node="row_inverse",
-        monitor=monitor,
-        **config.transform_arguments(),
-    )
+    """Return rows of depth in natural order from their modes (..., rows, columns), two at a time with several lanes."""
+    formats = config.transform(config.elimination, config.row_inverse, config.depth)
+    inverse = cores.wide_dst_inverse if config.lanes > 1 else cores.dst_inverse
+    depth = inverse(modes, formats, monitor, "row_inverse")
     return row_reorder(depth, to_burst=False)
 
 

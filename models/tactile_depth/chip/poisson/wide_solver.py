@@ -15,13 +15,12 @@ from tactile_depth.chip.poisson.cores import NUMPY, Cores
 from tactile_depth.chip.poisson.forward_elimination import coefficient_rows
 from tactile_depth.chip.poisson.frame_stack import frame_stack
 from tactile_depth.chip.poisson.thomas_table import WideTable, ahead_rows, wide_table
-from tactile_depth.chip.poisson.transform.row_reorder import row_reorder
 from tactile_depth.chip.poisson.transform.wide_commutator import LEAD
 from tactile_depth.chip.poisson.transform.wide_dst_forward import latency as forward_latency
 from tactile_depth.chip.poisson.transform.wide_dst_inverse import latency as inverse_latency
 from tactile_depth.chip.poisson.transform.wide_row_pairs import up_positions
 from tactile_depth.chip.poisson.transform.wide_rows import LATENCY as WIDE_ROWS
-from tactile_depth.chip.poisson.tridiagonal_solver import row_forward, row_inverse_drops
+from tactile_depth.chip.poisson.tridiagonal_solver import row_forward, row_inverse
 from tactile_depth.chip.poisson.wide_elimination import LATENCY as WIDE_ELIMINATION
 from tactile_depth.chip.poisson.wide_stack import down_positions
 from tactile_depth.chip.poisson.wide_stack import latency as stack_latency
@@ -65,23 +64,6 @@ def wide_solver(
     e = cores.wide_elimination(row_forward(f, config, monitor, cores), config, monitor)
     z = cores.wide_substitution(frame_stack(e), config, monitor)
     return row_inverse(z, config, monitor, cores)
-
-
-def row_inverse(
-    modes: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
-) -> np.ndarray:
-    """Return rows of depth in natural order from the modes of rows (..., rows, columns), two rows at a time."""
-    input_drop, output_drop = row_inverse_drops(config)
-    depth = cores.wide_dst_inverse(
-        modes,
-        input_drop=input_drop,
-        output_drop=output_drop,
-        output_width=config.depth.width,
-        node="row_inverse",
-        monitor=monitor,
-        **config.transform_arguments(),
-    )
-    return row_reorder(depth, to_burst=False)
 
 
 def latency_by_core(columns: int, down_words: int, lanes: int) -> list[tuple[str, int]]:

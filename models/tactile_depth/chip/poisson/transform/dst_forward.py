@@ -9,6 +9,7 @@ from tactile_depth.chip.common.td_rom import LATENCY as MEMORY_READ
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.chip.poisson.transform.sdf_fft import latency as sdf_fft_latency
 from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import LATENCY as TWIDDLE_MULTIPLY
 from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_multiply
 
@@ -26,26 +27,13 @@ def alternate_sign(x: np.ndarray) -> np.ndarray:
 
 
 def dst_forward(
-    x: np.ndarray,
-    input_drop: int,
-    width: int,
-    coefficient_width: int,
-    output_drop: int,
-    output_width: int,
-    monitor: Monitor | None = None,
-    node: str = "dst_forward",
-    alternate: bool = True,
+    x: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_forward"
 ) -> np.ndarray:
     """Compute the DST-II along the last axis.
 
     Parameters
     ----------
     x : int64 array (..., N), Makhoul order
-    input_drop, output_drop : int
-        Fraction bits dropped between the input and the `width` bits of the arithmetic (negative: added), and between
-        the arithmetic and the `output_width` bits of the output.
-    alternate : bool
-        If False, the sign (-1)^n is left out, and the transform is a DCT-II.
 
     Returns
     -------
@@ -53,12 +41,12 @@ def dst_forward(
     k = bit_reversed(N)[p], times the gain
     2**-halvings (1 - 2**(1 - coefficient_width)) ** (twiddle_stages + 1).
     """
-    signed = round_saturate(alternate_sign(x) if alternate else x, input_drop, width, monitor, node + ".input")
-    re, im = sdf_fft(signed, np.zeros_like(signed), False, width, coefficient_width, monitor, node + ".fft")
-    factors = phase_factors(x.shape[-1], False, coefficient_width)
-    drop = coefficient_width - 1 + output_drop
-    output = node + ".phase"
-    return twiddle_multiply(re, im, factors, drop, output_width, monitor, output, real_only=True)[0]
+    width, coefficients = formats.width, formats.coefficient_width
+    signs = alternate_sign(x) if formats.alternate else x
+    signed = round_saturate(signs, formats.input_drop, width, monitor, node + ".input")
+    re, im = sdf_fft(signed, np.zeros_like(signed), False, width, coefficients, monitor, node + ".fft")
+    factors, drop = phase_factors(x.shape[-1], False, coefficients), formats.coefficient_drop + formats.output_drop
+    return twiddle_multiply(re, im, factors, drop, formats.output_width, monitor, node + ".phase", real_only=True)[0]
 
 
 def latency(size: int) -> int:

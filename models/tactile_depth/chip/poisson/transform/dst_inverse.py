@@ -11,31 +11,19 @@ from tactile_depth.chip.poisson.transform.mode_pairs import latency as mode_pair
 from tactile_depth.chip.poisson.transform.mode_pairs import mode_pairs
 from tactile_depth.chip.poisson.transform.sdf_fft import latency as sdf_fft_latency
 from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import LATENCY as TWIDDLE_MULTIPLY
 from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_multiply
 
 
 def dst_inverse(
-    modes: np.ndarray,
-    input_drop: int,
-    width: int,
-    coefficient_width: int,
-    output_drop: int,
-    output_width: int,
-    monitor: Monitor | None = None,
-    node: str = "dst_inverse",
-    alternate: bool = True,
+    modes: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_inverse"
 ) -> np.ndarray:
     """Compute the inverse DST-II along the last axis.
 
     Parameters
     ----------
     modes : int64 array (..., N), bit-reversed order, as dst_forward puts them out
-    input_drop, output_drop : int
-        Fraction bits dropped between the input and the `width` bits of the arithmetic (negative: added), and between
-        the arithmetic and the `output_width` bits of the output.
-    alternate : bool
-        If False, the sign (-1)^n is left out, and the transform is an inverse DCT-II.
 
     Returns
     -------
@@ -43,11 +31,12 @@ def dst_inverse(
     (1 - 2**(1 - coefficient_width)) ** (2 (twiddle_stages + 1)).
     """
     mode, mirrored = mode_pairs(modes)
-    factors = phase_factors(modes.shape[-1], True, coefficient_width)
-    drop = coefficient_width - 1 + input_drop
+    width, coefficients = formats.width, formats.coefficient_width
+    factors, drop = phase_factors(modes.shape[-1], True, coefficients), formats.coefficient_drop + formats.input_drop
     re, im = twiddle_multiply(mirrored, mode, factors, drop, width, monitor, node + ".phase")
-    re, im = sdf_fft(re, im, True, width, coefficient_width, monitor, node + ".fft")
-    return round_saturate(alternate_sign(re) if alternate else re, output_drop, output_width, monitor, node + ".output")
+    re, im = sdf_fft(re, im, True, width, coefficients, monitor, node + ".fft")
+    signed = alternate_sign(re) if formats.alternate else re
+    return round_saturate(signed, formats.output_drop, formats.output_width, monitor, node + ".output")
 
 
 def latency(size: int) -> int:

@@ -7,6 +7,7 @@ import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.wide_commutator import from_beats, to_beats
 from tactile_depth.chip.poisson.transform.wide_fft import latency as wide_fft_latency
 from tactile_depth.chip.poisson.transform.wide_twiddle import LATENCY as WIDE_TWIDDLE
@@ -15,20 +16,12 @@ SIGN = 1
 
 
 def wide_dst_forward(
-    beats: np.ndarray,
-    width: int,
-    coefficient_width: int,
-    output_drop: int,
-    output_width: int,
-    monitor: Monitor | None = None,
-    node: str = "dst_forward",
-    alternate: bool = True,
+    beats: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_forward"
 ) -> np.ndarray:
     """Transform beats (..., beats, words), in the order of the core: the codes are those of dst_forward."""
     count, words = beats.shape[-2:]
     rows = from_beats(beats, count.bit_length() - 1)
-    modes = dst_forward(rows, 0, width, coefficient_width, output_drop, output_width, monitor, node, alternate)
-    return to_beats(modes, words, 0)
+    return to_beats(dst_forward(rows, formats, monitor, node), words, 0)
 
 
 def latency(size: int, words: int) -> int:

@@ -8,6 +8,7 @@ import numpy as np
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.chip.poisson.transform.dst_forward import SIGN, alternate_sign
 from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft
+from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_multiply
 from tactile_depth.chip.poisson.transform.wide_corner_turn import latency as wide_corner_turn_latency
 from tactile_depth.chip.poisson.transform.wide_fft import latency as wide_fft_latency
@@ -17,15 +18,7 @@ from tactile_depth.chip.poisson.transform.wide_twiddle import LATENCY as WIDE_TW
 
 
 def wide_dst_inverse(
-    modes: np.ndarray,
-    input_drop: int,
-    width: int,
-    coefficient_width: int,
-    output_drop: int,
-    output_width: int,
-    monitor: Monitor | None = None,
-    node: str = "wide_dst_inverse",
-    alternate: bool = True,
+    modes: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "wide_dst_inverse"
 ) -> np.ndarray:
     """Compute the inverse DST-II of rows, two in one complex FFT: one as its real part, the next as its imaginary part.
 
@@ -35,8 +28,6 @@ def wide_dst_inverse(
     ----------
     modes : int64 array (..., rows, N), words of `width` bits in bit-reversed order
         Rows in the order in which they enter, the first and the second as a pair. An odd last row has zeros beside it.
-    input_drop, output_drop, alternate
-        As of `dst_inverse`.
 
     Returns
     -------
@@ -46,13 +37,14 @@ def wide_dst_inverse(
     first, second = modes[..., 0::2, :], modes[..., 1::2, :]
     if rows % 2:
         second = np.concatenate((second, np.zeros_like(first[..., -1:, :])), axis=-2)
+    width, coefficients = formats.width, formats.coefficient_width
     re, im = wide_row_pairs(first, second, width, monitor, node + ".pair")
-    factors = phase_factors(size, True, coefficient_width)
-    re, im = twiddle_multiply(re, im, factors, coefficient_width - 1 + input_drop, width, monitor, node + ".phase")
-    parts = np.stack(sdf_fft(re, im, True, width, coefficient_width, monitor, node + ".fft"), axis=-2)
-    pairs = alternate_sign(parts) if alternate else parts
+    factors, drop = phase_factors(size, True, coefficients), formats.coefficient_drop + formats.input_drop
+    re, im = twiddle_multiply(re, im, factors, drop, width, monitor, node + ".phase")
+    parts = np.stack(sdf_fft(re, im, True, width, coefficients, monitor, node + ".fft"), axis=-2)
+    pairs = alternate_sign(parts) if formats.alternate else parts
     samples = pairs.reshape(*modes.shape[:-2], -1, size)[..., :rows, :]
-    return round_saturate(samples, output_drop, output_width, monitor, node + ".output")
+    return round_saturate(samples, formats.output_drop, formats.output_width, monitor, node + ".output")
 
 
 def latency(size: int, words: int) -> int:
