@@ -17,6 +17,11 @@ ROOMS = {
     "verify": ("coverage", "formal", "lint", "mutate", "netlists", "quick", "regress", "sign-off", "test", "upsets"),
     "hardware": ("asic", "fpga", "nexus", "registers", "synth", "wrap"),
 }
+INTERRUPTED = {  # says what a signal leaves
+    **dict.fromkeys(("baselines", "budget", "reflex"), "nothing was written"),
+    **dict.fromkeys(("sweep", "trade"), "every row measured is kept, run it again to go on"),
+    "report": "the rows of the sweep are kept, run it again to go on",
+}
 COMMANDS = {command: room for room, commands in ROOMS.items() for command in commands}
 
 
@@ -29,9 +34,13 @@ def main() -> None:
         unknown = InputError(f"{command or 'no command'}: unknown command: accepted are {', '.join(sorted(COMMANDS))}")
         print(f"python -m commands: {unknown}", file=sys.stderr)
         sys.exit(variables.BAD_INPUT)
-    with variables.reported(command):  # inside `stoppable`, because imports take seconds
+    with variables.reported(command, INTERRUPTED.get(command, "")):  # imports take seconds
         sys.argv = sys.argv[1:]
-        importlib.import_module(f"commands.{COMMANDS[command]}.{command.replace('-', '_')}").main()
+        module = importlib.import_module(f"commands.{COMMANDS[command]}.{command.replace('-', '_')}")
+        if command in ("calibrate", "fpga", "nexus", "sweep", "trade"):
+            module.main()
+        else:
+            sys.exit(variables.read(module.main, sys.argv[1:]))
 
 
 if __name__ == "__main__":

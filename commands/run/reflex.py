@@ -15,17 +15,15 @@ import itertools
 import json
 import math
 import os
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import published, repository, tabular, variables
+from commands.common import published, tabular, variables
 from commands.common import simulator as simulation
 from commands.common.machine import machine
 from commands.common.progress import following
@@ -33,10 +31,9 @@ from commands.common.run_request import CONTACT_THRESHOLD, threshold_code
 from commands.common.signals import threads
 from commands.run import bench, reflex_picture
 from commands.run import reflex_model as model
-from commands.run.reflex_model import Draws, Request, Setup, Times
+from commands.run.reflex_model import Draws, ReflexRun, Setup, Times
 from commands.run.reflex_tables import sentences, tables
 from tactile_depth.base import files
-from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_pixel_to_first_depth
 from tactile_depth.chip.limits import COLUMNS
@@ -45,34 +42,8 @@ from tactile_depth.sensor.scenes import SENSOR_WIDTH_MM
 from tactile_depth.sensor.sensor import Sensor
 
 RESULTS = ("reflex.json", "reflex.png")
-DEFAULT_OUT = repository.ROOT / "build" / "reflex"
+DEFAULT_OUT = ReflexRun.out
 DECIDING_CLOCKS = 1  # cycles from the deciding depth on m_axis to `contact`
-
-
-def parse(arguments: Sequence[str]) -> Request:
-    """Return the Request of KEY=VALUE arguments. Raises InputError."""
-    accepted = ("N", "CLOCK_MHZ", "SPEED", "TRIALS", "HOST_TRIALS", "SEED", "SIM", "OUT")
-    values = variables.given(arguments, accepted)
-    number = partial(variables.number, values)
-    request = Request(
-        size=number("N", 128, *COLUMNS["spectral"]),
-        clock_mhz=number("CLOCK_MHZ", published.CLOCK_MHZ, 0.5, 400, float),
-        speed=number("SPEED", model.SPEED_MM_S, 5, 200, float),
-        trials=number("TRIALS", published.REFLEX["near"]["trials"], 2, 10_000),
-        host_trials=number("HOST_TRIALS", published.REFLEX["host"]["trials"], 2, 10_000),
-        seed=number("SEED", 1, 0, 10**9),
-        simulator=values.get("SIM", simulation.SIMULATORS[0]),
-        out=Path(values.get("OUT", DEFAULT_OUT)),
-    )
-    for solver in COLUMNS:
-        Configuration(columns=request.size, solver=solver)
-    least = request.size**2 / model.FRAME_MS["near"] / 1000
-    if request.clock_mhz < least:
-        raise InputError(
-            f"CLOCK_MHZ={request.clock_mhz:g}: the pixels of {request.size} x {request.size} at "
-            f"{1000 / model.FRAME_MS['near']:g} frames/s come faster: accepted is {least:.4g} and more, or a smaller N"
-        )
-    return request
 
 
 @dataclass(frozen=True)
@@ -122,7 +93,7 @@ class Loop:
     faults: list[str]
 
 
-def entries(request: Request, sent: Sequence[Sent], pixels: np.ndarray) -> tuple[np.ndarray, int]:
+def entries(request: ReflexRun, sent: Sequence[Sent], pixels: np.ndarray) -> tuple[np.ndarray, int]:
     """Return the entries for the bench and the smallest number of cycles that they take."""
     gap, period = model.spacing(request)
     parts: list[np.ndarray] = []
@@ -166,7 +137,7 @@ def decisions(played: bench.Played, sent: Sequence[Sent], config: Configuration)
     return contacts, faults
 
 
-def loop(request: Request, setup: Setup, draws: Draws) -> list[Loop]:
+def loop(request: ReflexRun, setup: Setup, draws: Draws) -> list[Loop]:
     """Run the trials through the RTL of both solvers at the same time."""
     sent = [one for trial in range(request.trials) for one in sequence(setup, draws, trial)]
     pixels = np.stack(
@@ -227,7 +198,7 @@ def described(path: Times) -> dict[str, Any]:
     return {**statistics, "parts": parts, "trials": trials}
 
 
-def measure(request: Request) -> dict[str, Any]:
+def measure(request: ReflexRun) -> dict[str, Any]:
     """Measure everything, and return the document that reflex.json holds."""
     gap, _ = model.spacing(request)
     clocks_per_ms = 1000 * request.clock_mhz
@@ -288,7 +259,7 @@ def measure(request: Request) -> dict[str, Any]:
     }
 
 
-def sub_frame(loops: Sequence[Loop], request: Request) -> dict[str, Any]:
+def sub_frame(loops: Sequence[Loop], request: ReflexRun) -> dict[str, Any]:
     """Return the position of the deciding depth in its frame, and the time that the earlier solver saves."""
     rows: dict[str, Any] = {}
     for one in loops:
@@ -341,7 +312,7 @@ def show(document: dict[str, Any]) -> str:
     return "\n\n".join([setting, *parts, *["\n".join(sentences(document))]])
 
 
-def run(request: Request) -> None:
+def run(request: ReflexRun) -> None:
     """Measure, print, and write reflex.json and reflex.png, both or neither.
 
     Raises InputError, Mismatch or RuntimeError.
@@ -356,6 +327,4 @@ def run(request: Request) -> None:
     print(f"results: {os.path.relpath(request.out)}")
 
 
-def main() -> None:
-    with variables.reported("reflex", "nothing was written"):
-        run(parse(sys.argv[1:]))
+main = run

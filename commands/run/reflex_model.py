@@ -4,20 +4,26 @@
 import itertools
 import time
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from scipy.stats import mannwhitneyu
 from tqdm import tqdm
 
 from commands.common import published
+from commands.common.repository import ROOT
 from commands.common.run_request import CONTACT_THRESHOLD
+from commands.common.simulator import SIMULATORS, Simulator
+from commands.common.variables import Place, Seed, real, whole
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.depth import reference
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.scenes import SYNTHETIC_PIXEL_PITCH_MM, Press, render, scene_pixel_pitch_mm
 from tactile_depth.sensor.sensor import Sensor
 
+DEFAULT_OUT = ROOT / "build" / "reflex"
 PIN = "ball"  # radius of its round tip, as in models/tactile_depth/sensor/scenes.py
 STOP_MM = 1.0  # depth at the end of the press
 
@@ -82,18 +88,31 @@ def draw(trials: int, seed: int, path: str) -> Draws:
     )
 
 
-@dataclass(frozen=True)
-class Request:
-    """Values of the variables."""
+Trials = Annotated[int, whole(2, 10_000)]
 
-    size: int
-    clock_mhz: float
-    speed: float
-    trials: int
-    host_trials: int
-    seed: int
-    simulator: str
-    out: Path
+
+@dataclass(frozen=True)
+class ReflexRun:
+    """Trials of both paths: frames of `size` x `size` pixels, and a pin of `speed` mm/s."""
+
+    size: Annotated[int, whole(*COLUMNS["spectral"]), "N"] = 128
+    clock_mhz: Annotated[float, real(0.5, 400)] = published.CLOCK_MHZ
+    speed: Annotated[float, real(5, 200)] = SPEED_MM_S
+    trials: Trials = published.REFLEX["near"]["trials"]
+    host_trials: Trials = published.REFLEX["host"]["trials"]
+    seed: Seed = 1
+    simulator: Simulator = SIMULATORS[0]
+    out: Place = DEFAULT_OUT
+
+    def __post_init__(self) -> None:
+        for solver in COLUMNS:
+            Configuration(columns=self.size, solver=solver)
+        least = self.size**2 / FRAME_MS["near"] / 1000
+        if self.clock_mhz < least:
+            raise InputError(
+                f"CLOCK_MHZ={self.clock_mhz:g}: the pixels of {self.size} x {self.size} at "
+                f"{1000 / FRAME_MS['near']:g} frames/s come faster: accepted is {least:.4g} and more, or a smaller N"
+            )
 
 
 def picture(setup: Setup, draws: Draws, trial: int, frame: int, size: int) -> np.ndarray:
@@ -108,7 +127,7 @@ def calibration_on(size: int) -> Sensor:
     return load("synthetic").scaled(scene_pixel_pitch_mm(size) / SYNTHETIC_PIXEL_PITCH_MM)
 
 
-def spacing(request: Request) -> tuple[int, int]:
+def spacing(request: ReflexRun) -> tuple[int, int]:
     """Return the cycles from pixel to pixel at the timing of the camera, and the cycles of a frame time."""
     period = round(FRAME_MS["near"] * request.clock_mhz * 1000)
     return period // request.size**2, period
@@ -218,7 +237,7 @@ def within_published(near: dict[str, Any]) -> bool:
     return abs(near["mean"] - mean) <= spread and near["sd"] <= spread
 
 
-def delays(request: Request, near: Setup, host: Setup) -> list[dict[str, str]]:
+def delays(request: ReflexRun, near: Setup, host: Setup) -> list[dict[str, str]]:
     """Return every delay of the simulation: path, name, distribution and source."""
     gap, _ = spacing(request)
     threshold = f"{near.threshold:.3g} mm, {CONTACT_THRESHOLD * request.size:g} px"

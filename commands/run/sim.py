@@ -11,14 +11,14 @@ import sys
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from commands.common import repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.common.progress import following
-from commands.common.run_request import WITH_CAMERA, Request, announce, check_grid, configure, load_sensor, parse
+from commands.common.run_request import WITH_CAMERA, Request, announce, check_grid, chosen, configure, load_sensor
 from commands.common.zero_offset import untouched
 from commands.run import bench
 from commands.run.compare import compare, warnings
@@ -221,6 +221,5 @@ def earlier_dumps(out: Path) -> list[str]:
     return [name for name in files.listed(out / "report.json", "waves") if name.endswith(DUMPS)]
 
 
-def main() -> None:
-    with variables.reported("sim"):
-        sys.exit(run(parse(sys.argv[1:], WITH_CAMERA)))
+def main(request: Annotated[Request, chosen(WITH_CAMERA)]) -> int:
+    return run(request)

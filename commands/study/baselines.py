@@ -31,17 +31,18 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 from unittest import mock
 
 import matplotlib
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import published, recorded, repository, tabular, variables
+from commands.common import published, recorded, repository, tabular
 from commands.common.machine import machine
+from commands.common.variables import ClockMhz, Mismatch, Place, numbers, real, whole
 from tactile_depth.base import files
-from tactile_depth.base.errors import InputError
+from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.chip.limits import COLUMNS, most_lanes
@@ -174,31 +175,23 @@ def pipeline_name(row: dict[str, Any]) -> str:
     return f"{row['solver']} pipeline{lanes}"
 
 
-@dataclass(frozen=True)
-class Request:
-    """Values of the variables."""
-
-    grids: tuple[int, ...]
-    runs: int
-    clock_mhz: float
-    max_load: float
-    out: Path
-
-
-def parse(arguments: Sequence[str]) -> Request:
-    """Return the Request of KEY=VALUE arguments. Raises InputError."""
-    values = variables.given(arguments, ("GRIDS", "RUNS", "CLOCK_MHZ", "MAX_LOAD", "OUT"))
+def _sizes(argument: Argument) -> tuple[int, ...]:
     low, high = COLUMNS["spectral"]
-    grids = variables.whole_numbers(values, "GRIDS", GRIDS)
+    grids = numbers(argument)
     if not grids or any(not low <= size <= high or size & (size - 1) for size in grids):
-        raise InputError(f"GRIDS={values['GRIDS']}: accepted are powers of two from {low} to {high}, as 64,128")
-    return Request(
-        grids=tuple(sorted(set(grids))),
-        runs=variables.number(values, "RUNS", RUNS, FEWEST_RUNS, 1_000_000),
-        clock_mhz=variables.number(values, "CLOCK_MHZ", published.CLOCK_MHZ, 0.001, 10_000, float),
-        max_load=variables.number(values, "MAX_LOAD", QUIET_LOAD, 0, 10_000, float),
-        out=Path(values.get("OUT", DEFAULT_OUT)),
-    )
+        raise InputError(argument, f": accepted are powers of two from {low} to {high}, as 64,128")
+    return tuple(sorted(set(grids)))
+
+
+@dataclass(frozen=True)
+class BaselinesRun:
+    """Grids, runs of each method on each, and the load of the machine beside which nothing is timed."""
+
+    grids: Annotated[tuple[int, ...], _sizes] = GRIDS
+    runs: Annotated[int, whole(FEWEST_RUNS, 1_000_000)] = RUNS
+    clock_mhz: ClockMhz = published.CLOCK_MHZ
+    max_load: Annotated[float, real(0, 10_000)] = QUIET_LOAD
+    out: Place = DEFAULT_OUT
 
 
 def summarise(row: dict[str, Any]) -> dict[str, Any]:
@@ -210,7 +203,7 @@ def summarise(row: dict[str, Any]) -> dict[str, Any]:
     return row
 
 
-def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+def measure_all(request: BaselinesRun) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     """Return the content of baselines.json, and the rows with every time, for the picture.
 
     Raises RuntimeError: a result differs from the reference.
@@ -241,7 +234,7 @@ def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]
     wrong = [row for row in rows if row.get("problem") == "wrong result"]
     if wrong:
         row = wrong[0]
-        raise variables.Mismatch(
+        raise Mismatch(
             f"{row['method']} at {row['grid']}, {row['threads']} threads, is {row['error_percent']:.2g} % of peak from "
             f"the reference: at most {TOLERANCE_PERCENT:g} is right"
         )
@@ -436,7 +429,7 @@ def show(document: dict[str, Any]) -> str:
     return "\n\n".join([setting(document), *parts, "\n".join(sentences(document))])
 
 
-def run(request: Request) -> dict[str, Any]:
+def run(request: BaselinesRun) -> dict[str, Any]:
     """Measure, print, write baselines.json and baselines.png, both or none of them, and return the first.
 
     Raises InputError, Mismatch or RuntimeError; InputError on a busy machine.
@@ -469,6 +462,5 @@ def recordable(document: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in document.items() if name not in left_out} | {"software": software}
 
 
-def main() -> None:
-    with variables.reported("baselines", "nothing was written"):
-        recorded.record("baselines", sys.argv[1:], recordable(run(parse(sys.argv[1:]))))
+def main(request: BaselinesRun) -> None:
+    recorded.record("baselines", sys.argv[1:], recordable(run(request)))

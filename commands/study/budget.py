@@ -20,10 +20,10 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import matplotlib
 import numpy as np
@@ -33,6 +33,7 @@ from tqdm import tqdm
 import tactile_depth as td
 from commands.common import recorded, repository, tabular, variables
 from commands.common.run_request import camera_choice
+from commands.common.variables import Place, Several, one, real, whole
 from commands.run.calibrate import data_folder
 from commands.study.accuracy import VERSION
 from commands.study.budget_steps import (
@@ -73,17 +74,25 @@ CAP_TOP, CAP_EDGE = 0.9, 0.1  # of the peak: the top of a drawn contact, above, 
 RESAMPLED, INTERVAL = 2000, (2.5, 97.5)
 
 
-@dataclass(frozen=True)
-class Request:
-    """Values of the variables; `drawn`, `presses` and `bodies` are for tests."""
+def _camera(values: Mapping[str, str]) -> CameraChoice:
+    choice = camera_choice({"CAMERA": CAMERA, **values})
+    assert choice is not None
+    return choice
 
-    folder: Path | None = None
-    pitch_mm: float | None = None
-    choice: CameraChoice = field(default_factory=lambda: CameraChoice(CAMERA))
-    neumann: bool = True
-    data_width: int = 24
-    coefficient_width: int = 18
-    out: Path = DEFAULT_OUT
+
+@dataclass(frozen=True)
+class BudgetRun:
+    """Presses, real ones of a folder and drawn ones, and the pipeline; no variable gives the last three fields."""
+
+    folder: Annotated[Place, "PRESSES"] | None = None
+    pitch_mm: Annotated[float | None, real(*PIXEL_PITCHES_MM), "PITCH"] = None
+    choice: Annotated[CameraChoice, Several(("CAMERA", "BAYER"), _camera)] = field(
+        default_factory=lambda: CameraChoice(CAMERA)
+    )
+    neumann: Annotated[bool, one({name: name == "neumann" for name in BOUNDARIES}), "BOUNDARY"] = True
+    data_width: Annotated[int, whole(*DATA_WIDTHS)] = 24
+    coefficient_width: Annotated[int, whole(*COEFFICIENT_WIDTHS), "COEFF_WIDTH"] = 18
+    out: Place = DEFAULT_OUT
     drawn: DrawnSensor = field(default_factory=DrawnSensor)
     presses: int = PRESSES
     bodies: int = len(BENCH)
@@ -107,7 +116,7 @@ def fitted(presses: GridPresses) -> Fit:
     return fit_presses(presses, ("cubic",), progress=lambda each: tqdm(each, "fits", leave=False, disable=None))
 
 
-def drawn_contacts(request: Request) -> Iterator[tuple[str, dict[str, np.ndarray]]]:
+def drawn_contacts(request: BudgetRun) -> Iterator[tuple[str, dict[str, np.ndarray]]]:
     """Give place and products of each drawn contact."""
     drawn, chance = request.drawn, np.random.default_rng(1)
     pictures = drawn.presses(request.presses, chance)
@@ -140,7 +149,7 @@ def drawn_contacts(request: Request) -> Iterator[tuple[str, dict[str, np.ndarray
         yield place, products(seen, parts_of(seen, camera, exact, follow=False))
 
 
-def real_presses(request: Request, pictures: PressPictures) -> Iterator[tuple[str, dict[str, np.ndarray]]]:
+def real_presses(request: BudgetRun, pictures: PressPictures) -> Iterator[tuple[str, dict[str, np.ndarray]]]:
     """Give place and products of each whole press, by the calibration from all others."""
     presses = to_grid(pictures, camera_pitch_mm(pictures, request.pitch_mm), choice=request.choice)
     fit = fitted(presses)
@@ -229,7 +238,7 @@ def source(
 def read(out: Path = DEFAULT_OUT) -> dict[str, Any]:
     """Return the document of budget.json; measure it first if there is none."""
     if not (out / RESULTS[0]).exists():
-        run(Request(out=out))
+        run(BudgetRun(out=out))
     document: dict[str, Any] = json.loads((out / RESULTS[0]).read_text())
     return document
 
@@ -303,7 +312,7 @@ def shares(each: dict[str, Any]) -> tuple[tuple[str, ...], list[tuple[str, ...]]
 
 def sources(arguments: Sequence[str]) -> str:
     """Return the digest of models and command, for docs/figures.json."""
-    parse(arguments)
+    variables.read(BudgetRun, arguments)
     files_of = [Path(__file__).parent / f"{name}.py" for name in ("budget", "budget_steps", "drawn_sensor")]
     return recorded.digest(files_of, VERSION)
 
@@ -345,24 +354,7 @@ def plot(path: Path, document: dict[str, Any]) -> None:
     plt.close(figure)
 
 
-def parse(arguments: Sequence[str]) -> Request:
-    """Return the Request of KEY=VALUE arguments. Raises InputError."""
-    names = ("PRESSES", "PITCH", "CAMERA", "BAYER", "BOUNDARY", "DATA_WIDTH", "COEFF_WIDTH", "OUT")
-    values = {"CAMERA": CAMERA} | variables.given(arguments, names)
-    choice = camera_choice(values)
-    assert choice is not None
-    return Request(
-        Path(values["PRESSES"]) if "PRESSES" in values else None,
-        variables.number(values, "PITCH", None, *PIXEL_PITCHES_MM, float),
-        choice,
-        variables.choice(values, "BOUNDARY", BOUNDARIES) == "neumann",
-        variables.number(values, "DATA_WIDTH", 24, *DATA_WIDTHS),
-        variables.number(values, "COEFF_WIDTH", 18, *COEFFICIENT_WIDTHS),
-        Path(values.get("OUT", DEFAULT_OUT)),
-    )
-
-
-def run(request: Request) -> None:
+def run(request: BudgetRun) -> None:
     """Measure, print, and write budget.json and budget.png. Raises InputError."""
     with files.workspace(request.out, RESULTS) as work:
         missing, folder = "", request.folder
@@ -397,10 +389,8 @@ def run(request: Request) -> None:
     print(f"results: {os.path.relpath(request.out)}")
 
 
-def main() -> None:
-    with variables.reported("budget", "nothing was written"):
-        request = parse(sys.argv[1:])
-        run(request)
-        document = read(request.out)
-        if not document["without"]:
-            recorded.record("budget", sys.argv[1:], _rounded(document))
+def main(request: BudgetRun) -> None:
+    run(request)
+    document = read(request.out)
+    if not document["without"]:
+        recorded.record("budget", sys.argv[1:], _rounded(document))

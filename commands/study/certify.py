@@ -9,15 +9,16 @@ import dataclasses
 import json
 import math
 import os
-import sys
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 from tqdm import tqdm
 
-from commands.common import repository, run_request, tabular, variables
+from commands.common import repository, run_request, tabular
 from commands.common import simulator as simulation
+from commands.common.variables import Flag
 from commands.run import sim, sim_table
 from commands.study.certificate import Node, certify, slope_response
 from tactile_depth.base import files
@@ -201,7 +202,7 @@ def stream(request: run_request.Request, config: Configuration, calibration: Sen
     return Streamed(codes, clipped, played.registers, bool((codes == model).all()), differences)
 
 
-def run(request: run_request.Request, rtl: bool = True) -> int:
+def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag = True) -> int:
     """Certify, run the frames, write the results and return the exit status."""
     if rtl:
         simulation.check(request.simulator)
@@ -289,8 +290,4 @@ def _record(node: Node, attempts: list[Attempt]) -> dict:
     }
 
 
-def main() -> None:
-    with variables.reported("certify"):
-        values = variables.given(sys.argv[1:], ("RTL", *run_request.ACCEPTED))
-        rtl = bool(variables.number(values, "RTL", 1, 0, 1))
-        sys.exit(run(run_request.of_values(values), rtl))
+main = run

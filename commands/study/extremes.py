@@ -10,8 +10,7 @@ GAIN_WIDTH, DEPTH_RANGE, SIM, OUT, RTL=0 for no simulation.
 
 import json
 import os
-import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -22,6 +21,7 @@ from tqdm import tqdm
 from commands.common import repository, run_request, tabular, variables
 from commands.common import simulator as simulation
 from commands.common.tabular import Column
+from commands.common.variables import Flag, Several
 from commands.study import certify as certificate
 from commands.study import sensor_extremes
 from commands.study.accuracy import errors
@@ -41,7 +41,8 @@ RESULTS = ("extremes.json",)
 CALIBRATION = "synthetic"
 LONG_MODEL, LONG_RTL = 10_000, 2_000  # frames of the runs for drift
 SHORT_MODEL = 96
-SENSOR_ACCEPTED = ("ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH", "DEPTH_RANGE", "SIM", "OUT")
+ACCEPTED = ("PRESET", "N", "SIM", "OUT")
+SENSOR_ACCEPTED = ("PRESET", "ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH", "DEPTH_RANGE", "SIM", "OUT")
 BATCH = 96  # frames that the model runs at a time
 REST_COLOUR = round(REST)
 
@@ -323,21 +324,25 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
     return 1 if broken else 0
 
 
-def of_sensor(given: Mapping[str, str]) -> int:
-    """Run the rows of a real sensor with these variables and return the exit status."""
-    values = {**sensor_extremes.GRID, **sensor_extremes.CHOSEN, **given}
-    request = run_request.of_values(values, frames="")
-    rtl = bool(variables.number(values, "RTL", 1, 0, 1))
+def of_sensor(
+    request: Annotated[
+        run_request.Request,
+        run_request.chosen(SENSOR_ACCEPTED, frames="", **sensor_extremes.GRID, **sensor_extremes.CHOSEN),
+    ],
+    rtl: Flag = True,
+) -> int:
+    """Run the rows of a real sensor and return the exit status."""
     if rtl:
         simulation.check(request.simulator)
     return sensor_extremes.run(request, request.out or repository.ROOT / "build" / "extremes-sensor", rtl)
 
 
-def main() -> None:
-    with variables.reported("extremes"):
-        if "PRESET=sensor" in sys.argv[1:]:
-            sys.exit(of_sensor(variables.given(sys.argv[1:], ("PRESET", "RTL", *SENSOR_ACCEPTED))))
-        values = {"N": "64", **variables.given(sys.argv[1:], ("PRESET", "N", "SIM", "SHORT", "OUT"))}
-        request = run_request.of_values(values)
-        out = request.out or repository.ROOT / "build" / "extremes"
-        sys.exit(run(request.columns, request.simulator, out, bool(variables.number(values, "SHORT", 0, 0, 1))))
+def of_scenes(
+    request: Annotated[run_request.Request, run_request.chosen(ACCEPTED, N="64")], short: Flag = False
+) -> int:
+    return run(request.columns, request.simulator, request.out or repository.ROOT / "build" / "extremes", short)
+
+
+def main(values: Annotated[dict[str, str], Several((*ACCEPTED, "SHORT", *SENSOR_ACCEPTED, "RTL"), dict)]) -> int:
+    of_preset = of_sensor if values.get("PRESET") == "sensor" else of_scenes
+    return variables.read(of_preset, [f"{name}={value}" for name, value in values.items()])

@@ -10,7 +10,6 @@ of pages are drawn from docs/waves/*.json and docs/*.dot.
 import json
 import re
 import subprocess
-import sys
 import sysconfig
 import textwrap
 from collections.abc import Callable, Iterator
@@ -20,7 +19,7 @@ from typing import Any
 import numpy as np
 import wavedrom
 
-from commands.common import published, recorded, run_request, variables
+from commands.common import published, recorded, run_request
 from commands.common.repository import GENERATED, ROOT
 from commands.common.tabular import compact
 from commands.common.zero_offset import untouched
@@ -338,9 +337,7 @@ def drawings() -> dict[Path, str]:
 
 
 def main() -> None:
-    with variables.reported("figures"):
-        variables.given(sys.argv[1:], ())
-        for drawing, text in drawings().items():
-            drawing.write_text(text)
-        for page in PAGES:
-            page.write_text(document(page))
+    for drawing, text in drawings().items():
+        drawing.write_text(text)
+    for page in PAGES:
+        page.write_text(document(page))

@@ -8,17 +8,18 @@ model. The folder is that of `make calibrate`. RTL=0: model only. Exit status: 1
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 from tqdm import tqdm
 
 import tactile_depth as td
 from commands.common import simulator as simulation
-from commands.common import tabular, variables
+from commands.common import tabular
+from commands.common.variables import EQUAL, MISMATCH, Flag, Place, real
 from commands.run import bench
 from commands.run.calibrate import data_folder
 from tactile_depth.base import files
@@ -29,7 +30,6 @@ from tactile_depth.chip.registers.axil_registers import GAINS
 from tactile_depth.pictures.frames import read_picture
 from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
 
-VARIABLES = ("PRESSES", "PITCH", "SIM", "RTL")
 NUMBERS = (8, 12, 18, 24, 36)  # presses of a fit
 LIGHTS = ((0.8,) * 3, (0.9,) * 3, (0.95,) * 3, (1.05,) * 3, (1.1,) * 3, (1.05, 1.0, 0.95), (0.95, 1.0, 1.05))
 
@@ -177,16 +177,16 @@ def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
     if simulator is not None:
         total = len(views) * presses.grid[0] * presses.grid[1]
         print(f"\nRTL on {simulator}: {total - differing:,} of {total:,} codes equal the model's")
-    return variables.MISMATCH if differing else variables.EQUAL
+    return MISMATCH if differing else EQUAL
 
 
-def main() -> None:
-    with variables.reported("presses"):
-        values = variables.given(sys.argv[1:], VARIABLES)
-        pitch = variables.number(values, "PITCH", None, *PIXEL_PITCHES_MM, float)
-        simulator = variables.choice(values, "SIM", simulation.SIMULATORS)
-        in_rtl = variables.choice(values, "RTL", ("1", "0")) == "1"
-        if in_rtl:
-            simulation.check(simulator)
-        pictures = gather(Path(values["PRESSES"]) if "PRESSES" in values else data_folder())
-        sys.exit(run(pictures, camera_pitch_mm(pictures, pitch), simulator if in_rtl else None))
+def main(
+    presses: Place | None = None,
+    pitch: Annotated[float | None, real(*PIXEL_PITCHES_MM)] = None,
+    simulator: simulation.Simulator = simulation.SIMULATORS[0],
+    rtl: Flag = True,
+) -> int:
+    if rtl:
+        simulation.check(simulator)
+    pictures = gather(presses or data_folder())
+    return run(pictures, camera_pitch_mm(pictures, pitch), simulator if rtl else None)

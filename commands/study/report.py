@@ -10,7 +10,6 @@ trade`, `make synth`, `make fpga` and `make asic`. Each figure names the command
 import csv
 import json
 import os
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -82,7 +81,7 @@ def document_of(command: Any, name: str) -> dict[str, Any]:
     """Return the results of make reflex or make baselines; run the command first if it left none."""
     file = command.DEFAULT_OUT / f"{name}.json"
     if not file.exists():
-        command.run(command.parse(["MAX_LOAD=10000"] if name == "baselines" else []))  # the load is printed
+        variables.read(command.run, ["MAX_LOAD=10000"] if name == "baselines" else [])  # the load is printed
     return json.loads(file.read_text())
 
 
@@ -376,7 +375,5 @@ def build(folder: Path) -> Path:
     return target
 
 
-def main() -> None:
-    with variables.reported("report", "the rows of the sweep are kept, run it again to go on"):
-        folder = Path(variables.given(sys.argv[1:], ("OUT",)).get("OUT", DEFAULT_OUT))
-        print(f"report: {os.path.relpath(build(folder))}")
+def main(out: variables.Place = DEFAULT_OUT) -> None:
+    print(f"report: {os.path.relpath(build(out))}")

@@ -11,23 +11,22 @@ variables of docs/commands.md as KEY=VALUE arguments. Exit status: 0 found and p
 import json
 import math
 import os
-import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import published, repository, run_request, variables
+from commands.common import repository, run_request
 from commands.common import simulator as simulation
+from commands.common.variables import Several
 from commands.common.zero_offset import untouched
 from commands.cost.cost import Cost
-from commands.hardware.targets import TARGETS
 from commands.run import sim
 from commands.study.accuracy import SMALLEST_PEAK_PX, errors
-from commands.study.tune_search import ALL_FRAMES, Judgement, Limits, Search, Widths
+from commands.study.tune_search import ALL_FRAMES, AUTO, Judgement, Limits, Search, Widths
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import Configuration
@@ -38,16 +37,11 @@ from tactile_depth.pictures.frames import Frames, load_frames, on_grid
 from tactile_depth.sensor.scenes import AS_EVER
 from tactile_depth.sensor.sensor import Sensor
 
-# In the order of `Limits`.
-NUMBERS = ("TOLERANCE", "MAX_LATENCY_US", "MAX_MAP_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_LUT", "MAX_MEMORY_KBIT")
-OWN = (*NUMBERS, "TARGET")
-LIMITS = (1e-9, 1e9)  # of each
-AUTO, AUTO_SHARE = "auto", 0.1  # TOLERANCE=auto, and the fraction that it adds to the error of the calibration
+AUTO_SHARE = 0.1  # fraction that TOLERANCE=auto adds to the error of the calibration
 NOT_OF_SIM = ("DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH", "REPEAT", "GAPS", "STALLS", "WAVES", "CONFIG")
 OF_SIM = tuple(name for name in run_request.ACCEPTED if name not in NOT_OF_SIM)
 DEFAULT_OUT = repository.ROOT / "build" / "tune"
 DEFAULT_FRAMES = "bench"
-DEFAULT_TOLERANCE = 0.1  # % of peak
 DEFAULT_WIDTHS = (Configuration().data_width, Configuration().coefficient_width)
 CHOOSE = 0  # number of lanes of a request without LANES
 
@@ -105,24 +99,15 @@ def split(frames: Frames, peaks: np.ndarray, seed: int) -> tuple[Frames, Frames,
     return some(tuning), some(proving), how
 
 
-def parse(arguments: list[str]) -> tuple[run_request.Request, Limits, list[str]]:
-    """Return the request of make sim, the limits and the solvers to choose from. Raises InputError."""
-    values = variables.given(arguments, OWN + OF_SIM)
-    defaults = dict.fromkeys(NUMBERS, math.inf) | {"TOLERANCE": DEFAULT_TOLERANCE, "CLOCK_MHZ": published.CLOCK_MHZ}
-    target = TARGETS[variables.choice(values, "TARGET", tuple(TARGETS))]
-    automatic = values.get("TOLERANCE") == AUTO
-    numbers = {name: value for name, value in values.items() if not (automatic and name == "TOLERANCE")}
-    limits = Limits(*(variables.number(numbers, name, default, *LIMITS, float) for name, default in defaults.items()))
-    limits = replace(limits, target=target)
-    if automatic:
-        limits = replace(limits, tolerance=math.nan, judgement=ALL_FRAMES)
+def choices(values: Mapping[str, str]) -> tuple[run_request.Request, list[str]]:
+    """Return the request of make sim, and the solvers to choose from. Raises InputError."""
     request = run_request.of_values(values, OF_SIM, "sensor", DEFAULT_FRAMES)
     solvers = [request.solver] if "SOLVER" in values else list(COLUMNS)
     if "LANES" in values:
         run_request.check_grid(replace(request, solver=solvers[-1]))
     else:
         request = replace(request, lanes=CHOOSE)
-    return request, limits, solvers
+    return request, solvers
 
 
 def lanes_within(
@@ -199,14 +184,15 @@ def compared(counted: Cost, base: Cost | None, limits: Limits) -> str:
     )
 
 
-def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int:
+def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]], Several(OF_SIM, choices)]) -> int:
     """Tune, prove the choice in RTL, write it and return the exit status."""
+    request, solvers = chosen
     simulation.check(request.simulator)
     out = request.out or DEFAULT_OUT
     calibration = run_request.load_sensor(request)
     automatic = math.isnan(limits.tolerance)
     if automatic:
-        limits = replace(limits, tolerance=tolerance_of(calibration, request.gradient))
+        limits = replace(limits, tolerance=tolerance_of(calibration, request.gradient), judgement=ALL_FRAMES)
 
     def shaped(at: Widths) -> run_request.Request:
         own = replace(request, data_width=at.data, coefficient_width=at.coefficient, gain_width=at.gain)
@@ -371,8 +357,3 @@ def _none(search: Search, solvers: list[str]) -> str:
     return (
         f"no configuration is within the limits; the nearest is {near}: beyond {', '.join(limits.broken(counts[near]))}"
     )
-
-
-def main() -> None:
-    with variables.reported("tune"):
-        sys.exit(run(*parse(sys.argv[1:])))

@@ -6,12 +6,19 @@ from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import fmean
+from typing import Annotated
 
+from commands.common import published
+from commands.common.variables import one, real
 from commands.cost.cost import Cost, cost
 from commands.cost.devices import Device
 from commands.hardware.targets import DEFAULT_TARGET, TARGETS, Target
+from tactile_depth.base.errors import Argument
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.limits import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WIDTHS
+
+AUTO = "auto"  # of TOLERANCE
+DEFAULT_TOLERANCE = 0.1  # % of peak
 
 
 @dataclass(frozen=True)
@@ -35,18 +42,26 @@ WORST_FRAME = Judgement("worst frame", lambda errors: max(error for error in err
 ALL_FRAMES = Judgement("RMS over the frames", _rms, 1.5)
 
 
+positive = real(1e-9, 1e9)
+Limit = Annotated[float, positive]
+
+
+def _tolerance(argument: Argument) -> float:
+    return math.nan if argument.value == AUTO else positive(argument)
+
+
 @dataclass(frozen=True)
 class Limits:
-    """Limits of the user; an infinite value is no limit."""
+    """Limits of the user; an infinite value is no limit, and a tolerance of nan follows from the calibration."""
 
-    tolerance: float
-    latency_us: float  # first pixel to first depth
-    map_latency_us: float  # last pixel to last depth
-    clock_mhz: float
-    multipliers: float
-    luts: float
-    memory_kbit: float
-    target: Target = TARGETS[DEFAULT_TARGET]
+    tolerance: Annotated[float, _tolerance] = DEFAULT_TOLERANCE
+    latency_us: Annotated[Limit, "MAX_LATENCY_US"] = math.inf  # first pixel to first depth
+    map_latency_us: Annotated[Limit, "MAX_MAP_LATENCY_US"] = math.inf  # last pixel to last depth
+    clock_mhz: Limit = published.CLOCK_MHZ
+    multipliers: Annotated[Limit, "MAX_DSP"] = math.inf
+    luts: Annotated[Limit, "MAX_LUT"] = math.inf
+    memory_kbit: Annotated[Limit, "MAX_MEMORY_KBIT"] = math.inf
+    target: Annotated[Target, one(TARGETS)] = TARGETS[DEFAULT_TARGET]
     judgement: Judgement = WORST_FRAME
 
     @property

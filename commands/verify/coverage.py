@@ -25,7 +25,8 @@ from typing import NamedTuple
 
 import tomllib
 
-from commands.common import repository, tabular, variables
+from commands.common import repository, tabular
+from commands.common.variables import Flag, Mismatch
 from tb import functional_coverage
 from tb.settings import RunSettings
 
@@ -215,16 +216,8 @@ def functional() -> tuple[str, list[str]]:
     return "\n".join(lines), errors
 
 
-def main() -> None:
-    with variables.reported("coverage"):
-        values = variables.given(sys.argv[1:], ("TESTS",))
-        failed = run(bool(variables.number(values, "TESTS", 1, 0, 1)))
-        if failed:
-            raise variables.Mismatch("; ".join(failed))
-
-
-def run(tests: bool) -> list[str]:
-    """Run the tests, or take the data of the last run; print the table and return the gates that are missed."""
+def main(tests: Flag = True) -> None:
+    """Run the tests, or take the data of the last run; print the table. Raises Mismatch: gates are missed."""
     begun = time.monotonic()
     failed = ["the tests failed"] * bool(tests and run_tests())
     points: Counter[Point] = Counter()
@@ -242,4 +235,5 @@ def run(tests: bool) -> list[str]:
     if not points:
         failed.append("no coverage data")
     print(f"coverage: {time.monotonic() - begun:.0f} s, " + ("all gates met" if not failed else "FAILED:"))
-    return failed
+    if failed:
+        raise Mismatch("; ".join(failed))

@@ -17,6 +17,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Annotated
 
 from commands.common import tabular, variables
 from commands.common.repository import ROOT, chosen, cores, sources, stated, tested, units
@@ -255,15 +256,12 @@ def listing(proofs: Sequence[Proof | Cone], others: Mapping[str, str]) -> str:
     return f"{proven}\n{unproven}" if others else proven
 
 
-def main() -> None:
-    with variables.reported("formal"):
-        values = variables.given(sys.argv[1:], ("CORE", "LIST"))
-        core, only_list = values.get("CORE", ""), variables.choice(values, "LIST", ("0", "1")) == "1"
-        proofs = selected(core)
-        if only_list:
-            print(listing(proofs, {} if core else reasons()))
-        else:
-            sys.exit(prove(proofs))
+def main(core: variables.Name = "", list_only: Annotated[bool, variables.flag, "LIST"] = False) -> int:
+    proofs = selected(core)
+    if not list_only:
+        return prove(proofs)
+    print(listing(proofs, {} if core else reasons()))
+    return variables.EQUAL
 
 
 def first_error(folder: Path) -> str:

@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from commands.common import repository, variables, wrapper
+from commands.common import repository, wrapper
 from commands.common import simulator as simulation
 from commands.hardware import fpga
 from commands.hardware import yosys as yosys_runner
@@ -264,13 +264,10 @@ def checks() -> list[Check]:
     ]
 
 
-def main() -> None:
-    with variables.reported("lint"):
-        values = variables.given(sys.argv[1:], ("CORE",))
-        cores = tuple(repository.chosen(values["CORE"])) if "CORE" in values else ()
-        for simulator in simulation.SIMULATORS:
-            simulation.check(simulator)
-        sys.exit(items.run([ITEMS], table, marks="lint", workers=2, settings=RunSettings(cores=cores))[0])
+def main(cores: repository.Cores | tuple[()] = ()) -> int:
+    for simulator in simulation.SIMULATORS:
+        simulation.check(simulator)
+    return items.run([ITEMS], table, marks="lint", workers=2, settings=RunSettings(cores=tuple(cores)))[0]
 
 
 def table(outcomes: Sequence[items.Item]) -> str:

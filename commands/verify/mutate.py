@@ -14,12 +14,12 @@ Exit status: 1 if all cores together score below 97 %, or a core below 95 %.
 
 import json
 import os
-import sys
 import time
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from multiprocessing.pool import ThreadPool
 from pathlib import Path
+from typing import Annotated
 
 from tqdm import tqdm
 
@@ -136,33 +136,22 @@ def row(outcome: Outcome) -> str:
     return f"{outcome.core:<22}{cells}  {', '.join(notes)}".rstrip()
 
 
-RANGES = {"MUTANTS": (1, 100_000), "SEED": (0, 10**9), "JOBS": (1, 1000), "SECONDS": (1, 86_400)}
+PROCESSORS = os.cpu_count() or 1
 
 
-def parse(arguments: list[str]) -> dict[str, str]:
-    choices = {"MUTANTS": "200", "SEED": "1", "JOBS": str(os.cpu_count() or 1), "SECONDS": "60"}
-    choices["CORE"] = ",".join(cores())
-    choices |= variables.given(arguments, choices)
-    for name, (low, high) in RANGES.items():
-        variables.number(choices, name, None, low, high)
-    return choices
-
-
-def main() -> None:
-    with variables.reported("mutate"):
-        choices = parse(sys.argv[1:])
-        names = repository.tested(repository.chosen(choices["CORE"]))
-        sys.exit(run(names, choices))
-
-
-def run(names: list[str], choices: dict[str, str]) -> int:
+def main(
+    mutants: variables.Count = 200,
+    seed: variables.Seed = 1,
+    jobs: variables.Jobs = PROCESSORS,
+    seconds: Annotated[int, variables.whole(1, 86_400)] = 60,
+    chosen: repository.Cores | None = None,
+) -> int:
     """Mutate each core and print its row; return the exit status."""
     OUT.mkdir(parents=True, exist_ok=True)
-    numbers = {name.lower(): int(choices[name]) for name in ("SEED", "JOBS", "SECONDS")}
     outcomes = []
     print(HEAD)
-    for name in names:
-        outcomes.append(mutate(name, int(choices["MUTANTS"]), **numbers))
+    for name in repository.tested(cores() if chosen is None else chosen):
+        outcomes.append(mutate(name, mutants, seed, jobs, seconds))
         print(row(outcomes[-1]), flush=True)
         sign_off.record(name, "mutants", {kind: getattr(outcomes[-1], kind) for kind in sign_off.COUNTED})
         for survivor in outcomes[-1].survivors:

@@ -9,7 +9,6 @@ all agree, 1 when not, 2 on bad input.
 """
 
 import json
-import sys
 import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -17,8 +16,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from commands.common import repository, variables
+from commands.common import repository
 from commands.common import simulator as simulation
+from commands.common.variables import Seed
 from commands.hardware import yosys
 from commands.verify import items, mutants, mutate
 from tactile_depth.chip.configuration import Configuration
@@ -151,22 +151,13 @@ def row(result: Result) -> str:
     return f"{result.case.name:<28}{shown}{verdict}"
 
 
-def parse(arguments: list[str]) -> tuple[list[str], int]:
-    """Return the names of cores, and the seed. Raises InputError."""
-    values = {"CORE": ",".join(mutate.cores()), "SEED": "1"}
-    values |= variables.given(arguments, values)
-    names = repository.tested(repository.chosen(values["CORE"]))
-    return names, variables.number(values, "SEED", 1, 0, 10**9)
-
-
-def main() -> None:
-    with variables.reported("netlists"):
-        names, seed = parse(sys.argv[1:])
-        yosys.in_wheel("pyosys", LIBRARY)
-        for simulator in WHOLE_LEVELS:
-            simulation.check(simulator)
-        settings = RunSettings(cores=tuple(names))
-        sys.exit(items.run([ITEMS], table, marks="netlist", verbose=True, settings=settings, SEED=str(seed))[0])
+def main(cores: repository.Cores | None = None, seed: Seed = 1) -> int:
+    names = repository.tested(mutate.cores() if cores is None else cores)
+    yosys.in_wheel("pyosys", LIBRARY)
+    for simulator in WHOLE_LEVELS:
+        simulation.check(simulator)
+    settings = RunSettings(cores=tuple(names))
+    return items.run([ITEMS], table, marks="netlist", verbose=True, settings=settings, SEED=str(seed))[0]
 
 
 def table(outcomes: Sequence[items.Item]) -> str:

@@ -11,8 +11,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from commands.common import repository, variables
+from commands.common import repository
 from commands.common.repository import ROOT, git
+from commands.common.variables import Mismatch, Name
 from commands.verify.test import all_succeed, pytest, settings, tests_of
 from tactile_depth.base.errors import InputError
 
@@ -100,16 +101,14 @@ def plan(changes: Affected) -> list[Sequence[str]]:
     ]
 
 
-def main() -> None:
-    with variables.reported("quick"):
-        values = variables.given(sys.argv[1:], ("BASE",))
-        commit = base_commit(values.get("BASE", ""))
-        changes = affected(changed_files(commit))
-        print(f"against {commit[:9]}: cores {', '.join(changes.cores) or 'none'}", flush=True)
-        for test in changes.tests:
-            print(f"  {test}")
-        for name in changes.shared:
-            print(f"  {name} is shared: make test runs what depends on it")
-        sys.stdout.flush()
-        if not all_succeed(plan(changes), settings(changes.cores)):
-            raise variables.Mismatch("failed: see above")
+def main(base: Name = "") -> None:
+    commit = base_commit(base)
+    changes = affected(changed_files(commit))
+    print(f"against {commit[:9]}: cores {', '.join(changes.cores) or 'none'}", flush=True)
+    for test in changes.tests:
+        print(f"  {test}")
+    for name in changes.shared:
+        print(f"  {name} is shared: make test runs what depends on it")
+    sys.stdout.flush()
+    if not all_succeed(plan(changes), settings(changes.cores)):
+        raise Mismatch("failed: see above")

@@ -9,18 +9,17 @@ is the number of processes, 2 by default.
 
 import json
 import resource
-import sys
 import time
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from commands.common import repository, tabular, variables
 from commands.verify import items
-from tactile_depth.base.errors import InputError
+from tactile_depth.base.errors import Argument, InputError
 from tb.settings import RunSettings
 
 POWER_UPS = 100
@@ -89,17 +88,14 @@ def matrix(part: Part) -> str:
     return tabular.table(("device", *counts), rows)
 
 
-def main() -> None:
-    with variables.reported("regress"):
-        values = variables.given(sys.argv[1:], ("PARTS", "JOBS"))
-        names = values.get("PARTS", ",".join(PARTS)).split(",")
-        jobs = variables.number(values, "JOBS", 2, 1, 1000)
-        if not PARTS.keys() >= set(names):
-            raise InputError(f"PARTS={values['PARTS']}: accepted are {', '.join(PARTS)}")
-        sys.exit(run(names, jobs))
+def _parts(argument: Argument) -> list[str]:
+    names: list[str] = argument.value.split(",")
+    if not PARTS.keys() >= set(names):
+        raise InputError(argument, f": accepted are {', '.join(PARTS)}")
+    return names
 
 
-def run(names: Sequence[str], jobs: int) -> int:
+def main(names: Annotated[Sequence[str], _parts, "PARTS"] = tuple(PARTS), jobs: variables.Jobs = 2) -> int:
     """Run the parts and print their table; return the exit status."""
     parts = []
     for name in names:

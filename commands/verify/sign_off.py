@@ -7,11 +7,10 @@ file without comments, so that the page tells whether its RTL has changed since.
 
 import hashlib
 import json
-import sys
 from collections.abc import Mapping
 from typing import Any
 
-from commands.common import repository, tabular, variables
+from commands.common import repository, tabular
 from commands.common.repository import ROOT, git
 
 RESULTS = ROOT / "docs" / "sign-off.json"
@@ -99,6 +98,4 @@ def document() -> str:
 
 
 def main() -> None:
-    with variables.reported("sign-off"):
-        variables.given(sys.argv[1:], ())
-        PAGE.write_text(document())
+    PAGE.write_text(document())

@@ -9,8 +9,9 @@ import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 
-from commands.common import repository, variables
-from commands.common.simulator import SIMULATORS
+from commands.common import repository
+from commands.common.simulator import Simulator
+from commands.common.variables import Mismatch
 from commands.verify import lint
 from tb.settings import RunSettings
 
@@ -44,16 +45,11 @@ def all_succeed(processes: Sequence[Sequence[str]], environment: Mapping[str, st
     )
 
 
-def main() -> None:
-    with variables.reported("test"):
-        values = variables.given(sys.argv[1:], ("CORE", "SIM"))
-        environment = {}
-        if "SIM" in values:
-            environment["SIM"] = variables.choice(values, "SIM", SIMULATORS)
-        tests: list[str] = []
-        if "CORE" in values:
-            cores = repository.chosen(values["CORE"])
-            tests = tests_of(cores)
-            environment |= settings(cores)
-        if not all_succeed([pytest(tests)], environment):
-            raise variables.Mismatch("failed: see above")
+def main(cores: repository.Cores | None = None, simulator: Simulator | None = None) -> None:
+    environment = {} if simulator is None else {"SIM": simulator}
+    tests: list[str] = []
+    if cores:
+        tests = tests_of(cores)
+        environment |= settings(cores)
+    if not all_succeed([pytest(tests)], environment):
+        raise Mismatch("failed: see above")

@@ -2,7 +2,6 @@
 """`make upsets`: flips bits of registers and memories while frames stream through, and counts the outcomes."""
 
 import json
-import sys
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -65,15 +64,7 @@ def table(results: list[dict[str, Any]]) -> str:
     return tabular.table(("module", *OUTCOMES), cells)
 
 
-def main() -> None:
-    with variables.reported("upsets"):
-        values = variables.given(sys.argv[1:], ("UPSETS", "SEED"))
-        upsets = variables.number(values, "UPSETS", 60, 1, 100_000)
-        seed = variables.number(values, "SEED", 1, 0, 10**9)
-        sys.exit(campaign(upsets, seed))
-
-
-def campaign(upsets: int, seed: int) -> int:
+def main(upsets: variables.Count = 60, seed: variables.Seed = 1) -> int:
     """Flip bits in every case and print tables of the outcomes; return the exit status."""
     folders = {case: repository.ROOT / "build" / "upsets" / case for case in CASES}
     for folder in folders.values():

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from commands.common import repository
+from commands.common import repository, variables
 from commands.hardware import asic, estimate, gate_sim, memory_model, synthesis
 from commands.hardware.gate_power import CLOCK, INTERNAL, LEAKAGE, SWITCHING, power_of, typical
 from commands.hardware.gate_sim import Activity, Macro, Stimulus
@@ -415,7 +415,7 @@ def test_bad_input(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: A
     monkeypatch.chdir(tmp_path)
     (tmp_path / "two.lib").write_text(LIBERTY)
     with pytest.raises(InputError) as error:
-        asic.parse(arguments)
+        variables.read(asic.main, arguments)
     assert message in str(error.value)
 
 
@@ -424,5 +424,5 @@ def test_missing_tool_is_one_line(tmp_path: Path, monkeypatch: Any) -> None:
     path.write_text(LIBERTY)
     monkeypatch.setattr(asic.shutil, "which", lambda tool: None)
     with pytest.raises(InputError, match="sta is not installed: run `apt-get install opensta`"):
-        asic.run(*asic.parse([f"LIB={path}", "NODE_NM=90", f"OUT={tmp_path / 'out'}"]), "")
+        variables.read(asic.main, [f"LIB={path}", "NODE_NM=90", f"OUT={tmp_path / 'out'}"])
     assert not (tmp_path / "out").exists()

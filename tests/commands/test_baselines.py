@@ -12,7 +12,7 @@ import pytest
 from commands.common.variables import Mismatch
 from commands.study import baseline_methods, baseline_throughput, baselines, report
 from commands.study.baseline_methods import METHODS, Method, Prepared
-from commands.study.baselines import WARM_UPS
+from commands.study.baselines import WARM_UPS, BaselinesRun
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth
@@ -43,7 +43,7 @@ def test_a_wrong_result_is_not_timed(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "times_us" not in row
     monkeypatch.setattr(baselines, "in_own_process", baselines.measure)
     with pytest.raises(Mismatch, match="wrong at 16"):
-        baselines.measure_all(baselines.parse(["GRIDS=16"]))
+        baselines.measure_all(BaselinesRun((16,)))
 
 
 def test_a_slow_method_is_cut_short() -> None:
@@ -75,7 +75,7 @@ def test_a_small_run(tmp_path: Path, monkeypatch: Any) -> None:
     monkeypatch.setattr(baselines, "METHODS", (METHODS[0], absent))
     monkeypatch.setattr(baselines.os, "sched_getaffinity", lambda process: {0})
     monkeypatch.setattr(baselines.os, "sched_setaffinity", lambda process, cores: None)
-    baselines.run(baselines.parse(["GRIDS=16", "RUNS=20", "MAX_LOAD=10000", f"OUT={tmp_path}"]))
+    baselines.run(BaselinesRun((16,), 20, max_load=10_000, out=tmp_path))
     assert sorted(path.name for path in tmp_path.iterdir()) == ["baselines.json", "baselines.png"]
     document = json.loads((tmp_path / "baselines.json").read_text())
     timed, missing = document["software"]
@@ -123,7 +123,7 @@ def test_a_batch_that_crashes_is_a_failure() -> None:
 def test_a_busy_machine_gives_no_times(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(baselines.os, "getloadavg", lambda: (1.23, 0.0, 0.0))
     with pytest.raises(InputError, match=r"a load of 1\.2 .* MAX_LOAD=2"):
-        baselines.run(baselines.parse([f"OUT={tmp_path}"]))
+        baselines.run(BaselinesRun(out=tmp_path))
     assert not list(tmp_path.iterdir())
 
 

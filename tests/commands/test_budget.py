@@ -11,7 +11,7 @@ import pytest
 
 import tactile_depth as td
 from commands.study import budget
-from commands.study.budget import DrawnSensor, Request
+from commands.study.budget import BudgetRun, DrawnSensor
 from commands.study.budget_steps import BACK, FRONT, MEASURES, Exact, framed
 from commands.study.drawn_sensor import PLACES
 from commands.study.presses import measured
@@ -22,7 +22,7 @@ from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.depth import reference
 
 STILL = DrawnSensor(camera=(120, 160), drift=0, white=0)
-SMALL = Request(drawn=replace(STILL, drift=0.05, white=0.02), presses=10, bodies=2)
+SMALL = BudgetRun(drawn=replace(STILL, drift=0.05, white=0.02), presses=10, bodies=2)
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +40,7 @@ def whole(found: dict[str, np.ndarray]) -> dict[str, float]:
     return {measure: float(np.sqrt(found[measure].sum())) for measure in MEASURES}
 
 
-def parts(request: Request, measure: str = "contact") -> dict[str, float]:
+def parts(request: BudgetRun, measure: str = "contact") -> dict[str, float]:
     """Return the RMS of each part in um, of all drawn contacts."""
     found = np.array([each[measure] for _, each in budget.drawn_contacts(request)])
     rms = budget.numbers_of(found.mean(axis=0))["rms_um"]
@@ -122,6 +122,6 @@ def test_the_tables_the_picture_and_what_is_missing(
 )
 def test_bad_input_is_named(argument: Any, named: Any) -> None:
     with pytest.raises(InputError) as caught:
-        budget.parse([argument])
+        budget.variables.read(BudgetRun, [argument])
     assert named in caught.value.text(budget.variables.named)
     assert "\n" not in str(caught.value)

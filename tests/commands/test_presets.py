@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from commands.common import repository, run_request, wrapper
+from commands.common import repository, run_request, variables, wrapper
 from commands.hardware import fpga, synth, synthesis
 from commands.run import sim
 from commands.study import tune
@@ -106,9 +106,9 @@ def test_an_unknown_preset_is_refused() -> None:
 
 
 def test_the_preset_of_each_command() -> None:
-    assert synth.parse([])[-1].preset == "sensor"
+    assert variables.read(synth.SynthRun, []).request.preset == "sensor"
     assert fpga.parse(["TARGET=ulx3s"]).design.preset == "chip"
-    assert tune.parse([])[0].preset == "sensor"
+    assert tune.choices({})[0].preset == "sensor"
     assert run_request.parse([]).preset == "published"
 
 

@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 from commands.common import published
+from commands.common.variables import read
 from commands.run import bench, reflex, reflex_model
+from commands.run.reflex_model import ReflexRun
 from commands.study import report
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_pixel_to_first_depth
@@ -114,13 +116,13 @@ def test_the_loop_on_the_rtl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     """Run the command on a small grid: command times are cycles of the pin, and latencies do not depend on the camera's
     rate."""
     out = tmp_path / "out"
-    reflex.run(reflex.parse([*SMALL, "HOST_TRIALS=3", f"OUT={out}"]))
+    read(reflex.run, [*SMALL, "HOST_TRIALS=3", f"OUT={out}"])
     assert sorted(path.name for path in out.iterdir()) == ["reflex.json", "reflex.png"]
     document = json.loads((out / "reflex.json").read_text())
 
-    request = reflex.parse([*SMALL[:2], "CLOCK_MHZ=0.7", SMALL[3]])
+    request = read(ReflexRun, [*SMALL[:2], "CLOCK_MHZ=0.7", SMALL[3]])
     draws = reflex_model.draw(request.trials, request.seed, "near")
-    assert reflex_model.spacing(request)[0] != reflex_model.spacing(reflex.parse(SMALL))[0]
+    assert reflex_model.spacing(request)[0] != reflex_model.spacing(read(ReflexRun, SMALL))[0]
     once = replace(request, trials=1)  # of the same draws
     faster = reflex.loop(once, setup(threshold=document["threshold_mm"]), draws)
     for solver, one in zip(COLUMNS, faster, strict=True):

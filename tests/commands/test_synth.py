@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from commands.common import repository
+from commands.common import repository, variables
 from commands.cost.cost import cost
 from commands.hardware import synth
 from commands.hardware.fpga_memory import Memory, memories, path_of
@@ -124,7 +124,7 @@ def test_a_design_too_large_ends_with_a_line(
 ) -> None:
     small = replace(XCZU7EV, has={**XCZU7EV.has, "BRAM36": 10})
     monkeypatch.setattr(synth, "TARGETS", {"xczu7ev": small})
-    assert synth.run(["PRESET=published", "N=16", "SOLVER=tridiagonal", f"OUT={tmp_path}"]) == 1
+    assert variables.read(synth.main, ["PRESET=published", "N=16", "SOLVER=tridiagonal", f"OUT={tmp_path}"]) == 1
     error = capsys.readouterr().err.strip()
     assert error == "make synth: it does not fit the XCZU7EV: BRAM36 12.5 of 10, 2.5 too many"
     (design,) = json.loads((tmp_path / "resources.json").read_text())["designs"]
@@ -134,8 +134,8 @@ def test_a_design_too_large_ends_with_a_line(
 
 def test_a_grid_that_one_solver_has_is_built_with_that_solver() -> None:
     """Build the solver that has the grid; the report names the reason why the other one is missing."""
-    _, _, grids, request = synth.parse(["PRESET=published", "GRIDS=1024"])
-    reasons = {each.solver: reason for each, reason in synth.designs(request, grids)}
+    of = variables.read(synth.SynthRun, ["PRESET=published", "GRIDS=1024"])
+    reasons = {each.solver: reason for each, reason in synth.designs(of.request, of.grids)}
     assert reasons["tridiagonal"] == ""
     assert "1024" in reasons["spectral"]
 

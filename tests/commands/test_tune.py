@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import tactile_depth as td
-from commands.common import published, run_request
+from commands.common import published, run_request, variables
 from commands.cost.cost import cost
 from commands.run import sim
 from commands.study import tune
@@ -104,7 +104,7 @@ def test_a_frame_that_comes_alone_is_proven_on_copies_with_other_noise() -> None
 
 
 def run(tmp_path: Any, *words: Any) -> Any:
-    return tune.run(*tune.parse(["PRESET=published", "SIM=icarus", "N=32", f"OUT={tmp_path / 'out'}", *words]))
+    return variables.read(tune.main, ["PRESET=published", "SIM=icarus", "N=32", f"OUT={tmp_path / 'out'}", *words])
 
 
 @pytest.mark.parametrize(
@@ -145,8 +145,8 @@ def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(
 
 def test_a_limit_of_the_whole_map_takes_lanes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     def choose(limit_us: float) -> int:
-        words = ["PRESET=published", "N=32", "SIM=icarus", f"MAX_MAP_LATENCY_US={limit_us}"]
-        request, limits, _ = tune.parse(words)
+        request, _ = tune.choices({"PRESET": "published", "N": "32", "SIM": "icarus"})
+        limits = variables.read(Limits, [f"MAX_MAP_LATENCY_US={limit_us}"])
         return tune.lanes_within(lambda at: config(at.lanes), request, limits, "tridiagonal")
 
     def config(lanes: int) -> Configuration:
@@ -156,7 +156,7 @@ def test_a_limit_of_the_whole_map_takes_lanes(tmp_path: Path, capsys: pytest.Cap
         exact_us = last_pixel_to_last_depth(config(lanes)) / published.CLOCK_MHZ
         assert choose(exact_us + 1e-6) == lanes
         assert choose(exact_us - 1e-6) == min(2 * lanes, 16)
-    assert tune.lanes_within(lambda at: None, *tune.parse(["LANES=2", "N=32"])[:2], "tridiagonal") == 2
+    assert tune.lanes_within(lambda at: None, tune.choices({"LANES": "2", "N": "32"})[0], Limits(), "tridiagonal") == 2
 
     assert run(tmp_path, "FRAMES=ball", f"MAX_MAP_LATENCY_US={exact_us + 1e-6}") == 0
     chosen = json.loads((tmp_path / "out" / "config.json").read_text())
@@ -199,7 +199,7 @@ def test_auto_keeps_caps_and_centroids_of_presses_it_was_not_tuned_on(tmp_path: 
     background = source / "background.png"
     given = ["TOLERANCE=auto", "DEPTH_RANGE=2", "TARGET=ecp5", f"FRAMES={tmp_path / 'frames'}"]
     given += [f"REFERENCE={background}", "CALIBRATION=gelsight-mini", f"OUT={tmp_path / 'out'}"]
-    assert tune.run(*tune.parse(given)) == 0
+    assert variables.read(tune.main, given) == 0
     report = json.loads((tmp_path / "out" / "report.json").read_text())
     chosen = json.loads((tmp_path / "out" / "config.json").read_text())
     assert {name: chosen[variable] for name, variable in run_request.WORDS.items()} == CHIP.words

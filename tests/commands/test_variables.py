@@ -3,8 +3,10 @@
 
 import errno
 import math
+import re
 import warnings
-from typing import Any
+from dataclasses import dataclass
+from typing import Annotated, Any
 
 import pytest
 
@@ -54,6 +56,41 @@ def test_a_number_is_finite_even_where_the_range_is_not(word: Any) -> None:
 def test_a_command_without_variables_refuses_all() -> None:
     with pytest.raises(InputError, match=r"^CORE=td_ram: unknown variable: accepted is none$"):
         variables.given(["CORE=td_ram"], ())
+
+
+@dataclass(frozen=True)
+class Size:
+    rows: Annotated[int, variables.whole(1, 9)] = 3
+    columns: Annotated[int, variables.whole(1, 9), "N"] = 4
+    drawn: float = 0.5  # no variable
+
+
+def form(
+    size: Size,
+    shape: Annotated[tuple[str, ...], variables.Several(("A", "B"), tuple)],
+    seed: variables.Seed | None = None,
+    wide: Annotated[float, variables.one({"no": 0.5, "yes": 2.5})] = 1,
+) -> tuple[Any, ...]:
+    return size, shape, seed, wide
+
+
+def test_parameters_are_variables_of_their_names() -> None:
+    assert variables.read(form, []) == (Size(), (), None, 1)
+    assert variables.read(form, ["WIDE=yes", "N=5", "B=x", "SEED=7"]) == (Size(columns=5), ("B",), 7, 2.5)
+
+
+@pytest.mark.parametrize(
+    ("word", "line"),
+    [
+        ("COLUMNS=2", "COLUMNS=2: unknown variable: accepted are ROWS, N, A, B, SEED, WIDE"),
+        ("DRAWN=2", "DRAWN=2: unknown variable: accepted are ROWS, N, A, B, SEED, WIDE"),
+        ("ROWS=10", "ROWS=10: accepted is a whole number from 1 to 9"),
+        ("WIDE=2.5", "WIDE=2.5 is unknown: accepted are no, yes"),
+    ],
+)
+def test_a_parameter_takes_what_its_reader_accepts(word: str, line: str) -> None:
+    with pytest.raises(InputError, match=f"^{re.escape(line)}$"):
+        variables.read(form, [word])
 
 
 FULL = "free disk space, or give a folder on another disk"
