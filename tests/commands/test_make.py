@@ -81,6 +81,14 @@ def test_the_makefile_has_a_target_for_every_command() -> None:
     assert targets() == sorted([*COMMANDS, *WITHOUT_COMMAND])
 
 
+def test_help_lists_every_target_in_groups_and_begins_with_five() -> None:
+    printed = subprocess.run(["make", "-C", str(ROOT), "help"], capture_output=True, text=True, check=True).stdout
+    names = re.findall(r"^  ([a-z-]+) ", printed, re.MULTILINE)
+    assert sorted(names) == targets()
+    assert names[:5] == ["sim", "test", "report", "calibrate", "wrap"]
+    assert len(re.findall(r"^\S.*:$", printed, re.MULTILINE)) == 4
+
+
 @pytest.mark.parametrize("target", COMMANDS)
 def test_values_reach_the_command_as_they_are(place: Any, target: str) -> None:
     """Give every hostile value under an odd name: none is executed, and none exported, where a sub-make expands it."""
