@@ -149,9 +149,16 @@ def examples() -> Iterator[Any]:
     """Return the code in the docstring of the package and in the README."""
     (block,) = re.findall(r"(?:^    .*\n|^\n)*^    result\..*\n", td.__doc__, re.MULTILINE)
     yield pytest.param(textwrap.dedent(block), id="docstring")
-    for page in ("README.md", "docs/python.md"):
+    for page in ("README.md", "docs/python.md", "docs/integrate.md"):
         for index, block in enumerate(re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(), re.M | re.S)):
             yield pytest.param(block, id=f"{page}-{index}")
+
+
+def public_pages() -> list[Path]:
+    """Return the pages and examples whose imports of the package are public."""
+    kinds = ("*.md", "*.py", "*.ipynb")
+    folders = [ROOT / "docs", ROOT / "examples"]
+    return [ROOT / "README.md", *(file for kind in kinds for folder in folders for file in folder.rglob(kind))]
 
 
 def metadata(wheel: Path) -> Any:
@@ -193,7 +200,9 @@ def test_the_archive_holds_the_package_and_no_tests(archive: Path) -> None:
         names = {member.name.partition("/")[2] for member in file.getmembers() if member.isfile()}
     package = [path.relative_to(ROOT).as_posix() for path in package_files()]
     made = {name for name in names if "egg-info/" in name} | {"setup.cfg"}
-    assert names - made == {*BESIDE_THE_PACKAGE, *package}
+    public = [path.relative_to(ROOT).as_posix() for path in public_pages()]
+    assert {*BESIDE_THE_PACKAGE, *package, *public} <= names - made
+    assert {name.partition("/")[0] for name in names - made} == {*BESIDE_THE_PACKAGE, "docs", "examples", "models"}
 
 
 def test_the_version_without_a_tag_or_without_git(archive: Path, tmp_path: Path) -> None:
@@ -204,16 +213,54 @@ def test_the_version_without_a_tag_or_without_git(archive: Path, tmp_path: Path)
         assert re.fullmatch(expected, shown.strip())
 
 
+def left_out(wheel: Path) -> dict[str, Path]:
+    """Return the modules of the package that a wheel does not hold, by name."""
+    files = {file.relative_to(ROOT / "models"): file for file in (ROOT / "models").rglob("*.py")}
+    with zipfile.ZipFile(wheel) as archive:
+        held = archive.namelist()
+    out = {path: file for path, file in files.items() if path.as_posix() not in held}
+    return {".".join(path.with_suffix("").parts): file for path, file in out.items()}
+
+
+def names(text: str, module: str) -> bool:
+    """Return True if a text names a module by its path, or imports it from its package."""
+    package, _, name = module.rpartition(".")
+    imports = rf"from {package} import (\(\s*)?(\w+( as \w+)?,\s*)*{name}\b"
+    return re.search(rf"\b{module}\b|{imports}".replace(".", r"\."), text) is not None
+
+
 def package_files() -> list[Path]:
     package = ROOT / "models" / "tactile_depth"
     kinds = ("*.py", "*.npz", "*.json", "*.h")
     return [*(path for kind in kinds for path in package.rglob(kind)), package / "py.typed"]
 
 
-def test_the_wheel_holds_every_module_and_the_data(wheel: Any) -> None:
+def test_the_wheel_holds_what_public_starts_import_and_the_data(wheel: Any) -> None:
+    """Check what is left out and what is held by what names it: a module of the wheel, a page or an example."""
+    out = left_out(wheel)
+    assert out
     with zipfile.ZipFile(wheel) as archive:
         held = {name for name in archive.namelist() if ".dist-info/" not in name}
-    assert held == {path.relative_to(ROOT / "models").as_posix() for path in package_files()}
+    files = {path.relative_to(ROOT / "models").as_posix() for path in package_files()}
+    assert held == files - {path.relative_to(ROOT / "models").as_posix() for path in out.values()}
+    texts = {name: (ROOT / "models" / name).read_text() for name in held if name.endswith(".py")}
+    texts |= {str(page): page.read_text() for page in public_pages()}
+    assert [module for module in out if any(names(text, module) for text in texts.values())] == []
+    modules = {name: name.removesuffix(".py").replace("/", ".") for name in held if name.endswith(".py")}
+    unnamed = [
+        module
+        for file, module in modules.items()
+        if not any(names(text, module) for name, text in texts.items() if name != file)
+    ]
+    assert [module for module in unnamed if not module.endswith(("__init__", "__main__"))] == []
+
+
+def test_what_pages_and_examples_import_is_in_the_wheel(environment: Any, tmp_path: Path) -> None:
+    imports = r"^ *\"?((?:from tactile_depth(?:\.\w+)* )?import [^\\\n#]*)"
+    lines = {line for page in public_pages() for line in re.findall(imports, page.read_text(), re.MULTILINE)}
+    script = "\n".join(sorted(line for line in lines if "tactile_depth" in line))
+    assert script.count("\n") > 10
+    run(environment, tmp_path, "-c", script)
 
 
 def test_the_version_is_that_of_the_tag(environment: Any, tmp_path: Path) -> None:

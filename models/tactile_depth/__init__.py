@@ -7,8 +7,8 @@
     result = pipeline("press.png")
     result.height_mm, result.contact.touching
 
-`sample()` returns drawn pictures for users without a sensor. The models of the cores are in the subpackages, one for
-each folder of hdl/.
+`sample()` returns drawn pictures for users without a sensor. The models of the cores are in `tactile_depth.chip`, in a
+subpackage for each folder of hdl/; a wheel leaves out those that nothing public imports.
 """
 
 from __future__ import annotations
