@@ -14,7 +14,6 @@ import pytest
 import tactile_depth as td
 from commands.common import repository
 from commands.common.run_request import ACCEPTED, CAMERA
-from commands.study import architecture
 from tactile_depth.device.status import DeviceStatus
 
 ROOT = repository.ROOT
@@ -90,12 +89,8 @@ def test_the_page_of_the_python_api_lists_every_argument_and_attribute() -> None
     assert [name for name in names if not re.search(rf"\b{name}\b", page) and name not in internal] == []
 
 
-def test_tables_of_the_architecture_are_those_of_the_models() -> None:
-    assert architecture.PAGE.read_text() == architecture.document(), "run python -m commands.study.architecture"
-
-
 def test_the_architecture_names_every_core_of_the_top() -> None:
-    text = architecture.PAGE.read_text()
+    text = (ROOT / "docs" / "architecture.md").read_text()
     cores = [path.stem for path in repository.sources("tactile_depth") if path.stem in repository.cores()]
     assert [core for core in cores if f"`{core}`" not in text and core != "tactile_depth"] == []
 

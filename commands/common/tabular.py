@@ -6,15 +6,16 @@ class Row:
     grid: Annotated[str, Column("grid")]
     rms: Annotated[float, Column("RMS, codes", ",.1f")]
 
-print(table_of(Row, rows))
+print(shown(Row, rows))
 """
 
+import html
 import json
+import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any, NamedTuple, get_type_hints
 
 
 @dataclass(frozen=True)
@@ -38,51 +39,52 @@ def columns(kind: type) -> Mapping[str, Column]:
     return {name: each for name, extras in stated.items() for each in extras if isinstance(each, Column)}
 
 
-def shown(kind: type, rows: Sequence[Any]) -> tuple[list[str], list[list[str]]]:
-    """Return head and rows of results, objects or documents, as text: the columns that their dataclass declares."""
+class Table(NamedTuple):
+    """Head and rows of a table, and a title or a sentence for above it."""
+
+    head: Sequence[str]
+    rows: Sequence[Sequence[object]]
+    title: str = ""
+
+    def __str__(self) -> str:
+        """Return Markdown with aligned columns, numbers to the right, that a terminal can show too."""
+        columns = [list(map(str, column)) for column in zip(self.head, *self.rows, strict=True)]
+        numbers = [all(cell[:1] in "+-0123456789" for cell in column[1:]) for column in columns]
+        widths = [max(map(len, column)) for column in columns]
+        padded = [
+            [cell.rjust(width) if right else cell.ljust(width) for cell in column]
+            for column, width, right in zip(columns, widths, numbers, strict=True)
+        ]
+        head, *lines = (f"| {' | '.join(line)} |" for line in zip(*padded, strict=True))
+        ends = ("-" * (width + 1) + (":" if right else "-") for width, right in zip(widths, numbers, strict=True))
+        above = f"{self.title}\n\n" if self.title else ""
+        return above + "\n".join([head, f"|{'|'.join(ends)}|", *lines])
+
+    def markdown(self) -> str:
+        """Return Markdown without padding, for a page."""
+        lines = [self.head, ["---"] * len(self.head), *self.rows]
+        above = f"{textwrap.fill(self.title, 120)}\n\n" if self.title else ""
+        return above + "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
+
+    def html(self) -> str:
+        def line(cells: Sequence[object], tag: str) -> str:
+            return "<tr>" + "".join(f"<{tag}>{html.escape(str(cell))}</{tag}>" for cell in cells) + "</tr>"
+
+        above = f"<h3>{html.escape(self.title)}</h3>" if self.title else ""
+        return f"{above}<table>{line(self.head, 'th')}{''.join(line(row, 'td') for row in self.rows)}</table>"
+
+
+def shown(kind: type, rows: Sequence[Any]) -> Table:
+    """Return the table of results, objects or documents: the columns that their dataclass declares."""
     stated = columns(kind)
     values = [row if isinstance(row, Mapping) else vars(row) for row in rows]
     cells = [[column.cell(row[name]) for name, column in stated.items()] for row in values]
-    return [column.head for column in stated.values()], cells
-
-
-def table_of(kind: type, rows: Sequence[Any]) -> str:
-    """Return the table of results for a terminal; see `shown`."""
-    return table(*shown(kind, rows))
+    return Table([column.head for column in stated.values()], cells)
 
 
 def counts(of: Mapping[str, int]) -> str:
     """Return numbers by name as text."""
     return ", ".join(f"{name} {count:,}" for name, count in of.items()) or "-"
-
-
-def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a table of Markdown with aligned columns, numbers to the right, that a terminal can show too."""
-    columns = list(zip(head, *rows, strict=True))
-    widths = [max(map(len, column)) for column in columns]
-    numbers = [all(cell[:1] in "+-0123456789" for cell in column[1:]) for column in columns]
-
-    def line(cells: Sequence[str]) -> str:
-        padded = (
-            cell.rjust(width) if right else cell.ljust(width)
-            for cell, width, right in zip(cells, widths, numbers, strict=True)
-        )
-        return f"| {' | '.join(padded)} |"
-
-    rule = "|".join("-" * (width + 1) + (":" if right else "-") for width, right in zip(widths, numbers, strict=True))
-    return "\n".join([line(head), f"|{rule}|", *map(line, rows)])
-
-
-def compact(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    """Return a table of Markdown without padding, for a page."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
-
-
-def with_tables(page: Path, begin: str, end: str, tables: str) -> str:
-    """Return the text of a page with `tables` between its two marks, and the rest as it is."""
-    before, _, after = page.read_text().partition(begin)
-    return f"{before}{begin}\n\n{tables}\n{end}{after.partition(end)[2]}"
 
 
 def records(document: Any, indent: str = "") -> str:

@@ -25,7 +25,7 @@ import numpy as np
 from tqdm import tqdm
 
 from commands.common import recorded, repository, run_request, variables
-from commands.common.tabular import table
+from commands.common.tabular import Table
 from commands.common.variables import ClockMhz, Place, real
 from commands.cost.cost import MACRO_BITS
 from commands.hardware import estimate, gate_sim, memory_model, synthesis, yosys
@@ -204,12 +204,12 @@ def figures(
     return [dict(zip(("name", "area_mm2", "power_mw", "source"), row, strict=True)) for row in rows]
 
 
-def rows(report: Mapping[str, Any]) -> list[list[str]]:
-    """Return area and power of an asic.json as text: head, then rows."""
-    head = ["", "area, mm2", "power, mW", "source"]
-    return [head] + [
-        [row["name"], f"{row['area_mm2']:.2f}", f"{row['power_mw']:.1f}", row["source"]] for row in report["figures"]
-    ]
+def area_and_power(report: Mapping[str, Any]) -> Table:
+    """Return the figures of an asic.json."""
+    return Table(
+        ("", "area, mm2", "power, mW", "source"),
+        [(row["name"], f"{row['area_mm2']:.2f}", f"{row['power_mw']:.1f}", row["source"]) for row in report["figures"]],
+    )
 
 
 def recordable(report: Mapping[str, Any]) -> dict[str, Any]:
@@ -224,22 +224,21 @@ def recordable(report: Mapping[str, Any]) -> dict[str, Any]:
 
 def text(report: Mapping[str, Any]) -> str:
     """Return the printed report."""
-    head = ("core (without cores inside)", "cells", "area, mm2", "delays", "mW")
-    cores = []
-    for row in report["cores"]:
-        shown = (f"{row['area_um2'] / 1e6:.3f}", f"{row['delay_factor']:.2f}", f"{row['with_delays_mw']:.2f}")
-        cores.append((row["core"], f"{row['cells']:,}", *shown))
-    heading, *figures = rows(report)
+    cores = [
+        (row["core"], f"{row['cells']:,}", f"{row['area_um2'] / 1e6:.3f}", f"{row['delay_factor']:.2f}",
+         f"{row['with_delays_mw']:.2f}")
+        for row in report["cores"]
+    ]  # fmt: skip
     time = report["timing"]
     parts = {name: sum(row["without_delays_mw"][name] for row in report["cores"]) for name in NAMES}
     return "\n".join(
         [
-            table(head, cores),
+            str(Table(("core (without cores inside)", "cells", "area, mm2", "delays", "mW"), cores)),
             "delays: power of toggling with delays over without; mW: with delays",
             "logic without delays, mW: " + ", ".join(f"{name} {milliwatts:.2f}" for name, milliwatts in parts.items()),
             f"worst slack {time['worst_slack_ns']:.2f} of {time['period_ns']:.2f} ns ({time['fastest_mhz']:.0f} MHz): "
             f"{' to '.join(time['path'])}",
-            table(heading, figures),
+            str(area_and_power(report)),
             report["method"],
         ]
     )

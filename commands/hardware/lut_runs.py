@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from commands.common import variables
-from commands.common.tabular import compact
+from commands.common.tabular import Table
 from commands.cost.cost import cost
 from commands.cost.luts import RUNS, grouped, logic, memories
 from commands.hardware import synth, synthesis, targets
@@ -56,8 +56,8 @@ def runs_of(report: Path, fitted: bool) -> list[dict[str, Any]]:
     return runs
 
 
-def table() -> str:
-    """Return all runs beside the model."""
+def runs_and_model() -> Table:
+    """Return the table of all runs beside the model."""
     devices = {target.device.name: target.device for target in targets.TARGETS.values()}
     rows = []
     for run in json.loads(RUNS.read_text()):
@@ -73,7 +73,7 @@ def table() -> str:
         fitted = "yes" if run["fitted"] else "no"
         rows.append((device.name, f"`{run['variables']}`", *both, f"{model:,.0f}", f"{tool:,.0f}", difference, fitted))
     heads = ("multipliers", "block memories", "LUT of memories", "of logic: model", "tool", "difference", "fitted")
-    return compact(("device", "`make synth` with", *heads), rows)
+    return Table(("device", "`make synth` with", *heads), rows)
 
 
 def main() -> None:
@@ -85,7 +85,7 @@ def main() -> None:
             for run in runs_of(Path(name), k < behind) if k != behind else []:
                 runs.setdefault((run["device"], run["variables"]), run)
         RUNS.write_text("[\n" + ",\n".join(sorted(map(json.dumps, runs.values()))) + "\n]\n")
-    print(table())
+    print(runs_and_model().markdown())
 
 
 if __name__ == "__main__":

@@ -30,7 +30,7 @@ from tqdm import tqdm
 
 from commands.common import published, recorded, repository, run_request, variables
 from commands.common.signals import threads
-from commands.common.tabular import table
+from commands.common.tabular import Table
 from commands.common.variables import numbers, one
 from commands.cost.cost import cost
 from commands.hardware import ecp5, synthesis, yosys
@@ -343,9 +343,9 @@ def text(design: Design, target: Target) -> str:
     )
     return "\n".join(
         [
-            table(("core", *target.has), by_core),
+            str(Table(("core", *target.has), by_core)),
             "",
-            table(("memory", "words", "bits", "style", *target.plain), by_memory),
+            str(Table(("memory", "words", "bits", "style", *target.plain), by_memory)),
             "",
             f"of the {target.device.name}: {use}",
             f"LUTs: {d[LOGIC]:,g} logic, {d[MEMORY]:,g} memory, {d[SHIFT]:,g} shift registers",
@@ -356,11 +356,11 @@ def text(design: Design, target: Target) -> str:
     )
 
 
-def grid_rows(document: Mapping[str, Any]) -> list[list[str]]:
-    """Return the designs of a resources.json beside the published one: head, then rows."""
+def resources_of(document: Mapping[str, Any]) -> Table:
+    """Return the table of the designs of a resources.json beside the published one."""
     target = document.get("target", DEFAULT_TARGET)
     resources = TARGETS[target].has
-    rows = [["design", "grid", *resources, "memory in UltraRAM", "does not fit"]]
+    rows = []
     stated: set[int] = set()
     for design in document["designs"]:
         height, width = design["configuration"]["grid"]
@@ -376,7 +376,7 @@ def grid_rows(document: Mapping[str, Any]) -> list[list[str]]:
         lanes = design["configuration"]["lanes"]
         name = design["configuration"]["solver"] + (f", {lanes} lanes" if lanes > 1 else "")
         rows.append([name, f"{height} x {width}", *cells, stores, design["misfit"]])
-    return rows
+    return Table(("design", "grid", *resources, "memory in UltraRAM", "does not fit"), rows)
 
 
 def keep_sources(folder: Path, config: Configuration, out: Path) -> None:
@@ -399,7 +399,7 @@ def sources(arguments: list[str]) -> str:
 
 
 def recordable(built: Sequence[Design], target: str) -> dict[str, Any]:
-    """Return what docs/figures.json keeps of designs for a target: what `grid_rows` reads."""
+    """Return what docs/figures.json keeps of designs for a target: what `resources_of` reads."""
     kept_figures = [
         {
             "configuration": {name: each.configuration[name] for name in ("grid", "solver", "lanes")},
@@ -457,13 +457,12 @@ def main(of: SynthRun) -> int:
             files.replace(work, ["resources.json"], out)
     recorded.record("synth", sys.argv[1:], recordable(built, name))
     if grids:
-        head, *rows = grid_rows(document)
         depths = [
             f"{each.configuration['solver']}, {each.configuration['grid']}: " + "".join(depth_text(each))
             for each in built
             if each.logic_depth
         ]
-        print("\n".join([table(head, rows), *depths, *target.notes]))
+        print("\n".join([str(resources_of(document)), *depths, *target.notes]))
     elif not built[0].misfit:
         print(text(built[0], target))
     print(f"results: {os.path.relpath(out / 'resources.json')}")

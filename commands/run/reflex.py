@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import published, tabular, variables
+from commands.common import published, variables
 from commands.common import simulator as simulation
 from commands.common.machine import machine
 from commands.common.progress import following
@@ -305,11 +305,10 @@ def difference(near: dict[str, Any], setup: Setup) -> dict[str, float | None]:
 
 
 def show(document: dict[str, Any]) -> str:
-    parts = [f"{title}\n\n{tabular.table(head, rows)}" for title, head, rows in tables(document).values()]
     rows, columns = document["grid"]
     machine = f"{document['machine']} (load {document['load_before']:.1f} before)"
     setting = f"{rows} x {columns}, seed {document['seed']}, {machine}"
-    return "\n\n".join([setting, *parts, *["\n".join(sentences(document))]])
+    return "\n\n".join([setting, *map(str, tables(document)), "\n".join(sentences(document))])
 
 
 def run(request: ReflexRun) -> None:

@@ -4,6 +4,7 @@
 import math
 from typing import Any
 
+from commands.common.tabular import Table
 from commands.run.reflex_model import SCALES
 
 
@@ -11,35 +12,38 @@ def plus_minus(values: dict[str, Any]) -> str:
     return f"{values['mean']:.1f} +- {values['sd']:.1f}"
 
 
-def sub_frame_rows(document: dict[str, Any]) -> list[tuple[str, ...]]:
+def deciding_depths(document: dict[str, Any]) -> Table:
     """Return a row for each solver: where in the frame that leaves the deciding depth stands."""
     clock = document["clock_mhz"]
-    pixels = math.prod(document["grid"])
-    places: list[tuple[str, ...]] = []
+    rows = []
     for solver, result in document["sub_frame"]["solvers"].items():
         place, contact = result["place"], result["last_pixel_to_contact"]
-        places.append(
+        rows.append(
             (
                 solver,
                 f"{result['last_pixel_to_first_depth']:,}",
                 f"{place['mean']:,.0f} ({place['min']:,.0f} to {place['max']:,.0f})",
-                f"{100 * place['mean'] / pixels:.0f} %",
+                f"{100 * place['mean'] / math.prod(document['grid']):.0f} %",
                 f"{contact['mean']:,.0f} ({contact['min']:,.0f} to {contact['max']:,.0f})",
                 f"{contact['mean'] / clock:.1f}",
                 ", ".join(map(str, result["deciding_to_contact"])),
             )
         )
-    return places
+    head = (
+        *("solver", "last pixel to first depth", "depths before the deciding one", "of the frame"),
+        *("last pixel to contact", "us", "deciding depth to contact"),
+    )
+    return Table(head, rows, f"The deciding depth in the frame that leaves, clocks (at {clock:g} MHz)")
 
 
-def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
-    """Return title, head and rows of each table that the command prints and the report shows."""
+def tables(document: dict[str, Any]) -> list[Table]:
+    """Return the tables that the command prints and the report shows."""
     near, host, published = document["near"], document["host"], document["published"]
 
-    def row(name: str, path: dict[str, Any], against: str) -> tuple[str, ...]:
+    def row(name: str, path: dict[str, Any], against: str) -> tuple[object, ...]:
         motion = path["motion"]
         spread = f"{motion['min']:.1f} to {motion['max']:.1f}"
-        return (name, str(motion["trials"]), plus_minus(path["command"]), plus_minus(motion), spread, against)
+        return (name, motion["trials"], plus_minus(path["command"]), plus_minus(motion), spread, against)
 
     def printed(name: str) -> dict[str, Any]:
         """Return published figures in the form of measured ones."""
@@ -56,45 +60,37 @@ def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], li
     comparison += [row("host", host, "-"), row("host, published", printed("host"), "-")]
     first = next(iter(near))
     paths = {"near": (f"near, {first}", near[first]), "host": ("host", host)}
-    parts: list[tuple[str, ...]] = [
+    parts = [
         (label, name, f"{part['mean']:.2f}", f"{part['sd']:.2f}")
         for label, path in paths.values()
         for name, part in path["parts"].items()
     ]
-    clock, places = document["clock_mhz"], sub_frame_rows(document)
-    sensitive: list[tuple[str, ...]] = []
+    sensitive = []
     for key, (name, base) in paths.items():
         for line in document["sensitivity"][key]:
             scaled = [line[f"x{scale:g}"] for scale in SCALES]
             shifts = [f"{one['mean'] - base['motion']['mean']:+.2f}" if one else "-" for one in scaled]
             spreads = [f"{one['sd']:.1f}" if one else "-" for one in scaled]
             sensitive.append((name, line["delay"], f"{line['value']:.4g}", *shifts, *spreads))
-    return {
-        "results": (
-            "Contact to command and to motion, ms",
+    return [
+        Table(
             ("path", "trials", "to command", "to motion", "range", "U to command / to motion"),
             comparison,
+            "Contact to command and to motion, ms",
         ),
-        "parts": ("Where the time goes, ms", ("path", "part", "mean", "sd"), parts),
-        "delays": (
-            "The delays",
+        Table(("path", "part", "mean", "sd"), parts, "Where the time goes, ms"),
+        Table(
             ("path", "delay", "distribution", "source"),
             [tuple(delay.values()) for delay in document["delays"]],
+            "The delays",
         ),
-        "sensitivity": (
-            "Contact to motion with one number halved or doubled, ms",
+        Table(
             ("path", "number", "value", "mean moves by, x 0.5", "x 2", "sd, x 0.5", "x 2"),
             sensitive,
+            "Contact to motion with one number halved or doubled, ms",
         ),
-        "sub_frame": (
-            f"The deciding depth in the frame that leaves, clocks (at {clock:g} MHz)",
-            (
-                *("solver", "last pixel to first depth", "depths before the deciding one", "of the frame"),
-                *("last pixel to contact", "us", "deciding depth to contact"),
-            ),
-            places,
-        ),
-    }
+        deciding_depths(document),
+    ]
 
 
 def sentences(document: dict[str, Any]) -> list[str]:

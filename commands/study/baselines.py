@@ -38,8 +38,9 @@ import matplotlib
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import published, recorded, repository, tabular
+from commands.common import published, recorded, repository
 from commands.common.machine import machine
+from commands.common.tabular import Table
 from commands.common.variables import ClockMhz, Mismatch, Place, numbers, real, whole
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError
@@ -259,12 +260,12 @@ def threads_of(row: dict[str, Any]) -> str:
     return "device" if row["threads"] is None else str(row["threads"])
 
 
-def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
-    """Return title, head and rows of each table: a summary, throughput, and one table for each grid."""
-    made = [summary(document), throughput(document)]
+def tables(document: dict[str, Any]) -> list[Table]:
+    """Return a summary, throughput, and one table for each grid."""
+    made = [fastest_and_pipeline(document), throughput(document)]
     head = ("from the frame's last pixel, us", "threads", "p50", "p99", "maximum", "error, % of peak")
     for size in sorted({row["grid"] for row in document["pipeline"]}):
-        rows: list[tuple[str, ...]] = []
+        rows = []
         for row in document["pipeline"]:
             if row["grid"] == size:
                 for what in ("first_depth", "last_depth"):
@@ -278,7 +279,7 @@ def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tu
                 if row.get("runs", document["runs"]) < document["runs"]:
                     error += f" ({row['runs']} solves)"
                 rows.append((row["method"], threads_of(row), *figures, error))
-        made.append((f"{size} x {size}", head, rows))
+        made.append(Table(head, rows, f"{size} x {size}"))
     return made
 
 
@@ -293,8 +294,8 @@ def fastest(software: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     return [min(group, key=lambda row: row["p50_us"]) for group in groups if group]
 
 
-def summary(document: dict[str, Any]) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
-    """Return title, head and rows of a table with a line per grid and place where software begins."""
+def fastest_and_pipeline(document: dict[str, Any]) -> Table:
+    """Return a table with a line per grid and place where software begins."""
     rows = []
     for best in fastest(document["software"]):
         ours = [
@@ -309,11 +310,11 @@ def summary(document: dict[str, Any]) -> tuple[str, tuple[str, ...], list[tuple[
     columns = (*(f"{solver} pipeline" for solver in COLUMNS), "tridiagonal pipeline with the most lanes")
     pipelines = (f"{column}: first depth / whole map" for column in columns)
     head = ("us after the last pixel", "software from", "fastest, threads", "p50", "p99", "maximum", *pipelines)
-    return "In short", head, rows
+    return Table(head, rows, "In short")
 
 
-def throughput(document: dict[str, Any]) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
-    """Return title, head and rows of a table of frames per second: software on one core and on all, and the pipeline.
+def throughput(document: dict[str, Any]) -> Table:
+    """Return the table of frames per second: software on one core and on all, and the pipeline.
 
     The pipeline takes one pixel per clock whatever its lanes are. Software that was not measured has "-".
     """
@@ -331,7 +332,7 @@ def throughput(document: dict[str, Any]) -> tuple[str, tuple[str, ...], list[tup
         rows.append((f"{size} x {size}", begins(best), best["method"], alone, *each, f"{ours:,.0f}"))
     batches = ("in batches, one thread (of the pipeline's)", f"in batches, {most} threads (of the pipeline's)")
     head = ("frames per second", "software from", "fastest", "1 / median latency", *batches, "pipeline")
-    return "Throughput", head, rows
+    return Table(head, rows, "Throughput")
 
 
 def begins(row: dict[str, Any]) -> str:
@@ -425,8 +426,7 @@ def plot(path: Path, document: dict[str, Any], rows: Sequence[dict[str, Any]]) -
 
 
 def show(document: dict[str, Any]) -> str:
-    parts = [f"{title}\n\n{tabular.table(head, rows)}" for title, head, rows in tables(document)]
-    return "\n\n".join([setting(document), *parts, "\n".join(sentences(document))])
+    return "\n\n".join([setting(document), *map(str, tables(document)), "\n".join(sentences(document))])
 
 
 def run(request: BaselinesRun) -> dict[str, Any]:

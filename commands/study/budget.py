@@ -31,8 +31,9 @@ from scipy.ndimage import distance_transform_edt
 from tqdm import tqdm
 
 import tactile_depth as td
-from commands.common import recorded, repository, tabular, variables
+from commands.common import recorded, repository, variables
 from commands.common.run_request import camera_choice
+from commands.common.tabular import Table
 from commands.common.variables import Place, Several, one, real, whole
 from commands.run.calibrate import data_folder
 from commands.study.accuracy import VERSION
@@ -255,13 +256,17 @@ def setting(document: dict[str, Any]) -> str:
     )
 
 
-def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
-    """Return title, head and rows of each table: the whole error, then the parts of each source and measure."""
+OVER_WHOLE = "root of the sum of squares, over the whole"
 
-    def interval(three: Sequence[float], form: str = "{:.3g}", factor: float = 1) -> str:
-        value, low, high = (form.format(factor * each) for each in three)
-        return f"{value} ({low} to {high})"
 
+def interval(three: Sequence[float], form: str = "{:.3g}", factor: float = 1) -> str:
+    """Return a value and its interval as text."""
+    value, low, high = (form.format(factor * each) for each in three)
+    return f"{value} ({low} to {high})"
+
+
+def whole_errors(document: dict[str, Any]) -> Table:
+    """Return the table of the whole error of each source and place."""
     head = ("error, mm", "pictures", *MEASURES.values())
     rows = [
         (
@@ -272,42 +277,42 @@ def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tu
         for each in document["sources"]
         for place, found in each["places"].items()
     ]
-    made: list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]] = [("In short", head, rows)]
+    return Table(head, rows, "In short")
+
+
+def tables(document: dict[str, Any]) -> list[Table]:
+    """Return the whole error, then the parts of each source and measure."""
+    made = [whole_errors(document)]
     for each in document["sources"]:
         for measure, title in MEASURES.items():
-            places = [found[measure] for found in each["places"].values()]
-            rows = []
-            for part, name in enumerate(each["parts"]):
-                cells = [(interval(f["rms_um"][part]), interval(f["share"][part], "{:z.1f}", 100)) for f in places]
-                rows.append((name, *(cell for pair in cells for cell in pair)))
-            rows.append(("sum: the whole error", *(c for f in places for c in (interval(f["whole_um"]), "100"))))
-            apart = [(f["root_of_squares_um"], f["root_of_squares_over_whole"]) for f in places]
-            rows.append(
-                (
-                    "root of the sum of squares, over the whole",
-                    *(c for um, over in apart for c in (interval(um), interval(over, "{:.2f}"))),
-                )
-            )
-            pairs = [f["correlated"] for f in places]
-            names = [(f"{each['parts'][first]}, {each['parts'][second]}", f"{by:.2f}") for first, second, by in pairs]
-            rows.append(("largest cross term, its correlation", *(cell for pair in names for cell in pair)))
-            columns = (c for place in each["places"] for c in (f"{place}, um RMS", "share, %"))
-            made.append((f"{each['source']}, {title}", ("part", *columns), rows))
+            columns = [
+                ("part", *each["parts"], "sum: the whole error", OVER_WHOLE, "largest cross term, its correlation")
+            ]
+            for place, found in each["places"].items():
+                of = found[measure]
+                first, second, correlation = of["correlated"]
+                um = [interval(three) for three in (*of["rms_um"], of["whole_um"], of["root_of_squares_um"])]
+                shares = [interval(three, "{:z.1f}", 100) for three in of["share"]]
+                over = interval(of["root_of_squares_over_whole"], "{:.2f}")
+                columns.append((f"{place}, um RMS", *um, f"{each['parts'][first]}, {each['parts'][second]}"))
+                columns.append(("share, %", *shares, "100", over, f"{correlation:.2f}"))
+            head, *rows = zip(*columns, strict=True)
+            made.append(Table(head, rows, f"{each['source']}, {title}"))
     return made
 
 
-def shares(each: dict[str, Any]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Return head and rows of a source's table: RMS of each part in um, and its share of the mean square."""
-    places = each["places"].items()
-    columns = [(f"{area}, {place}", found[name]) for name, area in AREAS.items() for place, found in places]
-    rows: list[tuple[str, ...]] = []
-    for number, part in enumerate(each["parts"]):
-        cells = ((found["rms_um"][number][0], found["share"][number][0]) for _, found in columns)
-        rows.append((part, *(f"{um:.2g} ({100 * share:z.0f} %)" for um, share in cells)))
-    rows.append(("whole error", *(f"{found['whole_um'][0]:.1f}" for _, found in columns)))
-    over = ("{:.2f} ({:.2f} to {:.2f})".format(*found["root_of_squares_over_whole"]) for _, found in columns)
-    rows.append(("root of the sum of squares, over the whole", *over))
-    return (each["source"], *(name for name, _ in columns)), rows
+def shares(each: dict[str, Any]) -> Table:
+    """Return a source's table: RMS of each part in um, and its share of the mean square."""
+    columns = [(each["source"], *each["parts"], "whole error", OVER_WHOLE)]
+    for name, area in AREAS.items():
+        for place, found in each["places"].items():
+            of = found[name]
+            both = zip(of["rms_um"], of["share"], strict=True)
+            parts = (f"{um:.2g} ({100 * share:z.0f} %)" for (um, *_), (share, *_) in both)
+            over = interval(of["root_of_squares_over_whole"], "{:.2f}")
+            columns.append((f"{area}, {place}", *parts, f"{of['whole_um'][0]:.1f}", over))
+    head, *rows = zip(*columns, strict=True)
+    return Table(head, rows)
 
 
 def sources(arguments: Sequence[str]) -> str:
@@ -379,8 +384,7 @@ def run(request: BudgetRun) -> None:
         }
         document = {"setting": used, "without": missing, "sources": sources}
         print(f"{setting(document)}\n")
-        for title, head, rows in tables(document):
-            print(f"{title}\n\n{tabular.table(head, rows)}\n")
+        print(*tables(document), sep="\n\n", end="\n\n")
         (work / RESULTS[0]).write_text(json.dumps(document, indent=1) + "\n")
         plot(work / RESULTS[1], document)
         files.replace(work, RESULTS, request.out)

@@ -125,8 +125,8 @@ def check_model(frames: np.ndarray, attempts: list[Attempt], nodes: list[Node], 
     return faults
 
 
-def table(nodes: list[Node]) -> str:
-    """Return the table with one line per node."""
+def nodes_table(nodes: list[Node]) -> tabular.Table:
+    """Return a row for each node."""
 
     def bits(headroom: float) -> str:
         return "-" if headroom == math.inf else f"{headroom:+.2f}"
@@ -137,7 +137,7 @@ def table(nodes: list[Node]) -> str:
         form = (str(node.form.width), str(node.form.fraction), f"{node.form.limit:.5g}")
         slopes = (f"{node.slopes:.5g}", bits(node.slopes_headroom_bits))
         rows.append((node.name, *form, *slopes, f"{node.depths:.5g}", bits(node.depths_headroom_bits)))
-    return tabular.table(head, rows)
+    return tabular.Table(head, rows)
 
 
 def summary(nodes: list[Node], config: Configuration, pixel_pitch_mm: float) -> list[str]:
@@ -226,7 +226,7 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
     shape = "{desc} {percentage:.0f} % {bar} {remaining}"
     with tqdm(total=1.0, desc="certifying", leave=False, disable=None, delay=3, bar_format=shape) as bar:
         nodes = certify(config, bar.update)
-    print(table(nodes))
+    print(nodes_table(nodes))
     for line in summary(nodes, config, pixel_pitch_mm):
         print(line)
     if request.depth_range_mm == math.inf:

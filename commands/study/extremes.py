@@ -313,8 +313,8 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
         if row.mean_in_standard_errors > BIAS:
             broken.append(f"{row.core}, {row.input}: the mean error is {row.mean:.5f}, a bias")
     document = as_document(rows, measured)
-    print(tabular.table_of(Row, rows), end="\n\n")
-    print(tabular.table_of(Compliance, measured))
+    print(tabular.shown(Row, rows), end="\n\n")
+    print(tabular.shown(Compliance, measured))
     with files.workspace(out, RESULTS) as work:
         (work / RESULTS[0]).write_text(json.dumps(document, indent=1) + "\n")
         files.replace(work, RESULTS, out)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make figures`: write the tables of docs/results.md, hardware.md, software.md and error-budget.md, and draw.
+"""`make figures`: write the tables of docs/{architecture,results,hardware,software,error-budget}.md, and draw.
 
 Cycles, multipliers, bits and errors of the arithmetic are computed here, by the models that the RTL is compared with.
 Figures of runs that take minutes come from docs/figures.json, each with its commit, and with "changed" where the RTL,
@@ -11,8 +11,7 @@ import json
 import re
 import subprocess
 import sysconfig
-import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,26 +20,55 @@ import wavedrom
 
 from commands.common import published, recorded, run_request
 from commands.common.repository import GENERATED, ROOT
-from commands.common.tabular import compact
+from commands.common.tabular import Table
 from commands.common.zero_offset import untouched
-from commands.cost.cost import CAMERAS, cost
+from commands.cost.cost import CAMERAS, KINDS, cost
 from commands.hardware import estimate, lut_runs, memory_model, synth
 from commands.hardware.targets import DEFAULT_TARGET, TARGETS
 from commands.run.sim_table import coefficient_words
 from commands.study import baselines, budget, trade_front
 from commands.study.accuracy import errors
+from tactile_depth.chip import latency
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.chip.limits import most_lanes
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import load_frames, on_grid
 
-PAGES = [ROOT / "docs" / f"{name}.md" for name in ("results", "hardware", "software", "error-budget")]
+PAGES = [ROOT / "docs" / f"{name}.md" for name in ("architecture", "results", "hardware", "software", "error-budget")]
 TABLE = re.compile(r"(<!-- figures: ([^\n]+) -->\n).*?(\n<!-- end of figures -->)", re.DOTALL)
 GRIDS = (64, 128, 256)
 LANE_GRIDS = (*GRIDS, 512)
 FEWEST_LANES_AGAINST_SOFTWARE = 16
 FRAMES = "FRAMES=contacts"
+REAL_SENSOR = {"flat_field": True, "gradient_model": "cubic", "light_gains": True, "neumann": True, "zero_offset": True}
+BUILDS = {  # of docs/architecture.md, 128 x 128
+    "tridiagonal, real sensor": Configuration(solver="tridiagonal", **REAL_SENSOR),  # type: ignore[arg-type]
+    "tridiagonal, as sent": Configuration(solver="tridiagonal"),
+    "spectral, as sent": Configuration(),
+}
+NODES = {  # formats of a configuration, by build and signal
+    "tridiagonal, as sent": {
+        "slope": "gradient",
+        "divergence": "divergence",
+        "forward transform of a row": "row_forward",
+        "elimination": "elimination",
+        "stored word of the frame store": "elimination_store",
+        "inverse transform of a row": "row_inverse",
+        "depth": "depth",
+    },
+    "spectral, as sent": {
+        "slope": "gradient",
+        "divergence": "divergence",
+        "forward transform of a row": "row_forward",
+        "stored word of the first frame store": "row_modes",
+        "forward transform of a column": "column_forward",
+        "inverse transform of a column": "column_inverse",
+        "stored word of the second frame store": "depth_modes",
+        "inverse transform of a row": "row_inverse",
+        "depth": "depth",
+    },
+}
 SOURCE = ("commit", "sources since")  # heads of the last columns of recorded figures
 
 
@@ -58,7 +86,7 @@ def error_percent(arguments: list[str]) -> tuple[Configuration, str]:
     return config, f"{np.mean(rms):.4f} ({max(rms):.4f})"
 
 
-def configurations(*arguments: str, neumann: bool = False) -> str:
+def configurations(*arguments: str, neumann: bool = False) -> Table:
     """Return the table of a configuration over GRIDS; with `neumann` the error with that boundary too."""
     runs = [error_percent([*arguments, FRAMES, f"N={size}"]) for size in GRIDS]
     configs = [config for config, _ in runs]
@@ -77,7 +105,41 @@ def configurations(*arguments: str, neumann: bool = False) -> str:
         "all memories, bits": [f"{one.memory_bits:,}" for one in costs],
         "coefficients of the solver, words": [f"{coefficient_words(config):,}" for config in configs],
     }
-    return compact((f"`make sim {' '.join(arguments)} N=..`", *map(str, GRIDS)), [(n, *r) for n, r in rows.items()])
+    return Table((f"`make sim {' '.join(arguments)} N=..`", *map(str, GRIDS)), [(n, *r) for n, r in rows.items()])
+
+
+def cycles_by_core() -> Iterator[Table]:
+    """Yield for each build unit, core and cycles from the last pixel of a frame to its first depth, and their sum."""
+    for name, config in BUILDS.items():
+        rows = [row for row in latency.by_core(config) if row[2]]
+        whole = ("", "**sum**", f"**{sum(row[2] for row in rows):,}**")
+        yield Table(("unit", "core", "cycles"), [*rows, whole], f"Build: {name}.")
+
+
+def number_formats() -> Iterator[Table]:
+    for name, nodes in NODES.items():
+        formats = {signal: getattr(BUILDS[name], node) for signal, node in nodes.items()}
+        rows = [(s, form.width, form.fraction, f"{form.limit:g}", f"2^-{form.fraction}") for s, form in formats.items()]
+        yield Table(("signal", "bits", "fraction", "full scale", "step"), rows, f"Build: {name}.")
+
+
+def costs_by_build() -> Table:
+    costs = {name: cost(config) for name, config in BUILDS.items()}
+    rows = [
+        (name, one.tiles, *(f"{one.bits_of(kind):,}" for kind in KINDS), f"{one.memory_bits:,}")
+        for name, one in costs.items()
+    ]
+    return Table(("build", "multipliers", *(f"{kind}, bits" for kind in KINDS), "all memories, bits"), rows)
+
+
+def costs_by_core() -> Table:
+    """Return the table of multipliers / bits of memory of each core in each build."""
+    counts = [cost(config).by_core() for config in BUILDS.values()]
+    rows = [
+        (core, *("{} / {:,}".format(*count[core]) if core in count else "" for count in counts))
+        for core in dict.fromkeys(core for count in counts for core in count)
+    ]
+    return Table(("core", *BUILDS), rows)
 
 
 def lane_configurations(fewest: int = 1) -> Iterator[Configuration]:
@@ -89,7 +151,7 @@ def lane_configurations(fewest: int = 1) -> Iterator[Configuration]:
             lanes *= 2
 
 
-def lanes() -> str:
+def lanes() -> Table:
     rows = []
     for config in lane_configurations():
         last, one = last_pixel_to_last_depth(config), cost(config)
@@ -97,10 +159,10 @@ def lanes() -> str:
         grid = f"{config.rows} x {config.columns}"
         rows.append((grid, config.lanes, *cells, one.tiles, f"{one.memory_bits / 1e6:.2f}"))
     head = ("grid", "lanes", "first depth", "last depth", "last depth, us", "multipliers", "memory, Mbit")
-    return compact(head, rows)
+    return Table(head, rows)
 
 
-def published_design() -> str:
+def published_design() -> Table:
     def of_grids(values: dict[int, int]) -> list[str]:
         return [f"{values[size]:,}" if size in values else "-" for size in GRIDS]
 
@@ -115,10 +177,10 @@ def published_design() -> str:
     for solver in estimate.RECORDED:
         _, area, power, _ = estimate.at_45_nm(solver)
         rows.append((f"this design, {solver}: estimate at 45 nm", "-", f"{area:.2f} mm2, {power:.0f} mW", "-"))
-    return compact(("published", *map(str, GRIDS)), rows)
+    return Table(("published", *map(str, GRIDS)), rows)
 
 
-def estimated() -> str:
+def estimated() -> Table:
     rows = []
     for solver, logic in estimate.RECORDED.items():
         _, area, power, _ = estimate.at_45_nm(solver)
@@ -129,7 +191,7 @@ def estimated() -> str:
         rows.append((solver, f"{least:g} to {greatest:g}", f"{logic.memory_bits:,}", *sums))
     rows.append(("published", "-", "-", f"{published.ASIC_AREA_MM2:.2f}", f"{published.ASIC_POWER_MW:.0f}"))
     head = ("45 nm, 166 MHz, 128 x 128", "recorded logic, mW", "bits", "logic and memory, mm2", "logic and memory, mW")
-    return compact(head, rows)
+    return Table(head, rows)
 
 
 def runs(command: str) -> Iterator[tuple[str, dict[str, Any], tuple[str, str]]]:
@@ -139,23 +201,24 @@ def runs(command: str) -> Iterator[tuple[str, dict[str, Any], tuple[str, str]]]:
             yield entry.get("name", f"`{line}`"), entry["figures"], (entry["commit"], recorded.since(line, entry))
 
 
-def synthesized(over_grids: bool, target: str = DEFAULT_TARGET) -> str:
-    head, rows = ["make synth"], []
+def synthesized(over_grids: bool, target: str = DEFAULT_TARGET) -> Table:
+    head: Sequence[str] = ("make synth",)
+    rows: list[Sequence[object]] = []
     for name, figures, source in runs("synth"):
         if (len(figures["designs"]) > 1) != over_grids or figures.get("target", DEFAULT_TARGET) != target:
             continue
-        columns, *cells = synth.grid_rows(figures)
+        columns, cells, _ = synth.resources_of(figures)
         if over_grids:
-            head = [*columns[:-1], *SOURCE]
-            rows += [[*each[:-1], *(("stated", "-") if each[0] == "published" else source)] for each in cells]
+            head = (*columns[:-1], *SOURCE)
+            rows += [(*each[:-1], *(("stated", "-") if each[0] == "published" else source)) for each in cells]
         else:
             last = -1 if target == DEFAULT_TARGET else -2  # without the column of UltraRAM
-            head = ["design", *columns[1:last], *SOURCE]
-            rows += [[name, *each[1:last], *source] for each in cells if each[0] != "published"]
-    return compact(head, rows)
+            head = ("design", *columns[1:last], *SOURCE)
+            rows += [(name, *each[1:last], *source) for each in cells if each[0] != "published"]
+    return Table(head, rows)
 
 
-def routed() -> str:
+def routed() -> Table:
     rows = []
     for name, figures, source in runs("fpga"):
         clocks = ", ".join(f"{mhz:.1f}" for mhz in figures["fmax_mhz_by_seed"].values())
@@ -171,13 +234,13 @@ def routed() -> str:
         "bits that cross, at most",
         *ULX3S_CELLS.values(),
     )
-    return compact((*head, *SOURCE), rows)
+    return Table((*head, *SOURCE), rows)
 
 
 ULX3S_CELLS = {"MULT18X18D": "MULT18X18D", "DP16KD": "DP16KD", "TRELLIS_COMB": "LUT", "TRELLIS_FF": "registers"}
 
 
-def routed_alone() -> str:
+def routed_alone() -> Table:
     rows = []
     for _, figures, source in runs("nexus"):
         clocks = ", ".join(f"{mhz:.1f}" for mhz in figures["fmax_mhz_by_seed"].values())
@@ -185,23 +248,23 @@ def routed_alone() -> str:
         words = (figures["data_width"], figures["lanes"], figures["device"], figures["products_in_luts"])
         rows.append((*words, f"{figures['fmax_mhz']:.1f} ({clocks})", f"{figures['clock_mhz']:g}", *used, *source))
     head = ("bits of a word", "lanes P", "device", "products in LUTs", "routed clock, MHz: median (each seed)")
-    return compact((*head, "assumed elsewhere, MHz", *NEXUS_CELLS.values(), *SOURCE), rows)
+    return Table((*head, "assumed elsewhere, MHz", *NEXUS_CELLS.values(), *SOURCE), rows)
 
 
 NEXUS_CELLS = {"MULT18_CORE": "18 x 18", "OXIDE_EBR": "block memories", "OXIDE_COMB": "LUT", "OXIDE_FF": "registers"}
 
 
-def in_cells() -> str:
+def in_cells() -> Table:
     rows: list[tuple[object, ...]] = []
     for name, figures, source in runs("asic"):
         for index, row in enumerate(figures["figures"]):
             slack = f"{figures['worst_slack_ns']:.2f}" if index == 0 else ""
             what = f"{name}: {row['name']}" if index == 0 else row["name"]
             rows.append((what, f"{row['area_mm2']:.2f}", f"{row['power_mw']:,.0f}", slack, *source))
-    return compact(("make asic", "area, mm2", "power, mW", "worst slack, ns", *SOURCE), rows)
+    return Table(("make asic", "area, mm2", "power, mW", "worst slack, ns", *SOURCE), rows)
 
 
-def by_core() -> str:
+def largest_cores() -> Table:
     rows = [
         (f"`{row['core']}`", name, f"{row['area_um2'] / 1e6:.2f}", f"{row['with_delays_mw']:.0f}",
          f"{row['delay_factor']:.2f}", *source)
@@ -209,12 +272,11 @@ def by_core() -> str:
         for row in figures["cores"]
     ]  # fmt: skip
     powers = ("power with delays, mW", "power of toggling, with delays over without")
-    return compact(("core", "design", "area, mm2", *powers, *SOURCE), rows)
+    return Table(("core", "design", "area, mm2", *powers, *SOURCE), rows)
 
 
-def against_software() -> str:
-    """Return the table of the whole map against the fastest software, with present cycles at the published clock."""
-    text = ""
+def against_software() -> Iterator[Table]:
+    """Yield the table of the whole map against the fastest software, with present cycles at the published clock."""
     for name, document, source in runs("baselines"):
         rows = []
         best = {(row["grid"], row["from_pixels"]): row for row in baselines.fastest(document["software"])}
@@ -233,47 +295,40 @@ def against_software() -> str:
             *("the solve / pipeline", "from the pixels / pipeline", "clock at which map and solve are equal, MHz"),
         )
         setting = f"{name}: {baselines.setting(document)} (commit {source[0]}, {SOURCE[1]}: {source[1]})."
-        text += f"{textwrap.fill(setting, 120)}\n\n{compact(head, rows)}"
-    return text
+        yield Table(head, rows, setting)
 
 
-def trade() -> str:
-    text = ""
+def trade() -> Iterator[Table]:
     for name, figures, (commit, since) in runs("trade"):
         line = f"{name}, commit {commit}, {SOURCE[1]}: {since}. {trade_front.Front(**figures).sentence}."
-        text += f"{textwrap.fill(line, 120)}\n\n{compact(trade_front.HEAD, figures['changes'])}"
-    return text
+        yield Table(trade_front.HEAD, figures["changes"], line)
 
 
-def camera_front_end() -> str:
+def camera_front_end() -> Table:
     known = json.loads(CAMERAS.read_text())
     devices = [target.device for target in TARGETS.values()]
     rows = [
         (f"`{name}`", *(f"{count:,}" for device in devices for count in known[device.name][name]))
         for name in known[devices[0].name]
     ]
-    return compact(("camera front end", *(n for d in devices for n in (d.multiplier, d.block, "LUT"))), rows)
+    return Table(("camera front end", *(n for d in devices for n in (d.multiplier, d.block, "LUT"))), rows)
 
 
-def depth_error() -> str:
-    text = ""
+def depth_error() -> Iterator[Table]:
     for _, document, (commit, since) in runs("budget"):
         line = f"{budget.setting(document)}. Commit {commit}, {SOURCE[1]}: {since}."
-        text += f"{textwrap.fill(line, 120)}\n\n{compact(*budget.tables(document)[0][1:])}"
-    return text
+        yield budget.whole_errors(document)._replace(title=line)
 
 
-def error_parts() -> str:
-    return "\n".join(
-        compact(*budget.shares(each)) for _, document, _ in runs("budget") for each in document["sources"][::-1]
-    )
+def error_parts() -> list[Table]:
+    return [budget.shares(each) for _, document, _ in runs("budget") for each in document["sources"][::-1]]
 
 
-def software_throughput() -> str:
-    return "".join(compact(*baselines.throughput(document)[1:]) for _, document, _ in runs("baselines"))
+def software_throughput() -> list[Table]:
+    return [baselines.throughput(document)._replace(title="") for _, document, _ in runs("baselines")]
 
 
-def software_methods() -> str:
+def software_methods() -> Table:
     head = ("128 x 128", "threads", "p50, us", "p99, us", "maximum, us", "error, % of peak")
     rows = [
         (row["method"], row["threads"], *(f"{row[key]:,.1f}" for key in ("p50_us", "p99_us", "max_us")),
@@ -282,18 +337,22 @@ def software_methods() -> str:
         for row in document["software"]
         if row["grid"] == 128
     ]  # fmt: skip
-    return compact(head, rows)
+    return Table(head, rows)
 
 
-def sensor(solver: str) -> Callable[[], str]:
+def sensor(solver: str) -> Callable[[], Table]:
     return lambda: configurations("PRESET=sensor", f"SOLVER={solver}")
 
 
-def as_sent(solver: str) -> Callable[[], str]:
+def as_sent(solver: str) -> Callable[[], Table]:
     return lambda: configurations(f"SOLVER={solver}", neumann=True)
 
 
-TABLES: dict[str, Callable[[], str]] = {
+TABLES: dict[str, Callable[[], Table | Iterable[Table]]] = {
+    "cycles": cycles_by_core,
+    "formats": number_formats,
+    "costs": costs_by_build,
+    "cores": costs_by_core,
     "real sensor, tridiagonal": sensor("tridiagonal"),
     "real sensor, spectral": sensor("spectral"),
     "colours as sent, tridiagonal": as_sent("tridiagonal"),
@@ -306,10 +365,10 @@ TABLES: dict[str, Callable[[], str]] = {
     "make fpga": routed,
     "make nexus": routed_alone,
     "make asic": in_cells,
-    "make asic by core": by_core,
+    "make asic by core": largest_cores,
     "estimate at 45 nm": estimated,
     "whole map against software": against_software,
-    "cost model": lut_runs.table,
+    "cost model": lut_runs.runs_and_model,
     "camera front end": camera_front_end,
     "trade": trade,
     "depth error": depth_error,
@@ -321,7 +380,14 @@ TABLES: dict[str, Callable[[], str]] = {
 
 def document(page: Path) -> str:
     """Return a page with fresh tables."""
-    return TABLE.sub(lambda found: f"{found[1]}\n{TABLES[found[2]]()}{found[3]}", page.read_text())
+
+    def fresh(found: re.Match[str]) -> str:
+        made = TABLES[found[2]]()
+        tables = [made] if isinstance(made, Table) else made
+        text = "\n".join(table.markdown() for table in tables)
+        return f"{found[1]}\n{text}{found[3]}"
+
+    return TABLE.sub(fresh, page.read_text())
 
 
 def drawings() -> dict[Path, str]:

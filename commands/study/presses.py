@@ -18,7 +18,7 @@ from tqdm import tqdm
 
 import tactile_depth as td
 from commands.common import simulator as simulation
-from commands.common import tabular
+from commands.common.tabular import Table
 from commands.common.variables import EQUAL, MISMATCH, Flag, Place, real
 from commands.run import bench
 from commands.run.calibrate import data_folder
@@ -105,8 +105,8 @@ def codes_differ(simulator: str, pipeline: td.Pipeline, picture: np.ndarray, res
     return int(np.count_nonzero(played.codes.reshape(rows, -1)[::-1] != result.codes))
 
 
-def table(values: Sequence[Measured], central: np.ndarray) -> str:
-    """Return the means of presses in the middle and at the sides, and over all."""
+def means(values: Sequence[Measured], central: np.ndarray) -> Table:
+    """Return the table of the means of presses in the middle and at the sides, and over all."""
     numbers = {field.name: np.array([getattr(value, field.name) for value in values]) for field in fields(Measured)}
     rows = []
     for where, among in (("middle", central), ("sides", ~central), ("all", np.full(len(values), True))):
@@ -126,7 +126,7 @@ def table(values: Sequence[Measured], central: np.ndarray) -> str:
         *("presses", "height RMS, um", "caps, mean", "RMS error", "untouched gel, RMS and largest, mm"),
         *("centroid off, mean and most, mm", "area over circle, mean and range"),
     ]
-    return tabular.table(head, rows)
+    return Table(head, rows)
 
 
 def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
@@ -150,7 +150,7 @@ def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
             differing += codes_differ(simulator, pipeline, view.frame, result)
     print(f"each press by a calibration from all others, {presses.grid[1]} x {presses.grid[0]}, {pictures.name}\n")
     central = np.array([view.press.is_central(view.grid) for view in views])
-    print(table(same, central))
+    print(means(same, central))
     rows = []
     for light, values in lit.items():
         caps, areas = (
@@ -166,14 +166,14 @@ def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
             ]
         )
     head = ["light, of red, green, blue", "caps over those in the same light, mean", "largest change", "areas, mean"]
-    print(f"\n{tabular.table(head, rows)}")
+    print(f"\n{Table(head, rows)}")
     numbers = [number for number in NUMBERS if number + DRAWN_OUT <= len(presses.views)]
     if numbers and central.sum() >= DRAWN_OUT:
         by_number = errors_by_number(
             presses, numbers, progress=lambda each: tqdm(each, "fits", leave=False, disable=None)
         )
         rows = [[str(number), f"{cap:.3f}", f"{1000 * rms:.1f}"] for number, (cap, rms) in by_number.items()]
-        print(f"\n{tabular.table(['presses fitted', 'caps, RMS error in the middle', 'height RMS, um'], rows)}")
+        print(f"\n{Table(('presses fitted', 'caps, RMS error in the middle', 'height RMS, um'), rows)}")
     if simulator is not None:
         total = len(views) * presses.grid[0] * presses.grid[1]
         print(f"\nRTL on {simulator}: {total - differing:,} of {total:,} codes equal the model's")

@@ -18,9 +18,10 @@ from typing import Any
 import matplotlib
 import numpy as np
 
-from commands.common import run_request, tabular, variables
+from commands.common import run_request, variables
 from commands.common.published import CLOCK_MHZ, FIRST_DEPTH_CYCLES, RMS_PERCENT, WORST_RMS_PERCENT
 from commands.common.repository import ROOT
+from commands.common.tabular import Table, shown
 from commands.hardware import asic, synth
 from commands.run import reflex, reflex_tables, sim
 from commands.study import baselines, budget, extremes, sweep, trade, trade_front
@@ -38,8 +39,8 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 from matplotlib.ticker import MaxNLocator
 
-from commands.study.report_lanes import lanes_figure
-from commands.study.report_page import LOOKS, PUBLISHED_LOOK, Figure, page, picture, results, shown, table, titled
+from commands.study.report_lanes import lanes_section
+from commands.study.report_page import LOOKS, PUBLISHED_LOOK, Section, page, results, saved
 from commands.study.transform_noise import Compliance
 
 DEFAULT_OUT = ROOT / "build" / "report"
@@ -85,7 +86,7 @@ def document_of(command: Any, name: str) -> dict[str, Any]:
     return json.loads(file.read_text())
 
 
-def headline(runs: dict[str, Run]) -> Figure:
+def headline(runs: dict[str, Run]) -> Section:
     rows = []
     for solver, run in runs.items():
         config = Configuration(columns=SIZE, solver=solver)
@@ -115,10 +116,10 @@ def headline(runs: dict[str, Run]) -> Figure:
         f"{SIZE} x {SIZE}, 24-bit words, 18-bit coefficients, default depth range, {len(BENCH)} contacts; no scale or "
         "offset is fitted (the published figures have both fitted)."
     )
-    return Figure("summary", "In short", text, "; ".join(r.command for r in runs.values()), table(head, rows))
+    return Section("summary", "In short", text, "; ".join(r.command for r in runs.values()), [Table(head, rows)])
 
 
-def latency_figure(runs: dict[str, Run], folder: Path) -> Figure:
+def latency_section(runs: dict[str, Run], folder: Path) -> Section:
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 3.6), layout="constrained")
     for solver, run in runs.items():
         look = LOOKS[solver] | {"marker": "", "label": solver}
@@ -138,10 +139,10 @@ def latency_figure(runs: dict[str, Run], folder: Path) -> Figure:
         f"at {CLOCK_MHZ:g} MHz."
     )
     commands = "; ".join(run.command for run in runs.values())
-    return Figure("latency", "Latency and throughput", text, commands, picture(figure, folder, "latency"))
+    return Section("latency", "Latency and throughput", text, commands, picture=saved(figure, folder, "latency"))
 
 
-def grid_figure(folder: Path) -> Figure:
+def grid_section(folder: Path) -> Section:
     figure, axis = plt.subplots(figsize=(6.5, 4.2), layout="constrained")
     for solver, (low, high) in COLUMNS.items():
         grids = [1 << bits for bits in range(low.bit_length() - 1, high.bit_length())]
@@ -162,13 +163,14 @@ def grid_figure(folder: Path) -> Figure:
     axis.grid(alpha=0.3)
     axis.legend(fontsize=8)
     text = "Fixed by the structure (latency.py), the same in every run of the RTL, whatever the gaps in the input."
-    return Figure("grids", "Latency against grid", text, "make sim N=.. SOLVER=..", picture(figure, folder, "grids"))
+    picture = saved(figure, folder, "grids")
+    return Section("grids", "Latency against grid", text, "make sim N=.. SOLVER=..", picture=picture)
 
 
-def depth_figures(runs: dict[str, Run], folder: Path) -> list[Figure]:
+def depth_sections(runs: dict[str, Run], folder: Path) -> list[Section]:
     frames = render("bench", SIZE).frames
     want = reference.depth(frames, synthetic()) * SENSOR_WIDTH_MM / SIZE
-    figures = []
+    sections = []
     for solver, run in runs.items():
         shape = (3 * 2, 5)
         figure, axes = plt.subplots(*shape, figsize=(11, 12), layout="constrained")
@@ -186,11 +188,12 @@ def depth_figures(runs: dict[str, Run], folder: Path) -> list[Figure]:
         figure.colorbar(error, ax=axes[3:, :], label="residual, um", shrink=0.7)  # the other
         text = f"Depth out of the RTL, and below it what differs from double precision: at most {limit:.3f} um."
         name = f"depth-{solver}"
-        figures.append(Figure(name, f"The contacts, {solver}", text, run.command, picture(figure, folder, name)))
-    return figures
+        picture = saved(figure, folder, name)
+        sections.append(Section(name, f"The contacts, {solver}", text, run.command, picture=picture))
+    return sections
 
 
-def error_figure(runs: dict[str, Run], folder: Path) -> Figure:
+def error_section(runs: dict[str, Run], folder: Path) -> Section:
     figure, axis = plt.subplots(figsize=(11, 3.8), layout="constrained")
     places, hatches = np.arange(len(BENCH)), ("", "///")
     for index, (solver, run) in enumerate(runs.items()):
@@ -207,7 +210,7 @@ def error_figure(runs: dict[str, Run], folder: Path) -> Figure:
         "for all contacts, so a shallow one shows a larger percentage."
     )
     commands = "; ".join(run.command for run in runs.values())
-    return Figure("errors", "Error of each contact", text, commands, picture(figure, folder, "errors"))
+    return Section("errors", "Error of each contact", text, commands, picture=saved(figure, folder, "errors"))
 
 
 def curve(
@@ -218,7 +221,7 @@ def curve(
     return [int(row[varied]) for row in chosen], [float(row[measured]) for row in chosen]
 
 
-def word_figure(rows: Sequence[Row], folder: Path) -> Figure:
+def word_section(rows: Sequence[Row], folder: Path) -> Section:
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4), layout="constrained", sharey=True)
     default = Configuration()
     for solver in COLUMNS:
@@ -241,20 +244,20 @@ def word_figure(rows: Sequence[Row], folder: Path) -> Figure:
         f"coefficients, right with {default.data_width}-bit words. Dotted and level: the published {RMS_PERCENT} %; "
         "dotted and falling: the mean where no slopes can saturate anything."
     )
-    return Figure("words", "Word lengths", text, "make sweep", picture(figure, folder, "words"))
+    return Section("words", "Word lengths", text, "make sweep", picture=saved(figure, folder, "words"))
 
 
-def budget_figure() -> Figure:
+def budget_section() -> Section:
     document = budget.read()
     text = (
         "What a user gets, in mm, and what it is made of: one cause after the other is switched off, or replaced by "
         "the truth. Quantisation is the part of the arithmetic; all others are those of the sensor."
     )
-    content = shown(budget.DEFAULT_OUT / "budget.png") + titled(budget.tables(document))
-    return Figure("budget", "The error of a real sensor", text, "make budget", content)
+    picture = budget.DEFAULT_OUT / "budget.png"
+    return Section("budget", "The error of a real sensor", text, "make budget", budget.tables(document), picture)
 
 
-def trade_figures() -> list[Figure]:
+def trade_sections() -> list[Section]:
     """Return the figure of `make trade`, if it was run: it needs real presses."""
     path = trade.DEFAULT_OUT / "trade.csv"
     if not path.exists():
@@ -266,57 +269,50 @@ def trade_figures() -> list[Figure]:
         "Real presses, by calibrations that were not fitted to them. Grey: each configuration; line: the best for its "
         f"cost. Finer arithmetic than that of the knee buys nothing that can be seen. {front.sentence}."
     )
-    content = shown(trade.DEFAULT_OUT / "trade.png") + table(trade_front.HEAD, front.changes)
-    return [Figure("trade", "Accuracy against silicon and latency", text, "make trade", content)]
+    title, picture = "Accuracy against silicon and latency", trade.DEFAULT_OUT / "trade.png"
+    return [Section("trade", title, text, "make trade", [Table(trade_front.HEAD, front.changes)], picture)]
 
 
-def extremes_figures(folder: Path) -> list[Figure]:
+def extremes_sections(folder: Path) -> list[Section]:
     """Return the figures that `make extremes` left in a folder."""
     document = json.loads((folder / "extremes.json").read_text())
-
     text = (
         "Errors against double precision; where there is no depth to speak of, in codes. Where values are clipped the "
         "sticky status bit says so; none wraps."
     )
-    edges = Figure(
-        "extremes",
-        "At the extremes",
-        text,
-        EXTREMES_COMMAND,
-        table(*tabular.shown(extremes.Row, document["extremes"])),
-    )
-    blocks = table(*tabular.shown(Compliance, document["compliance"]))
+    rows = [shown(extremes.Row, document["extremes"])]
+    edges = Section("extremes", "At the extremes", text, EXTREMES_COMMAND, rows)
+    blocks = [shown(Compliance, document["compliance"])]
     text = (
         "Peak, mean square and mean error of the transform cores over blocks of random words, in codes of their output."
     )
-    return [edges, Figure("transforms", "The transforms, in the manner of IEEE 1180", text, EXTREMES_COMMAND, blocks)]
+    return [edges, Section("transforms", "The transforms, in the manner of IEEE 1180", text, EXTREMES_COMMAND, blocks)]
 
 
-def reflex_figure(document: dict[str, Any]) -> Figure:
+def reflex_section(document: dict[str, Any]) -> Section:
     rows, columns = document["grid"]
     text = (
         f"{rows} x {columns}, {document['clock_mhz']:g} MHz, a pin at {document['speed_mm_s']:g} mm/s. Every command "
         "near the sensor is the clock in which the RTL's pin `contact` rises. Diamonds: mean and standard deviation. "
     )
     text += ". ".join(reflex_tables.sentences(document)) + "."
-    content = shown(reflex.DEFAULT_OUT / "reflex.png") + titled(list(reflex_tables.tables(document).values()))
     command = f"make reflex N={rows} CLOCK_MHZ={document['clock_mhz']:g} SEED={document['seed']}"
-    return Figure("reflex", "The reflex", text, command, content)
+    picture = reflex.DEFAULT_OUT / "reflex.png"
+    return Section("reflex", "The reflex", text, command, reflex_tables.tables(document), picture)
 
 
-def baselines_figure(document: dict[str, Any]) -> Figure:
+def baselines_section(document: dict[str, Any]) -> Section:
     text = f"{baselines.setting(document)}. {'. '.join(baselines.sentences(document))}."
-    content = shown(baselines.DEFAULT_OUT / "baselines.png") + titled(baselines.tables(document))
-    return Figure("baselines", "The solve in software", text, "make baselines", content)
+    tables, picture = baselines.tables(document), baselines.DEFAULT_OUT / "baselines.png"
+    return Section("baselines", "The solve in software", text, "make baselines", tables, picture)
 
 
-def synth_figure(document: dict[str, Any]) -> Figure:
-    head, *rows = synth.grid_rows(document)
+def synth_section(document: dict[str, Any]) -> Section:
     text = "On an XCZU7EV, as Yosys maps it, beside the published design. " + " ".join(synth.NOTES)
-    return Figure("synth", "Resources of an FPGA", text, document["command"], table(head, rows))
+    return Section("synth", "Resources of an FPGA", text, document["command"], [synth.resources_of(document)])
 
 
-def fpga_figure(document: dict[str, Any]) -> Figure:
+def fpga_section(document: dict[str, Any]) -> Section:
     rows = [
         *((f"clock, seed {seed}", f"{mhz:.1f} MHz") for seed, mhz in document["fmax_mhz_by_seed"].items()),
         *((name, f"{use['used']:,} of {use['available']:,}") for name, use in document["utilization"].items()),
@@ -326,17 +322,17 @@ def fpga_figure(document: dict[str, Any]) -> Figure:
         f"{document['fmax_mhz']:.1f} MHz is the median of {len(document['fmax_mhz_by_seed'])}; "
         f"{document['clock_mhz']:g} MHz is the board's clock."
     )
-    return Figure("fpga", "On a board: the ULX3S", text, document["command"], table(("", ""), rows))
+    return Section("fpga", "On a board: the ULX3S", text, document["command"], [Table(("", ""), rows)])
 
 
-def asic_figure(document: dict[str, Any]) -> Figure:
-    head, *rows = asic.rows(document)
-    return Figure("asic", "In standard cells", document["method"], document["command"], table(head, rows))
+def asic_section(document: dict[str, Any]) -> Section:
+    tables = [asic.area_and_power(document)]
+    return Section("asic", "In standard cells", document["method"], document["command"], tables)
 
 
-def hardware_figures() -> list[Figure]:
+def hardware_sections() -> list[Section]:
     """Return the latest result of each flow; a flow takes minutes, so a page does not run it."""
-    flows = {"synth": synth_figure, "fpga": fpga_figure, "asic": asic_figure}
+    flows = {"synth": synth_section, "fpga": fpga_section, "asic": asic_section}
     return [figure(documents[-1]) for flow, figure in flows.items() if (documents := results(flow))]
 
 
@@ -355,19 +351,19 @@ def build(folder: Path) -> Path:
         step(name, document_of, command, name) for command, name in ((reflex, "reflex"), (baselines, "baselines"))
     ]
     figures = [
-        step("error budget", budget_figure),
+        step("error budget", budget_section),
         headline(runs),
-        latency_figure(runs, folder),
-        grid_figure(folder),
-        *depth_figures(runs, folder),
-        error_figure(runs, folder),
-        word_figure(rows, folder),
-        *trade_figures(),
-        lanes_figure(rows, folder),
-        *extremes_figures(folder / "extremes"),
-        *hardware_figures(),
-        reflex_figure(documents[0]),
-        baselines_figure(documents[1]),
+        latency_section(runs, folder),
+        grid_section(folder),
+        *depth_sections(runs, folder),
+        error_section(runs, folder),
+        word_section(rows, folder),
+        *trade_sections(),
+        lanes_section(rows, folder),
+        *extremes_sections(folder / "extremes"),
+        *hardware_sections(),
+        reflex_section(documents[0]),
+        baselines_section(documents[1]),
     ]
     target, draft = folder / "report.html", folder / ".report.html"
     draft.write_text(page(figures))

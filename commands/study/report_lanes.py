@@ -14,8 +14,9 @@ from matplotlib import pyplot as plt
 from commands.common import run_request
 from commands.common.published import CLOCK_MHZ
 from commands.common.repository import ROOT
+from commands.common.tabular import Table
 from commands.study import sweep
-from commands.study.report_page import Figure, picture, results, table
+from commands.study.report_page import Section, results, saved
 from commands.study.rows import Row
 from tactile_depth.chip.configuration import Configuration
 
@@ -42,7 +43,7 @@ def cells(row: Row, designs: Sequence[dict[str, Any]], routed: Sequence[dict[str
     )
 
 
-def lanes_figure(rows: Sequence[Row], folder: Path, build: Path = ROOT / "build") -> Figure:
+def lanes_section(rows: Sequence[Row], folder: Path, build: Path = ROOT / "build") -> Section:
     """Plot the whole map's latency against multipliers and memory, a point for each number of lanes."""
     figure, axes = plt.subplots(1, 2, figsize=(11, 4), layout="constrained", sharey=True)
     designs = [design for document in results("synth", build) for design in document["designs"]]
@@ -70,5 +71,5 @@ def lanes_figure(rows: Sequence[Row], folder: Path, build: Path = ROOT / "build"
         "the last depth earlier and take area; from 2 on all give the same codes. Resources of an FPGA and the routed "
         "clock are shown where `make synth` and `make fpga` have run with this grid and LANES."
     )
-    content = picture(figure, folder, "lanes") + table(HEAD, lines)
-    return Figure("lanes", "Depth lanes: speed against area", text, "make sweep; make synth LANES=..", content)
+    title, command = "Depth lanes: speed against area", "make sweep; make synth LANES=.."
+    return Section("lanes", title, text, command, [Table(HEAD, lines)], saved(figure, folder, "lanes"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""HTML page of make report: figures with text and command, tables, style."""
+"""HTML page of make report: sections of a picture and tables, with text and command."""
 
 import base64
 import html
@@ -12,6 +12,7 @@ from typing import Any
 import matplotlib
 
 from commands.common.repository import ROOT
+from commands.common.tabular import Table
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
@@ -28,50 +29,40 @@ PUBLISHED_LOOK["label"] = "published"
 
 
 @dataclass(frozen=True)
-class Figure:
-    """Picture or table of the page."""
+class Section:
+    """Section of the page: a picture, tables, or both."""
 
     name: str
     title: str
     text: str
     command: str
-    content: str  # HTML
+    tables: Sequence[Table] = ()
+    picture: Path | None = None
 
-    def section(self) -> str:
+    def html(self) -> str:
+        image = ""
+        if self.picture is not None:
+            code = base64.b64encode(self.picture.read_bytes()).decode()
+            image = f"<img alt='{self.picture.stem}' src='data:image/png;base64,{code}'>"
         return (
-            f"<section id='{self.name}'><h2>{html.escape(self.title)}</h2><p>{html.escape(self.text)}</p>"
-            f"{self.content}<p class='command'><code>{html.escape(self.command)}</code></p></section>"
+            f"<section id='{self.name}'><h2>{html.escape(self.title)}</h2><p>{html.escape(self.text)}</p>{image}"
+            f"{''.join(table.html() for table in self.tables)}"
+            f"<p class='command'><code>{html.escape(self.command)}</code></p></section>"
         )
 
 
-def picture(figure: Any, folder: Path, name: str) -> str:
-    """Save a figure as PNG; return the HTML that shows it."""
+def saved(figure: Any, folder: Path, name: str) -> Path:
+    """Save a figure as PNG; return its path."""
     path = folder / f"{name}.png"
     figure.savefig(path, dpi=110)
     plt.close(figure)
-    return shown(path)
-
-
-def shown(path: Path) -> str:
-    """Return HTML that shows a PNG."""
-    return f"<img alt='{path.stem}' src='data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}'>"
+    return path
 
 
 def results(flow: str, build: Path = ROOT / "build") -> list[dict[str, Any]]:
     """Return the documents that a flow left below a folder, for any configuration, the latest last."""
     paths = sorted(build.glob(f"{flow}/*/{DOCUMENTS[flow]}"), key=lambda path: path.stat().st_mtime)
     return [json.loads(path.read_text()) for path in paths]
-
-
-def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    def line(cells: Sequence[str], tag: str) -> str:
-        return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in cells) + "</tr>"
-
-    return f"<table>{line(head, 'th')}{''.join(line(row, 'td') for row in rows)}</table>"
-
-
-def titled(tables: Sequence[tuple[str, Sequence[str], Sequence[Sequence[str]]]]) -> str:
-    return "".join(f"<h3>{html.escape(title)}</h3>{table(head, rows)}" for title, head, rows in tables)
 
 
 STYLE = """
@@ -82,11 +73,10 @@ th, td { border: 1px solid #999; padding: 0.25rem 0.6rem; text-align: left; } th
 """
 
 
-def page(figures: Sequence[Figure]) -> str:
-    links = "".join(f"<a href='#{figure.name}'>{html.escape(figure.title)}</a>" for figure in figures)
-    sections = "".join(figure.section() for figure in figures)
+def page(sections: Sequence[Section]) -> str:
+    links = "".join(f"<a href='#{section.name}'>{html.escape(section.title)}</a>" for section in sections)
     return (
         "<!doctype html><html lang='en'><head><meta charset='utf-8'><title>tactile-depth: report</title>"
-        f"<style>{STYLE}</style></head><body><h1>tactile-depth: what it achieves</h1><nav>{links}</nav>{sections}"
-        "</body></html>"
+        f"<style>{STYLE}</style></head><body><h1>tactile-depth: what it achieves</h1><nav>{links}</nav>"
+        f"{''.join(section.html() for section in sections)}</body></html>"
     )

@@ -424,9 +424,9 @@ def run(request: run_request.Request, out: Path, rtl: bool) -> int:
     counts = long_state.counts(config, clipped, config.rows * config.columns)
     for words in dict.fromkeys(row.words for row in rows):
         print(f"words, coefficients and gains of {words} bits; errors in mm\n")
-        print(tabular.table(HEAD, [cells(row) for row in rows if row.words == words]), end="\n\n")
-    print(tabular.table_of(long_state.LightState, lights), end="\n\n")
-    print(tabular.table_of(long_state.LongCount, counts))
+        print(tabular.Table(HEAD, [cells(row) for row in rows if row.words == words]), end="\n\n")
+    print(tabular.shown(long_state.LightState, lights), end="\n\n")
+    print(tabular.shown(long_state.LongCount, counts))
     document = {
         "sensor": [asdict(row) for row in rows],
         "light": [asdict(state) for state in lights],

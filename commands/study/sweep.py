@@ -17,9 +17,8 @@ from typing import Any
 
 import joblib
 
-from commands.common import published, variables
+from commands.common import published, tabular, variables
 from commands.common.repository import ROOT
-from commands.common.tabular import table
 from commands.study.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
 from commands.study.rows import Row, Table, Wanted
 from tactile_depth.base.errors import InputError
@@ -176,7 +175,7 @@ def summary(rows: list[Row]) -> str:
             cycles = [f"{int(row[f'last_pixel_to_{name}_depth_cycles']):,}" for name in ("first", "last")]
             by_lanes.append((f"{columns} x {columns}, {row['lanes']}", *cycles, *area(row)))
     costs = ("multipliers", "Mbit")
-    lines = [table(("solver, boundary", "mean RMS, % of peak", "worst", "cycles", *costs), by_solver)]
+    lines = [str(tabular.Table(("solver, boundary", "mean RMS, % of peak", "worst", "cycles", *costs), by_solver))]
     for solver in COLUMNS:
         same = like(rows, {"solver": solver}, "data_width")
         narrow = [int(row["data_width"]) for row in same if float(row["rms_percent_mean"]) <= published.RMS_PERCENT]
@@ -184,7 +183,9 @@ def summary(rows: list[Row]) -> str:
             lines.append(f"{solver}: mean RMS at most {published.RMS_PERCENT} % from DATA_WIDTH={min(narrow)}")
         lines += cost_of_worst(rows, solver)
     if by_lanes:
-        lines.append(table(("lanes", "last pixel to first depth, cycles", "to last depth", *costs), by_lanes))
+        lines.append(
+            str(tabular.Table(("lanes", "last pixel to first depth, cycles", "to last depth", *costs), by_lanes))
+        )
     refused = sum(bool(row["problem"]) for row in rows)
     lines.append(f"{len(rows)} rows, {refused} of them of configurations that cannot be built")
     return "\n".join(lines)

@@ -17,7 +17,7 @@ import matplotlib
 import numpy as np
 
 from commands.common.published import CLOCK_MHZ
-from commands.common.tabular import table
+from commands.common.tabular import Table
 from commands.hardware.targets import TARGETS
 from commands.study.rows import Row
 from tactile_depth.base import files
@@ -221,8 +221,8 @@ def front_of(rows: Sequence[Row]) -> Front:
 
 def summary(front: Front) -> str:
     """Return the tables of a front, its counts, and the command of its knee."""
-    tables = table(HEAD, front.changes), table(OPTIONS_HEAD, front.options)
-    return "\n\n".join([*tables, f"{front.sentence} (beaten.csv)", f"the knee: {front.knee}"])
+    tables = Table(HEAD, front.changes), Table(OPTIONS_HEAD, front.options)
+    return "\n\n".join([*map(str, tables), f"{front.sentence} (beaten.csv)", f"the knee: {front.knee}"])
 
 
 def write_beaten(rows: Sequence[Row], folder: Path) -> None:

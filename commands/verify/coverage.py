@@ -147,7 +147,7 @@ def reached(points: Mapping[Point, int], kind: str) -> tuple[int, int, float]:
     return count, len(hits), 100 * count / len(hits) if hits else 100.0
 
 
-def table(points: Mapping[Point, int]) -> str:
+def reached_by_file(points: Mapping[Point, int]) -> tabular.Table:
     """Return the table of reached points of each file and kind."""
 
     def row(name: str, chosen: Mapping[Point, int]) -> list[str]:
@@ -156,7 +156,7 @@ def table(points: Mapping[Point, int]) -> str:
 
     files = sorted({point.file for point in points})
     rows = [row(file, {point: hits for point, hits in points.items() if point.file == file}) for file in files]
-    return tabular.table(("file", *GATES), [*rows, row("all", points)])
+    return tabular.Table(("file", *GATES), [*rows, row("all", points)])
 
 
 def gate(points: Mapping[Point, int]) -> list[str]:
@@ -227,7 +227,7 @@ def main(tests: Flag = True) -> None:
     sources = {path.name: path.read_text().splitlines() for path in repository.sources()}
     judged = judge(points, load_waivers(WAIVERS), sources)
     print(missed(judged.counted, sources))
-    print(table(judged.counted))
+    print(reached_by_file(judged.counted))
     print(f"{sum(judged.waived.values())} points by {len(judged.waived)} waivers")
     bins, wrong = functional()
     print(bins)

@@ -233,7 +233,7 @@ def run_all(proofs: Sequence[Proof | Cone]) -> dict[str, dict[str, Outcome]]:
     return outcomes
 
 
-def table(proofs: Sequence[Proof | Cone], outcomes: Mapping[str, Mapping[str, Outcome]]) -> str:
+def results_of(proofs: Sequence[Proof | Cone], outcomes: Mapping[str, Mapping[str, Outcome]]) -> tabular.Table:
     """Return the table with one line for each proof."""
     head, rows = ("core", "parameters", "property", "engine", "cpu seconds", "result"), []
     for proof in proofs:
@@ -241,7 +241,7 @@ def table(proofs: Sequence[Proof | Cone], outcomes: Mapping[str, Mapping[str, Ou
         parameters = " ".join(f"{key}={value}" for key, value in proof.parameters.items())
         seconds = f"{sum(outcome.seconds for outcome in mine.values()):.1f}"
         rows.append((proof.core, parameters, proof.claim, proof.engine, seconds, combined(mine)))
-    return tabular.table(head, rows)
+    return tabular.Table(head, rows)
 
 
 def listing(proofs: Sequence[Proof | Cone], others: Mapping[str, str]) -> str:
@@ -251,8 +251,8 @@ def listing(proofs: Sequence[Proof | Cone], others: Mapping[str, str]) -> str:
         sizes = ", ".join(f"{key} {value}" for key, value in proof.parameters.items())
         entries.setdefault((proof.core, proof.claim, proof.sufficient), []).append(sizes)
     rows = [(core, claim, "; ".join(sizes) or "the defaults", why) for (core, claim, why), sizes in entries.items()]
-    proven = tabular.compact(("core", "proven", "sizes", "why they suffice"), rows)
-    unproven = tabular.compact(("core", "no proof, because"), list(others.items()))
+    proven = tabular.Table(("core", "proven", "sizes", "why they suffice"), rows).markdown()
+    unproven = tabular.Table(("core", "no proof, because"), list(others.items())).markdown()
     return f"{proven}\n{unproven}" if others else proven
 
 
@@ -276,7 +276,7 @@ def prove(proofs: Sequence[Proof | Cone]) -> int:
     """Run proofs and print their table; return the exit status."""
     begun = time.monotonic()
     outcomes = run_all(proofs)
-    print("\n" + table(proofs, outcomes))
+    print(f"\n{results_of(proofs, outcomes)}")
     failed = [proof.name for proof in proofs if combined(outcomes[proof.name]) != "PASS"]
     for core in dict.fromkeys(proof.core for proof in proofs):
         ended = [run for proof in proofs if proof.core == core for run in outcomes[proof.name].values()]

@@ -59,7 +59,7 @@ def played(name: str, jobs: int) -> Part:
     return part
 
 
-def table(parts: list[Part]) -> str:
+def lines_of(parts: list[Part]) -> str:
     """Return a table with a row for each line of a part, and the sum of the part below."""
     rows, failures = [], []
     for part in parts:
@@ -74,10 +74,10 @@ def table(parts: list[Part]) -> str:
         rows.append((part.name, verdict, "", *(f"{figure:,}" for figure in sums), f"{part.seconds:.0f}"))
         failures += [f"    {part.name}: {failure}" for failure in part.failures]
     head = ("part", "what", "simulator", "runs", "codes", "different", "seconds")
-    return "\n".join([tabular.table(head, rows), *failures])
+    return "\n".join([str(tabular.Table(head, rows)), *failures])
 
 
-def matrix(part: Part) -> str:
+def faults_by_device(part: Part) -> tabular.Table:
     """Return the table of the number of faults of each kind on each device."""
     counts: dict[str, Counter[str]] = {}
     for line in part.lines:
@@ -85,7 +85,7 @@ def matrix(part: Part) -> str:
             counts.setdefault(kind, Counter())[f"{line['grid']} {line['simulator']}"] += number
     devices = sorted({device for row in counts.values() for device in row})
     rows = [(device, *(f"{row[device]:,}" for row in counts.values())) for device in devices]
-    return tabular.table(("device", *counts), rows)
+    return tabular.Table(("device", *counts), rows)
 
 
 def _parts(argument: Argument) -> list[str]:
@@ -104,10 +104,10 @@ def main(names: Annotated[Sequence[str], _parts, "PARTS"] = tuple(PARTS), jobs: 
     report = repository.ROOT / "build" / "regress.json"
     report.parent.mkdir(exist_ok=True)
     report.write_text(json.dumps([asdict(part) for part in parts], indent=1) + "\n")
-    print(f"\n{table(parts)}")
+    print(f"\n{lines_of(parts)}")
     for part in parts:
         if part.name == "faults":
-            print(f"\n{matrix(part)}")
+            print(f"\n{faults_by_device(part)}")
     compared = sum(line.get("codes", 0) for part in parts for line in part.lines)
     used = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     failed = sum(len(part.failures) for part in parts)

@@ -94,7 +94,7 @@ def document() -> str:
     """Return the text of `PAGE`."""
     results, units = load(), repository.units()
     rows = [row(core, results.get(core, {})) for core in repository.cores() if core not in units]
-    return TEXT + tabular.compact(HEAD, rows)
+    return TEXT + tabular.Table(HEAD, rows).markdown()
 
 
 def main() -> None:

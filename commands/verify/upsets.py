@@ -52,7 +52,7 @@ def run(case: str, upsets: int, seed: int, folder: Path) -> list[dict[str, Any]]
     return results
 
 
-def table(results: list[dict[str, Any]]) -> str:
+def outcomes_by_module(results: list[dict[str, Any]]) -> tabular.Table:
     """Return a table with a row per module and a column per outcome; settings, which software rewrites, come last."""
     rows: dict[str, Counter[str]] = {}
     for result in results:
@@ -61,7 +61,7 @@ def table(results: list[dict[str, Any]]) -> str:
             rows.setdefault(row, Counter())[result["outcome"]] += 1
     names = sorted(rows, key=lambda row: (row.startswith(("all", "settings")), row))
     cells = [(name, *(f"{rows[name][outcome]}" for outcome in OUTCOMES)) for name in names]
-    return tabular.table(("module", *OUTCOMES), cells)
+    return tabular.Table(("module", *OUTCOMES), cells)
 
 
 def main(upsets: variables.Count = 60, seed: variables.Seed = 1) -> int:
@@ -77,7 +77,7 @@ def main(upsets: variables.Count = 60, seed: variables.Seed = 1) -> int:
         print(f"{outcome}: {meaning}")
     bad = 0
     for case, results in runs.items():
-        print(f"\n{case}\n{table(results.result())}")
+        print(f"\n{case}\n{outcomes_by_module(results.result())}")
         bad += sum(not r["setting"] and r["outcome"] in ("hang", "stays wrong") for r in results.result())
     print(f"\n{bad} hang or stay wrong")
     return variables.MISMATCH if bad else variables.EQUAL

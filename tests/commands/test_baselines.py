@@ -90,7 +90,7 @@ def test_a_small_run(tmp_path: Path, monkeypatch: Any) -> None:
     assert batch["frames_per_second"] > 0
 
     monkeypatch.setattr(baselines, "DEFAULT_OUT", tmp_path)  # make report takes what is there
-    section = report.baselines_figure(report.document_of(baselines, "baselines")).section()
+    section = report.baselines_section(report.document_of(baselines, "baselines")).html()
     assert "data:image/png" in section
     assert "no-such-package not installed" in section
 
@@ -102,7 +102,7 @@ def row(grid: int, p50_us: float, from_pixels: bool) -> dict[str, Any]:
 def test_throughput_is_a_table_of_its_own() -> None:
     rate = {"grid": 64, "from_pixels": False, "cores": 2, "frames_per_second": 1_000_000.0}
     software = [row(64, 2.0, False), row(64, 3.0, False), row(64, 4.0, True)]
-    _, head, rows = baselines.throughput({"software": software, "throughput": [rate], "clock_mhz": 4.096})
+    head, rows, _ = baselines.throughput({"software": software, "throughput": [rate], "clock_mhz": 4.096})
     assert head[5].startswith("in batches, 2 threads")
     assert rows == [
         ("64 x 64", "divergence", "C", "500,000", "-", "1,000,000 (1000.0 times)", "1,000"),

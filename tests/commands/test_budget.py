@@ -106,7 +106,7 @@ def test_the_tables_the_picture_and_what_is_missing(
             for value, low, high in (*found["rms_um"], found["whole_um"]):
                 assert low <= value * (1 + 1e-9)
                 assert value <= high * (1 + 1e-9)
-    titles = [title for title, *_ in budget.tables(json.loads(json.dumps(document)))]
+    titles = [table.title for table in budget.tables(json.loads(json.dumps(document)))]
     assert titles == ["In short", *(f"drawn contacts, {name}" for name in MEASURES.values())]
     assert all(title in out for title in titles)
 

@@ -18,8 +18,8 @@ from commands.verify.coverage import (
     judge,
     judge_bins,
     load_waivers,
+    reached_by_file,
     read,
-    table,
 )
 from tactile_depth.chip.video.frame_guard import FAULTS
 from tb.axis import positions
@@ -132,7 +132,7 @@ def test_toggles_may_be_missed_up_to_their_gate() -> None:
 
 
 def test_the_table_says_what_is_reached() -> None:
-    rows = table({point("branch", 1, "if"): 1, point("branch", 1, "else"): 0}).splitlines()
+    rows = str(reached_by_file({point("branch", 1, "if"): 1, point("branch", 1, "else"): 0})).splitlines()
     cells = [[cell.strip() for cell in row.split("|")[1:-1]] for row in rows]
     assert cells[0] == ["file", *GATES]
     assert cells[2:] == [[name, "-", "1/2 50.0 %", "-", "-"] for name in ("a.sv", "all")]

@@ -139,6 +139,6 @@ def test_the_loop_on_the_rtl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert len(document["host"]["trials"]) == 3
 
     monkeypatch.setattr(reflex, "DEFAULT_OUT", out)  # make report takes what is there
-    section = report.reflex_figure(report.document_of(reflex, "reflex")).section()
+    section = report.reflex_section(report.document_of(reflex, "reflex")).html()
     assert "data:image/png" in section
     assert "deciding depth to contact" in section

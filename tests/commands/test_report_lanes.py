@@ -36,7 +36,7 @@ def test_every_number_of_lanes_has_a_line(tmp_path: Path) -> None:
         folder = tmp_path / flow / "one"
         folder.mkdir(parents=True)
         (folder / name).write_text(json.dumps(content))
-    html = report_lanes.lanes_figure(list(reversed(rows)), tmp_path, tmp_path).section()
+    html = report_lanes.lanes_section(list(reversed(rows)), tmp_path, tmp_path).html()
     lines = html.split("<tr>")[2:]
     assert len(lines) == len(rows)
     for expected, line in zip(rows, lines, strict=True):
