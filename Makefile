@@ -46,7 +46,7 @@ override need_icarus := command -v iverilog > /dev/null || { \
 
 # Targets that run the command of their name; those of WITH_ICARUS need Icarus whatever the variables say.
 override WITH_ICARUS := lint mutate netlists quick regress test upsets
-override COMMANDS := $(WITH_ICARUS) asic baselines budget calibrate certify coverage extremes figures formal fpga nexus \
+override COMMANDS := $(WITH_ICARUS) asic baselines budget calibrate certify coverage extremes figures formal fpga \
   presses reflex registers report sign-off sim sweep synth trade tune wrap
 
 .PHONY: help live-test system-tools setup clean $(COMMANDS)
@@ -110,11 +110,8 @@ figures: $(TOOLS)
 # Count what a configuration takes of an FPGA, by Yosys. TARGET=xczu7ev GRIDS=64,128
 synth: $(TOOLS)
 
-# Place and route a board, write the bitstream, and report the clock it reaches. TARGET=ulx3s
+# Place and route a board or, at 28 nm, the solver; write the bitstream, and report the clock. TARGET=ulx3s or nexus
 fpga: $(HARDWARE)
-
-# Place and route the Poisson solver by itself on a 28 nm FPGA, and report the clock it reaches. LANES=2 DATA_WIDTH=15
-nexus: $(HARDWARE)
 
 # Measure area, slack and power in standard cells of any Liberty file. LIB=file NODE_NM=180
 asic: $(HARDWARE)

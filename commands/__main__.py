@@ -15,7 +15,7 @@ ROOMS = {
     "run": ("calibrate", "reflex", "sim"),
     "study": ("baselines", "budget", "certify", "extremes", "figures", "presses", "report", "sweep", "trade", "tune"),
     "verify": ("coverage", "formal", "lint", "mutate", "netlists", "quick", "regress", "sign-off", "test", "upsets"),
-    "hardware": ("asic", "fpga", "nexus", "registers", "synth", "wrap"),
+    "hardware": ("asic", "fpga", "registers", "synth", "wrap"),
 }
 INTERRUPTED = {  # says what a signal leaves
     **dict.fromkeys(("baselines", "budget", "reflex"), "nothing was written"),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // nexus_solver: poisson_unit behind four pins, to measure its clock: the inputs are shifted in, the outputs out.
 //
-// Every pin of the unit is beside a register, so all paths of its clock are there. For commands/hardware/nexus.py.
+// Every pin of the unit is beside a register, so all paths of its clock are there. For commands/hardware/fpga.py.
 
 `default_nettype none
 

