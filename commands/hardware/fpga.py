@@ -25,7 +25,7 @@ import time
 from concurrent.futures import as_completed
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from tqdm import tqdm
 
@@ -60,6 +60,10 @@ RECORDED = (
     *("camera_fmax_mhz", "crossing_ns_by_seed", "utilization"),
 )
 LARGEST_SEED = 2**31 - 1
+VARIABLES = (
+    *("TARGET", "SEEDS", "MINUTES", "CLOCK_MHZ", "SENSOR"),
+    *(*CONFIGURING, "FRAMES", "OUT", *run_request.CAMERA),
+)
 
 
 @dataclass(frozen=True)
@@ -129,11 +133,8 @@ class Request:
         return ROOT / "constraints" / self.board.options[-1]
 
 
-def parse(arguments: list[str]) -> Request:
-    """Return KEY=VALUE arguments as a Request. Raises InputError."""
-    effort = ("TARGET", "SEEDS", "MINUTES")
-    choices = ("CLOCK_MHZ", "SENSOR", *CONFIGURING, "FRAMES", "OUT", *run_request.CAMERA)
-    values = variables.given(arguments, (*effort, *choices))
+def request_of(values: dict[str, str]) -> Request:
+    """Return variables as a Request. Raises InputError."""
     target = values.get("TARGET", "")
     one_of(Argument("TARGET", target), BOARDS)
     seeds = variables.whole_numbers(values, "SEEDS", BOARDS[target].seeds)
@@ -143,7 +144,7 @@ def parse(arguments: list[str]) -> Request:
         )
     minutes = variables.number(values, "MINUTES", DEFAULT_MINUTES, 1, LARGEST_MINUTES)
     if not BOARDS[target].camera_top:
-        variables.given(arguments, (*effort, *CONFIGURING, "OUT"))
+        variables.given([*map("=".join, values.items())], ("TARGET", "SEEDS", "MINUTES", *CONFIGURING, "OUT"))
         design = run_request.of_values({"SOLVER": "tridiagonal", **values}, frames="")
         return Request(target, seeds, minutes, CLOCK_MHZ, None, design)
     clock_mhz = values.get("CLOCK_MHZ", str(DEFAULT_CLOCK_MHZ))
@@ -411,7 +412,7 @@ def bitstream_name(top: str, report: dict[str, Any]) -> str:
     return f"{top}-{MISSES}.bit" if missed(report) else f"{top}.bit"
 
 
-def run(request: Request, command: str) -> int:
+def main(request: Annotated[Request, variables.Several(VARIABLES, request_of)]) -> int:
     """Run the flow and return the exit status."""
     check(request.board)
     design = request.design
@@ -428,12 +429,12 @@ def run(request: Request, command: str) -> int:
     written = f"{flow}.json"
     with synthesis.workspace(out, [written]) as work:
         run_request.announce(design, config)
-        report = {**build(request, work), "command": command}
+        report = {**build(request, work), "command": " ".join(["make", *sys.argv])}
         (work / written).write_text(json.dumps(report, indent=1) + "\n")
         earlier = [path.name for path in out.glob("*.bit")]
         files.replace(work, [name for name in (report.get("bitstream"), written) if name], out, earlier)
     print(table(report))
-    recorded.record("fpga", command.split()[2:], {name: report[name] for name in RECORDED if name in report})
+    recorded.record("fpga", sys.argv[1:], {name: report[name] for name in RECORDED if name in report})
     print(f"results: {os.path.relpath(out)}")
     for line in (problems := missed(report)):
         print(line)
@@ -442,7 +443,7 @@ def run(request: Request, command: str) -> int:
 
 def sources(arguments: list[str]) -> str:
     """Return the digest of what decides the figures of a run. Raises InputError."""
-    request = parse(arguments)
+    request = request_of(variables.given(arguments, VARIABLES))
     technology = repository.TECHNOLOGY if request.board.camera_top else []
     return synthesis.sources(request.design, [*technology, *repository.BOARDS[request.target], request.constraints])
 
@@ -469,8 +470,3 @@ def table(report: dict[str, Any]) -> str:
             f"bitstream      {report['bitstream']}, seed {report['bitstream_seed']}, {report['seconds']:.0f} s in all"
         )
     return "\n".join(lines)
-
-
-def main() -> None:
-    with variables.reported("fpga"):
-        sys.exit(run(parse(sys.argv[1:]), " ".join(["make fpga", *sys.argv[1:]])))

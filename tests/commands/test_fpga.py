@@ -179,11 +179,11 @@ def test_a_seed_whose_routing_does_not_end_is_given_up(
         raise fpga.TimeUsedUp
 
     monkeypatch.setattr(fpga, "tool", endless)
-    assert fpga.route(fpga.parse([f"TARGET={target}"]), 2, tmp_path) is None
+    assert fpga.route(fpga.request_of({"TARGET": target}), 2, tmp_path) is None
 
 
 def test_what_nextpnr_says_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    request = fpga.parse(["TARGET=nexus"])
+    request = fpga.request_of({"TARGET": "nexus"})
 
     def router(problem: str, log: str = "") -> None:
         """Put in place of nextpnr what leaves a report and a log, and returns an error."""
@@ -217,7 +217,7 @@ def test_carries_tied_to_0_are_left_open() -> None:
 def test_every_pin_of_the_nexus_has_a_place_of_its_own() -> None:
     (source,) = repository.BOARDS["nexus"]
     pins = re.findall(r"^  (?:in|out)put +wire (\w+)", source.read_text(), re.MULTILINE)
-    constraints = fpga.parse(["TARGET=nexus"]).constraints.read_text()
+    constraints = fpga.request_of({"TARGET": "nexus"}).constraints.read_text()
     sites = dict(re.findall(r"\{(\w+)\} \[get_ports (\w+)\]", constraints))
     assert sorted(sites.values()) == sorted(pins)
 

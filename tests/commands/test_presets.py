@@ -107,7 +107,7 @@ def test_an_unknown_preset_is_refused() -> None:
 
 def test_the_preset_of_each_command() -> None:
     assert variables.read(synth.SynthRun, []).request.preset == "sensor"
-    assert fpga.parse(["TARGET=ulx3s"]).design.preset == "chip"
+    assert fpga.request_of({"TARGET": "ulx3s"}).design.preset == "chip"
     assert tune.choices({})[0].preset == "sensor"
     assert run_request.parse([]).preset == "published"
 
