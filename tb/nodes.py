@@ -12,7 +12,7 @@ from cocotb.triggers import FallingEdge, RisingEdge
 from tactile_depth.chip.common.td_node_map import entries_per_node, table_entries
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import Format
-from tactile_depth.chip.limits import gain_fraction
+from tactile_depth.chip.limits import DARKEST_LOG2
 from tb.pins import Driver, by_name
 from tb.stream import parameters, places
 from tb.table_bus import READ_CLOCKS, TO_TABLE, TableBus
@@ -59,12 +59,8 @@ class Grid:
         return self.rows >> self.reference_block_log2, self.columns >> self.reference_block_log2
 
     @property
-    def gain_width(self) -> int:
-        return self.depth.width
-
-    @property
-    def gain_fraction(self) -> int:
-        return gain_fraction(self.gain_width)
+    def gain(self) -> Format:
+        return Format(self.depth.width, self.depth.width + DARKEST_LOG2)
 
 
 class Nodes:

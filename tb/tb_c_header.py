@@ -37,7 +37,7 @@ def calibration(config: Configuration) -> dict[str, Any]:
         "calibration": other,
         "config": config,
         "zero": rng.integers(-limit, limit, config.reference_nodes) if config.zero_offset else None,
-        "gains": (1 << config.gain_fraction) // rng.integers(90, 160, (*config.reference_nodes, 3)),
+        "gains": (1 << config.gain.fraction) // rng.integers(90, 160, (*config.reference_nodes, 3)),
     }
 
 

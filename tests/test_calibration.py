@@ -17,7 +17,7 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import BUILT_IN, CAMERA_KEYS, FOLDER
 from tactile_depth.sensor.scenes import GAIN, LIGHTS, REST
-from tactile_depth.sensor.sensor import BITS_PER_CHANNEL, FORMAT_VERSION, Camera, Sensor
+from tactile_depth.sensor.sensor import FORMAT_VERSION, TABLE_BITS, Camera, Sensor
 from tactile_depth.sensor.synthetic import synthetic
 
 OLD = {"gradient": np.zeros((4, 4, 4, 2)), "pixel_pitch_mm": 0.05}
@@ -56,7 +56,7 @@ def test_built_in_calibrations_fit_the_default_configuration(name: str) -> None:
     calibration = load(name)
     config = Configuration()
     assert calibration.name == name
-    low, high = BITS_PER_CHANNEL
+    low, high = TABLE_BITS
     assert low <= calibration.bits_per_channel <= high
     assert calibration.gradient_limit == config.gradient_limit
     assert calibration.pixel_pitch_mm > 0

@@ -7,7 +7,7 @@ import math
 import os
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,8 +19,8 @@ from commands.study.certificate import deepest
 from tactile_depth.base.errors import InputError
 from tactile_depth.base.npy import is_file
 from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoice, CameraConfiguration
-from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.limits import COLUMNS, GRADIENT_MODELS
+from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS, WIDTHS, WORDS, Configuration
+from tactile_depth.chip.limits import BOUNDARIES, COLUMNS, GRADIENT_MODELS
 from tactile_depth.pictures.frames import REST_SCENE
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import BUILT_IN
@@ -31,21 +31,21 @@ from tactile_depth.sensor.sensor import Sensor
 DEFAULT_SCENE = "ball"
 WORST = "worst"  # a depth range that no slopes can exceed
 SOLVERS = tuple(COLUMNS)
-BOUNDARIES = ("dirichlet", "neumann")
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
+# Variables, by arguments of td.Pipeline.
+WIDTH_VARIABLES = {name: width.variable for name, width in WIDTHS.items()}
+*_, DEPTH_RANGE = WORDS.values()
+SHAPE = ("PRESET", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES")
+COLOURS = ("REFERENCE", "ZERO", "LIGHT_GAINS")
+CONFIGURING = (*SHAPE, *WORDS.values(), *COLOURS, "GRADIENT", "CALIBRATION", "CAMERA_SIZE", "CONFIG")
 ACCEPTED = (
-    *("PRESET", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "SIM", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
-    *("DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE", "REFERENCE", "ZERO", "LIGHT_GAINS", "CALIBRATION"),
-    *("CAMERA_SIZE", "GRADIENT", "REPEAT", "SEED", "GAPS", "STALLS", "WAVES", "CONFIG", "OUT"),
+    *(*SHAPE, "SIM", *WORDS.values(), "FRAMES", "PRESS", "AT", "NOISE", *COLOURS, "CALIBRATION", "CAMERA_SIZE"),
+    *("GRADIENT", "REPEAT", "SEED", "GAPS", "STALLS", "WAVES", "CONFIG", "OUT"),
 )
 CAMERA = ("CAMERA", "BAYER", "WINDOW")  # variables of commands that convert pictures to the stream of a camera
 WITH_CAMERA = (*ACCEPTED, *CAMERA)
-WORDS = {  # variables, by arguments of td.Pipeline
-    "data_width": "DATA_WIDTH",
-    "coefficient_width": "COEFF_WIDTH",
-    "gain_width": "GAIN_WIDTH",
-    "depth_range_mm": "DEPTH_RANGE",
-}
+# Fields that reports state otherwise, or not at all.
+APART = ("columns", "rows", "neumann", "depth_range_px", "gradient_limit", "coefficient_limit", "bits_per_channel")
 LARGEST_CONFIG = 65_536  # bytes of a configuration file
 
 
@@ -60,10 +60,8 @@ class Request:
     boundary: str
     lanes: int
     simulator: str
-    data_width: int
-    coefficient_width: int
-    gain_width: int
-    depth_range_mm: float | None  # infinite: the largest depth that slopes can cause
+    widths: Mapping[str, Any]  # by field of Configuration
+    deepest_mm: float | None  # infinite: the largest depth that slopes can cause
     frames: str  # "": none is given, and none is needed
     press: Press
     reference: str | None
@@ -134,15 +132,14 @@ def of_values(
         rows=int(number("ROWS", 0, -math.inf, math.inf)),  # the configuration file sets the solver
         columns=int(number("COLS", 0, -math.inf, math.inf)),
         solver=choice("SOLVER", SOLVERS),
-        boundary=choice("BOUNDARY", BOUNDARIES),
+        boundary=choice("BOUNDARY", BOUNDARIES[::-1]),
         lanes=int(number("LANES", 1, -math.inf, math.inf)),  # see rows
         simulator=choice("SIM", simulation.SIMULATORS),
-        data_width=int(number("DATA_WIDTH", 24, -math.inf, math.inf)),
-        coefficient_width=int(number("COEFF_WIDTH", 18, -math.inf, math.inf)),
-        gain_width=int(number("GAIN_WIDTH", Configuration.gain_width, -math.inf, math.inf)),
-        depth_range_mm=math.inf
-        if values.get("DEPTH_RANGE") == WORST
-        else number("DEPTH_RANGE", 0, 1e-6, 1e6, float) or None,
+        widths={
+            name: number(variable, DEFAULT_WIDTHS[name], -math.inf, math.inf)
+            for name, variable in WIDTH_VARIABLES.items()
+        },
+        deepest_mm=math.inf if values.get(DEPTH_RANGE) == WORST else number(DEPTH_RANGE, 0, 1e-6, 1e6, float) or None,
         frames=values["FRAMES"],
         press=Press(
             number("PRESS", 0, 1e-3, SENSOR_WIDTH_MM, float) or None,
@@ -193,10 +190,9 @@ def preset_values(preset: Preset, values: Mapping[str, str]) -> dict[str, str]:
 
 def announce(request: Request, config: Configuration) -> None:
     """Print the preset and what the variables made of it; the first line that a command prints."""
-    options = [config.gradient_model, *["flat field"] * config.flat_field, *["zero offset"] * config.zero_offset]
-    options += ["light gains"] * config.light_gains
-    shape = f"{config.rows} x {config.columns}"
-    print(f"preset {request.preset}: {', '.join([config.solver, request.boundary, shape, *options])}", flush=True)
+    options = [name.replace("_", " ") for name, value in described(config).items() if value is True]
+    words = [config.solver, config.boundary, f"{config.rows} x {config.columns}", config.gradient_model, *options]
+    print(f"preset {request.preset}: {', '.join(words)}", flush=True)
 
 
 def camera_choice(values: Mapping[str, str]) -> CameraChoice | None:
@@ -284,19 +280,9 @@ def from_file(path: Path, explicit: dict[str, str], accepted: list[str]) -> dict
 
 def described(config: Configuration) -> dict[str, Any]:
     """Return a configuration as the reports of commands state it."""
-    return {
-        "grid": [config.rows, config.columns],
-        "solver": config.solver,
-        "boundary": "neumann" if config.neumann else "dirichlet",
-        "lanes": config.lanes,
-        "data_width": config.data_width,
-        "coeff_width": config.coefficient_width,
-        "gain_width": config.gain_width,
-        "gradient_model": config.gradient_model,
-        "flat_field": config.flat_field,
-        "zero_offset": config.zero_offset,
-        "light_gains": config.light_gains,
-    }
+    stated = [field.name for field in fields(config) if field.name not in APART]
+    values = {WIDTH_VARIABLES.get(name, name).lower(): getattr(config, name) for name in stated}
+    return {"grid": [config.rows, config.columns], "solver": config.solver, "boundary": config.boundary, **values}
 
 
 def described_camera(camera: CameraConfiguration | None) -> dict[str, Any]:
@@ -313,6 +299,11 @@ def described_camera(camera: CameraConfiguration | None) -> dict[str, Any]:
     return {"camera": described}
 
 
+def words_of(config: Configuration, colours: bool = False) -> str:
+    """Return the widths as names of folders state them; those of colours only if asked for."""
+    return "-".join(f"{name[0]}{getattr(config, name)}" for name in (WIDTHS if colours else SOLVER_WIDTHS))
+
+
 def threshold_code(config: Configuration) -> int:
     """Return the code above which a depth is a contact."""
     return round(CONTACT_THRESHOLD * min(config.rows, config.columns) / config.depth_lsb_px)
@@ -326,7 +317,7 @@ def check_grid(request: Request) -> None:
 def configure(request: Request, calibration: Sensor) -> Configuration:
     """Return the configuration for a request and a calibration on its grid; the depth range becomes grid pixels."""
     neumann = request.boundary == "neumann"
-    depth_range = request.depth_range_mm
+    depth_range = request.deepest_mm
     depth_range_px: float | None
     if depth_range == math.inf:
         check_grid(request)
@@ -341,9 +332,7 @@ def configure(request: Request, calibration: Sensor) -> Configuration:
         solver=request.solver,
         lanes=request.lanes,
         neumann=neumann,
-        data_width=request.data_width,
-        coefficient_width=request.coefficient_width,
-        gain_width=request.gain_width,
+        **request.widths,
         depth_range_px=depth_range_px,
         zero_offset=request.zero is not None,
     )

@@ -14,8 +14,9 @@ import json
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
-from typing import Any, NamedTuple, get_type_hints
+from typing import Any, NamedTuple
+
+from tactile_depth.base.declared import declared
 
 
 @dataclass(frozen=True)
@@ -29,14 +30,6 @@ class Column:
         if value is None:
             return "-"
         return format(value, self.show) if isinstance(self.show, str) else self.show(value)
-
-
-@cache
-def columns(kind: type) -> Mapping[str, Column]:
-    """Return the columns that a dataclass declares, by field, in their order."""
-    hints = get_type_hints(kind, include_extras=True)
-    stated = {name: getattr(hint, "__metadata__", ()) for name, hint in hints.items()}
-    return {name: each for name, extras in stated.items() for each in extras if isinstance(each, Column)}
 
 
 class Table(NamedTuple):
@@ -76,7 +69,7 @@ class Table(NamedTuple):
 
 def shown(kind: type, rows: Sequence[Any]) -> Table:
     """Return the table of results, objects or documents: the columns that their dataclass declares."""
-    stated = columns(kind)
+    stated = declared(kind, Column)
     values = [row if isinstance(row, Mapping) else vars(row) for row in rows]
     cells = [[column.cell(row[name]) for name, column in stated.items()] for row in values]
     return Table([column.head for column in stated.values()], cells)

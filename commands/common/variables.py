@@ -19,25 +19,23 @@ from commands.common import signals
 from tactile_depth.base import interruption
 from tactile_depth.base.errors import Argument, InputError, InputWarning, one_of
 from tactile_depth.base.files import cause
+from tactile_depth.chip.configuration import CHOICES
 
 EQUAL, MISMATCH, BAD_INPUT, FAILURE = 0, 1, 2, 3  # exit status; 128 + the number of a signal
 
 # Arguments of the package, and the variables that a user of make gave.
-SAME = (
-    *("rows", "solver", "data_width", "gain_width", "lanes", "reference", "calibration", "bits", "camera_size"),
-    *("exposure_us", "window", "boundary", "presses", "light_gains"),
+SAME = ("reference", "calibration", "bits", "camera_size", "exposure_us", "window", "presses")
+VARIABLES = (
+    {choice.argument: choice.variable for choice in CHOICES.values()}
+    | {name: name.upper() for name in SAME}
+    | {
+        "folder": "OUT",
+        "models": "GRADIENT",
+        "phase": "BAYER",
+        "pitch_mm": "PITCH",
+        "pixel_format": "CAMERA",
+    }
 )
-VARIABLES = {name: name.upper() for name in SAME} | {
-    "columns": "N",
-    "coefficient_width": "COEFF_WIDTH",
-    "depth_range_mm": "DEPTH_RANGE",
-    "folder": "OUT",
-    "gradient_model": "GRADIENT",
-    "models": "GRADIENT",
-    "phase": "BAYER",
-    "pitch_mm": "PITCH",
-    "pixel_format": "CAMERA",
-}
 
 PLAIN = {int: r"[+-]?[0-9]+", float: r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"}
 PRINTABLE = re.compile("[!-^`-~]*")  # ASCII without space and _

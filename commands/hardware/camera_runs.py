@@ -14,7 +14,7 @@ from commands.hardware.targets import TARGETS
 from tactile_depth.base import files
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.sensor.synthetic import synthetic
+from tactile_depth.sensor.synthetic import synthetic_for
 
 PICTURE, CONFIG = (480, 640), Configuration(columns=128, rows=96, solver="tridiagonal")
 
@@ -26,7 +26,7 @@ def main() -> None:
         for pixel_format in sys.argv[1:]:
             camera = CameraConfiguration(PICTURE, (CONFIG.rows, CONFIG.columns), pixel_format)
             with files.temporary() as folder:
-                unit, _ = synth.camera_unit(CONFIG, synthetic(CONFIG.bits_per_channel), camera, target, folder)
+                unit, _ = synth.camera_unit(CONFIG, synthetic_for(CONFIG), camera, target, folder)
             counts = [int(unit.counts[name]) for name in (device.multiplier, device.block, "LUT")]
             known.setdefault(device.name, {})[pixel_format] = counts
             CAMERAS.write_text(json.dumps(known, indent=1, sort_keys=True) + "\n")

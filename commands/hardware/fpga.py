@@ -34,12 +34,11 @@ from commands.common.published import CLOCK_MHZ
 from commands.common.repository import ROOT
 from commands.common.signals import threads
 from commands.hardware import ecp5, nexus, synthesis, yosys
-from commands.hardware.synth import CONFIGURING
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, one_of
 from tactile_depth.chip.camera.register_lists import CAMERAS, Camera, setup_parameters, write_list
 from tactile_depth.chip.camera_configuration import CameraConfiguration
-from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.configuration import STORED, Configuration
 from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters
 from tactile_depth.sensor.sensor import Sensor
 
@@ -56,13 +55,13 @@ POINTER_BITS = 2 * (FIFO_LOG2 + 1)
 MISSES = "misses-its-clock"  # in the file name of such a bitstream
 SENSOR_FORMAT = "raw8"  # that the lists of registers set
 RECORDED = (
-    *("device", "lanes", "data_width", "products_in_luts", "clock_mhz", "fmax_mhz", "fmax_mhz_by_seed"),
+    *("device", "lanes", STORED, "products_in_luts", "clock_mhz", "fmax_mhz", "fmax_mhz_by_seed"),
     *("camera_fmax_mhz", "crossing_ns_by_seed", "utilization"),
 )
 LARGEST_SEED = 2**31 - 1
 VARIABLES = (
     *("TARGET", "SEEDS", "MINUTES", "CLOCK_MHZ", "SENSOR"),
-    *(*CONFIGURING, "FRAMES", "OUT", *run_request.CAMERA),
+    *(*run_request.CONFIGURING, "FRAMES", "OUT", *run_request.CAMERA),
 )
 
 
@@ -144,7 +143,9 @@ def request_of(values: dict[str, str]) -> Request:
         )
     minutes = variables.number(values, "MINUTES", DEFAULT_MINUTES, 1, LARGEST_MINUTES)
     if not BOARDS[target].camera_top:
-        variables.given([*map("=".join, values.items())], ("TARGET", "SEEDS", "MINUTES", *CONFIGURING, "OUT"))
+        variables.given(
+            [*map("=".join, values.items())], ("TARGET", "SEEDS", "MINUTES", *run_request.CONFIGURING, "OUT")
+        )
         design = run_request.of_values({"SOLVER": "tridiagonal", **values}, frames="")
         return Request(target, seeds, minutes, CLOCK_MHZ, None, design)
     clock_mhz = values.get("CLOCK_MHZ", str(DEFAULT_CLOCK_MHZ))
@@ -418,14 +419,14 @@ def main(request: Annotated[Request, variables.Several(VARIABLES, request_of)]) 
     design = request.design
     frames, _, config = synthesis.design(design)  # refuses bad input before anything is made
     camera_of(request, frames.camera)
-    colours = f"-{config.gradient_model}-g{config.gain_width}" if config.flat_field else ""
+    colours = f"-{config.gradient_model}-g{config.gain.width}" if config.flat_field else ""
     colours += "-light" if config.light_gains else ""
     colours += "-zero" if config.zero_offset else ""
     colours += f"-{request.sensor.name}" if request.sensor else ""
     lanes = f"-{config.lanes}lanes" if config.lanes > 1 else ""
     name = f"{request.target}-{design.solver}{lanes}-{design.boundary}-{config.rows}x{config.columns}{colours}"
     flow = "fpga" if request.board.camera_top else request.target  # make report reads those of boards
-    out = design.out or ROOT / "build" / flow / f"{name}-d{config.data_width}-c{config.coefficient_width}"
+    out = design.out or ROOT / "build" / flow / f"{name}-{run_request.words_of(config)}"
     written = f"{flow}.json"
     with synthesis.workspace(out, [written]) as work:
         run_request.announce(design, config)

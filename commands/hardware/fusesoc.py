@@ -16,7 +16,7 @@ try:
 
     from commands.common import run_request, variables, wrapper
     from commands.common.zero_offset import untouched
-    from commands.hardware import synth, synthesis
+    from commands.hardware import synthesis
     from tactile_depth.base.errors import InputError
     from tactile_depth.chip.tactile_depth import top_parameters, write_roms
     from tactile_depth.depth.twin import Twin
@@ -32,8 +32,8 @@ def generate(description: Path, folder: Path) -> None:
     if not wrapper.NAME.fullmatch(module):
         raise InputError(f"NAME={module}: {wrapper.NAMES}")
     for key in values:
-        if key not in synth.CONFIGURING:
-            raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(synth.CONFIGURING)}")
+        if key not in run_request.CONFIGURING:
+            raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(run_request.CONFIGURING)}")
     request = run_request.parse([f"{key}={value}" for key, value in values.items()], preset="sensor", frames="")
     frames, calibration, config = synthesis.design(request)
     write_roms(folder, calibration, config, Twin(calibration, config, untouched(request, frames)).zero)

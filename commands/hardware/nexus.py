@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Steps of the flow for a Nexus, `make fpga TARGET=nexus LANES=2 DATA_WIDTH=15`: the Poisson solver by itself.
+"""Steps of the flow for a Nexus, `make fpga TARGET=nexus LANES=2 ..`: the Poisson solver by itself.
 
 poisson_unit, in boards/nexus/nexus_solver.sv, is placed and routed on the largest Nexus that nextpnr knows, for the
 clock that other pages assume. Products for which it has no multiplier are built of LUTs.

@@ -48,11 +48,6 @@ OUT = repository.ROOT / "build" / "synth"
 UNITS = ("u_video", "u_gradient", "u_poisson", "u_depth", "u_contact")  # of hdl/tactile_depth.sv
 SOLVER = "u_poisson.u_solver"
 CAMERA_UNIT, CAMERA_PATH = "camera_unit", "u_camera"
-CONFIGURING = (
-    *("PRESET", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
-    *("DEPTH_RANGE", "REFERENCE", "ZERO", "LIGHT_GAINS"),
-    *("GRADIENT", "CALIBRATION", "CAMERA_SIZE", "CONFIG"),
-)
 NOTES = TARGETS[DEFAULT_TARGET].notes
 DEPTH = "sta.txt"
 LONGEST = re.compile(  # of the report of sta, in ps, from the end of the path to its start
@@ -96,7 +91,7 @@ class SynthRun:
     """Configuration, and the device that it is counted for; with grids a row for each and each solver."""
 
     request: Annotated[
-        run_request.Request, run_request.chosen((*CONFIGURING, *run_request.CAMERA, "OUT"), "sensor", "")
+        run_request.Request, run_request.chosen((*run_request.CONFIGURING, *run_request.CAMERA, "OUT"), "sensor", "")
     ]
     target: Annotated[str, one(tuple(TARGETS))] = DEFAULT_TARGET
     grids: Annotated[tuple[int, ...], _sizes] = ()

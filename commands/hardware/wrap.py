@@ -15,14 +15,14 @@ from typing import Annotated
 from commands.common import repository, run_request, wrapper
 from commands.common.variables import Name
 from commands.common.zero_offset import untouched
-from commands.hardware import registers, synth, synthesis
+from commands.hardware import registers, synthesis
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip import c_header
 from tactile_depth.chip.tactile_depth import top_parameters, write_roms
 from tactile_depth.depth.twin import Twin
 
-CHOICES = (*synth.CONFIGURING, *run_request.CAMERA, "OUT")
+CHOICES = (*run_request.CONFIGURING, *run_request.CAMERA, "OUT")
 
 
 def main(

@@ -27,7 +27,7 @@ from tactile_depth.calibrate.fitting import DEFAULT_BITS, Fit, fit_presses
 from tactile_depth.calibrate.presses import GridPresses, View, camera_pitch_mm, gather, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.sensor.calibration_file import LONGEST_EXPOSURE_US, PIXEL_PITCHES_MM
-from tactile_depth.sensor.sensor import BITS_PER_CHANNEL, MODELS
+from tactile_depth.sensor.sensor import MODELS, TABLE_BITS
 
 VARIABLES = ("PRESSES", "GRADIENT", "PITCH", "BITS", "CIRCLES", "EXPOSURE_US", "CAMERA", "BAYER", "OUT")
 PRESSES_DRAWN = 3
@@ -63,7 +63,7 @@ def parse(arguments: list[str]) -> Request:
         Path(values["PRESSES"]) if "PRESSES" in values else None,
         models[variables.choice(values, "GRADIENT", tuple(models))],
         variables.number(values, "PITCH", None, *PIXEL_PITCHES_MM, float),
-        variables.number(values, "BITS", DEFAULT_BITS, *BITS_PER_CHANNEL),
+        variables.number(values, "BITS", DEFAULT_BITS, *TABLE_BITS),
         variables.choice(values, "CIRCLES", ("table", "found")) == "found",
         variables.number(values, "EXPOSURE_US", None, 1e-3, LONGEST_EXPOSURE_US, float),
         camera_choice(values),

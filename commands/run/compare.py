@@ -7,11 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.limits import DATA_WIDTHS
+from tactile_depth.chip.configuration import SOLVER_WIDTHS, WORDS, Configuration
 
 WARNED_RMS_PERCENT = 1.0  # mean RMS error to double precision, of the peak; the default widths stay below 0.001
 OF_COLOURS = ("flat_field", "polynomial_gradient")  # nodes before the solver, which no depth range widens
+
+
+DATA, COEFFICIENT = SOLVER_WIDTHS.values()
+*_, DEEPEST = WORDS.values()
 
 
 @dataclass(frozen=True)
@@ -50,21 +53,22 @@ def compare(codes: np.ndarray, expected: np.ndarray) -> Difference:
 def warnings(config: Configuration, rms_percent: Sequence[float | None], saturations: Mapping[str, int]) -> list[str]:
     """Return a line when the mean RMS error exceeds `WARNED_RMS_PERCENT`, with the variable that reduces it.
 
-    The error halves with each bit of DATA_WIDTH, until COEFF_WIDTH limits it; clipped values need a larger range.
+    The error halves with each bit of a stored word, until the coefficients limit it. Clipped values need a
+    larger range.
     """
     errors = [error for error in rms_percent if error is not None]
     mean = sum(errors) / len(errors) if errors else 0.0
     if mean <= WARNED_RMS_PERCENT:
         return []
-    width = config.data_width + math.ceil(math.log2(mean / WARNED_RMS_PERCENT)) + 1
+    width = config.depth.width + math.ceil(math.log2(mean / WARNED_RMS_PERCENT)) + 1
     if colours := [node for node in saturations if node in OF_COLOURS]:
         change = (
             f"values saturate in {', '.join(colours)}: colours differ too much from REFERENCE; take it with the frames"
         )
     elif saturations:
-        change = "values saturate; give a larger DEPTH_RANGE"
-    elif config.data_width < config.coefficient_width and width <= DATA_WIDTHS[1]:
-        change = f"words of {config.data_width} bits are too short for this grid; try DATA_WIDTH={width}"
+        change = f"values saturate; give a larger {DEEPEST}"
+    elif config.depth.width < config.coefficient.width and width <= DATA.accepted[1]:
+        change = f"words of {config.depth.width} bits are too short for this grid; try {DATA.variable}={width}"
     else:
-        change = "give a larger DATA_WIDTH or COEFF_WIDTH"
+        change = f"give a larger {DATA.variable} or {COEFFICIENT.variable}"
     return [f"the mean RMS error is {mean:.2f} % of peak, above {WARNED_RMS_PERCENT:g} %: {change}"]

@@ -134,7 +134,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
             rtl_codes[0] * config.depth_lsb_px * pitch,
             reference_px * pitch,
             pitch,
-            f"{request.solver}, {request.boundary}, {config.rows}x{config.columns}, {config.data_width}-bit words, "
+            f"{request.solver}, {request.boundary}, {config.rows}x{config.columns}, {config.depth.width}-bit words, "
             f"{calibration.name}",
             np.asarray(difference.differing.reshape(rtl_codes.shape).any(axis=0)),
             flagged,
@@ -154,8 +154,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
 
 def default_folder(request: Request, config: Configuration) -> Path:
     """Return the default folder of results, one for each configuration."""
-    widths = f"d{config.data_width}-c{config.coefficient_width}"
-    widths += f"-g{config.gain_width}" if config.flat_field else ""
+    widths = run_request.words_of(config, config.flat_field)
     colours = f"-{config.gradient_model}" if config.flat_field else ""
     colours += "-zero" if config.zero_offset else ""
     colours += "-light" if config.light_gains else ""
@@ -169,14 +168,13 @@ def default_folder(request: Request, config: Configuration) -> Path:
 def describe(request: Request, config: Configuration, calibration: Sensor, frames: Frames) -> dict:
     """Return the fields of the report that are known before the simulation."""
     pixel_pitch_mm = calibration.pixel_pitch_mm
-    assert config.depth_range_px is not None
     return {
         **run_request.described(config),
         "simulator": request.simulator,
         "frames": len(frames.pixels) * request.repeat,
         "depth_lsb_mm": config.depth_lsb_px * pixel_pitch_mm,
         "pixel_pitch_mm": pixel_pitch_mm,
-        "depth_range_mm": config.depth_range_px * pixel_pitch_mm,
+        "depth_range_mm": config.deepest_px * pixel_pitch_mm,
         "gradient_lsb": config.gradient_lsb,
         "coefficient_table_words": coefficient_words(config),
         "contact_threshold_mm": run_request.CONTACT_THRESHOLD * min(config.rows, config.columns) * pixel_pitch_mm,

@@ -19,7 +19,8 @@ from commands.cost.cost import ECP5, cost
 from commands.study.certificate import deepest
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.configuration import SOLVER_WIDTHS, Configuration
+from tactile_depth.chip.limits import BOUNDARIES
 from tactile_depth.depth import reference
 from tactile_depth.depth.twin import Twin
 from tactile_depth.sensor.scenes import render, scene_pixel_pitch_mm
@@ -78,7 +79,7 @@ def _bench(size: int, neumann: bool) -> _Bench:
 
 
 WORST = math.inf  # as a depth range: the largest depth that any slopes can reach
-CONFIGURATION = ("solver", "boundary", "rows", "columns", "lanes", "data_width", "coefficient_width", "depth_range")
+CONFIGURATION = ("solver", "boundary", "rows", "columns", "lanes", *SOLVER_WIDTHS, "depth_range")
 MEASURED = (
     "problem",
     "depth_range_mm",
@@ -109,19 +110,13 @@ MEASURED = (
 
 def configuration_cells(choices: dict[str, Any]) -> dict[str, str]:
     """Return the cells of a row that describe its configuration, from the arguments of a `Configuration`."""
-    default = Configuration()
-    columns = choices.get("columns", default.columns)
-    depth_range = choices.get("depth_range_px")
-    return {
-        "solver": choices.get("solver", default.solver),
-        "boundary": "neumann" if choices.get("neumann") else "dirichlet",
-        "rows": str(choices.get("rows", columns)),
-        "columns": str(columns),
-        "lanes": str(choices.get("lanes", default.lanes)),
-        "data_width": str(choices.get("data_width", default.data_width)),
-        "coefficient_width": str(choices.get("coefficient_width", default.coefficient_width)),
-        "depth_range": {None: "default", WORST: "worst"}.get(depth_range, str(depth_range)),
-    }
+    columns, depth_range = choices.get("columns", Configuration.columns), choices.get("depth_range_px")
+    described = {
+        "boundary": BOUNDARIES[not choices.get("neumann")],
+        "rows": columns,
+        "depth_range": {None: "default", WORST: "worst"}.get(depth_range, depth_range),
+    } | choices
+    return {name: str(described.get(name, getattr(Configuration, name, ""))) for name in CONFIGURATION}
 
 
 def measure(choices: dict[str, Any]) -> dict[str, str]:
@@ -160,9 +155,8 @@ def measure(choices: dict[str, Any]) -> dict[str, str]:
     true = np.abs(depth - bench.height) * pitch
     true_rms = np.sqrt((true**2).mean(axis=(1, 2)))
     counted = cost(config)
-    assert config.depth_range_px is not None
     numbers = {
-        "depth_range_mm": config.depth_range_px * pitch,
+        "depth_range_mm": config.deepest_px * pitch,
         "frames": len(bench.frames),
         "rms_percent_mean": rms.mean(),
         "rms_percent_worst": rms.max(),

@@ -52,12 +52,12 @@ from commands.study.budget_steps import (
 )
 from commands.study.drawn_sensor import PLACES, DrawnSensor
 from tactile_depth.base import files
-from tactile_depth.base.errors import InputError
+from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.calibrate.fitting import Fit, fit_presses
 from tactile_depth.calibrate.presses import AT_REST, GridPresses, PressPictures, camera_pitch_mm, gather, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
-from tactile_depth.chip.limits import COEFFICIENT_WIDTHS, DATA_WIDTHS
-from tactile_depth.depth.pipeline import BOUNDARIES
+from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS
+from tactile_depth.chip.limits import BOUNDARIES
 from tactile_depth.pictures.frames import read_picture
 from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
 from tactile_depth.sensor.scenes import BENCH
@@ -66,6 +66,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 
 AREAS = {"contact": "contact", "untouched": "untouched gel"}  # of the table of shares, by measure
+WIDTHS = tuple(width.variable for width in SOLVER_WIDTHS.values())
 RESULTS = ("budget.json", "budget.png")
 DEFAULT_OUT = repository.ROOT / "build" / "budget"
 CAMERA = "raw8"
@@ -81,6 +82,12 @@ def _camera(values: Mapping[str, str]) -> CameraChoice:
     return choice
 
 
+def _widths(values: Mapping[str, str]) -> dict[str, Any]:
+    given = {name: width for name, width in SOLVER_WIDTHS.items() if width.variable in values}
+    read = {name: whole(*each.accepted)(Argument(each.variable, values[each.variable])) for name, each in given.items()}
+    return DEFAULT_WIDTHS | read
+
+
 @dataclass(frozen=True)
 class BudgetRun:
     """Presses, real ones of a folder and drawn ones, and the pipeline; no variable gives the last three fields."""
@@ -91,8 +98,7 @@ class BudgetRun:
         default_factory=lambda: CameraChoice(CAMERA)
     )
     neumann: Annotated[bool, one({name: name == "neumann" for name in BOUNDARIES}), "BOUNDARY"] = True
-    data_width: Annotated[int, whole(*DATA_WIDTHS)] = 24
-    coefficient_width: Annotated[int, whole(*COEFFICIENT_WIDTHS), "COEFF_WIDTH"] = 18
+    widths: Annotated[Mapping[str, Any], Several(WIDTHS, _widths)] = field(default_factory=lambda: DEFAULT_WIDTHS)
     out: Place = DEFAULT_OUT
     drawn: DrawnSensor = field(default_factory=DrawnSensor)
     presses: int = PRESSES
@@ -104,9 +110,8 @@ class BudgetRun:
             sensor,
             background,
             grid=(len(background), background.shape[1]),
-            boundary="neumann" if self.neumann else "dirichlet",
-            data_width=self.data_width,
-            coefficient_width=self.coefficient_width,
+            boundary=BOUNDARIES[not self.neumann],
+            **self.widths,
         )
 
 
@@ -247,9 +252,10 @@ def read(out: Path = DEFAULT_OUT) -> dict[str, Any]:
 def setting(document: dict[str, Any]) -> str:
     """Return what was measured, in a sentence."""
     used = document["setting"]
+    data, coefficient = (used[name] for name in SOLVER_WIDTHS)
     return (
-        f"The pipeline of a real sensor, {used['boundary']}, {used['data_width']}-bit words and "
-        f"{used['coefficient_width']}-bit coefficients, behind a camera that sends {used['camera']}, with noise of "
+        f"The pipeline of a real sensor, {used['boundary']}, {data}-bit words and "
+        f"{coefficient}-bit coefficients, behind a camera that sends {used['camera']}, with noise of "
         f"{used['noise']:g} grey levels; light up to {100 * used['drift']:g} % off, and each colour up to "
         f"{100 * used['white']:g} % more. RMS errors, less the mean of the area, and "
         "95 % intervals by bootstrap over the pictures"
@@ -376,8 +382,7 @@ def run(request: BudgetRun) -> None:
         used = {
             "camera": request.choice.pixel_format,
             "boundary": BOUNDARIES[not request.neumann],
-            "data_width": request.data_width,
-            "coefficient_width": request.coefficient_width,
+            **{name: request.widths[name] for name in SOLVER_WIDTHS},
             "drift": request.drawn.drift,
             "white": request.drawn.white,
             "noise": request.drawn.noise,

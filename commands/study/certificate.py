@@ -166,14 +166,13 @@ class _Survey:
     """Worst words of all nodes of a configuration; slopes and depths are scaled so that norms are in codes."""
 
     def __init__(self, config: Configuration, progress: Callable[[float], None]) -> None:
-        assert config.depth_range_px is not None
         self.config = config
         self.neumann = config.neumann
         self.progress = progress
         self.worst: dict[str, _Worst] = {}
         self.slope = config.gradient_limit / config.gradient_lsb  # largest slope and depths, in codes
-        self.depth_in = config.depth_range_px / config.gradient_lsb  # depth field whose Laplacian enters
-        self.depth_out = config.depth_range_px / config.depth_lsb_px
+        self.depth_in = config.deepest_px / config.gradient_lsb  # depth field whose Laplacian enters
+        self.depth_out = config.deepest_px / config.depth_lsb_px
         self.wide = config.lanes > 1
         stages = spectral_solver if config.solver == "spectral" else tridiagonal_solver
         forward, inverse = Responses(), Responses()
@@ -456,7 +455,7 @@ class _Tridiagonal(_Survey):
                 return z / np.abs(c) + z * below
         drop = config.elimination.fraction - config.elimination_store.fraction if part in ("store", "ahead") else 0
         if part == "ahead":
-            both = ahead_rows(config)[row] / 2.0 ** (config.coefficient_width - 1) if row < config.rows - 2 else 0 * c
+            both = ahead_rows(config)[row] / 2.0 ** (config.coefficient.fraction) if row < config.rows - 2 else 0 * c
             return z * (1 + np.abs(both)) / 2**drop
         return z * (1 + np.abs(c) * below) / 2**drop
 
@@ -464,7 +463,7 @@ class _Tridiagonal(_Survey):
     def coefficients(self) -> list[tuple[np.ndarray, int]]:
         """c of each row, and 1 if there is a row below, else 0."""
         table = thomas_table(self.config)
-        scale = 2.0 ** (self.config.coefficient_width - 1)
+        scale = 2.0 ** (self.config.coefficient.fraction)
         last = table.last * 2.0**table.last_shift / scale
         return [(c / scale, 1) for c in table.rows(self.config.rows - 1)] + [(last, 0)]
 

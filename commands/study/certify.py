@@ -74,9 +74,8 @@ def worst_frames(nodes: list[Node], calibration: Sensor, config: Configuration) 
     """
     codes = gradient_codes(calibration, config)
     bins = _corners(codes)
-    bits = config.bits_per_channel
-    colours = np.stack([bins >> 2 * bits, bins >> bits & (1 << bits) - 1, bins & (1 << bits) - 1], axis=-1)
-    colours = (colours << (8 - bits)).astype(np.uint8)
+    colours = np.stack(np.unravel_index(bins, (256 // config.bin_levels,) * 3), axis=-1)
+    colours = (colours * config.bin_levels).astype(np.uint8)
     places: dict[bytes, int] = {}
     frames: list[np.ndarray] = []
     attempts = []
@@ -142,7 +141,7 @@ def nodes_table(nodes: list[Node]) -> tabular.Table:
 
 def summary(nodes: list[Node], config: Configuration, pixel_pitch_mm: float) -> list[str]:
     """Return the table as sentences."""
-    mm = config.depth_range_px * pixel_pitch_mm  # type: ignore[operator]
+    mm = config.deepest_px * pixel_pitch_mm
     steep = [node for node in nodes if node.slopes_headroom_bits < 0]
     deep = [node for node in nodes if node.depths_headroom_bits < 0]
     lines = [
@@ -216,8 +215,8 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
     from_slopes = dataclasses.replace(request, gradient=GRADIENT_MODELS[0], zero=None)
     config = run_request.configure(from_slopes, calibration)
     shape = f"{config.rows}x{config.columns}" + (f"-{config.lanes}lanes" if config.lanes > 1 else "")
-    name = f"{request.solver}-{request.boundary}-{shape}-d{config.data_width}-c{config.coefficient_width}"
-    if request.depth_range_mm == math.inf:
+    name = f"{request.solver}-{request.boundary}-{shape}-{run_request.words_of(config)}"
+    if request.deepest_mm == math.inf:
         name += "-worst"
     out = request.out or repository.ROOT / "build" / "certify" / name
     files.check(out, RESULTS)  # refuse bad input before minutes of work
@@ -229,7 +228,7 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
     print(nodes_table(nodes))
     for line in summary(nodes, config, pixel_pitch_mm):
         print(line)
-    if request.depth_range_mm == math.inf:
+    if request.deepest_mm == math.inf:
         print(cost_of_worst(config, pixel_pitch_mm))
 
     frames, attempts = worst_frames(nodes, calibration, config)
@@ -250,7 +249,7 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
     print(f"{len(frames)} frames that drive every node furthest, in the colours of {calibration.name}: {saturate}")
     document = {
         **run_request.described(config),
-        "depth_range_mm": config.depth_range_px * pixel_pitch_mm,  # type: ignore[operator]
+        "depth_range_mm": config.deepest_px * pixel_pitch_mm,
         "gradient_limit": config.gradient_limit,
         "depth_lsb_mm": config.depth_lsb_px * pixel_pitch_mm,
         "calibration": calibration.name,

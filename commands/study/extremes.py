@@ -4,8 +4,8 @@
 Each row has the error, saturations by node, the sticky bit of the hardware, and the number of codes that wrapped. Long
 runs measure drift, and the transforms are measured like in IEEE 1180. Variables: N (64), SIM, OUT, SHORT=1 without the
 long runs and the largest grid. Exit status: 0 when every row is as it must be, 1 when not, 2 on bad input.
-PRESET=sensor: the rows of sensor_extremes.py. Variables: ROWS and COLS (48 x 64), DATA_WIDTH, COEFF_WIDTH,
-GAIN_WIDTH, DEPTH_RANGE, SIM, OUT, RTL=0 for no simulation.
+PRESET=sensor: the rows of sensor_extremes.py. Variables: ROWS and COLS (48 x 64), those of words and
+depth range, SIM, OUT, RTL=0 for no simulation.
 """
 
 import json
@@ -29,7 +29,7 @@ from commands.study.certificate import certify
 from commands.study.transform_noise import BIAS, Compliance, compliance
 from tactile_depth.base import files
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.configuration import WORDS, Configuration
 from tactile_depth.chip.limits import COLUMNS, ROWS
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.depth import reference
@@ -42,7 +42,7 @@ CALIBRATION = "synthetic"
 LONG_MODEL, LONG_RTL = 10_000, 2_000  # frames of the runs for drift
 SHORT_MODEL = 96
 ACCEPTED = ("PRESET", "N", "SIM", "OUT")
-SENSOR_ACCEPTED = ("PRESET", "ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH", "DEPTH_RANGE", "SIM", "OUT")
+SENSOR_ACCEPTED = ("PRESET", "ROWS", "COLS", *WORDS.values(), "SIM", "OUT")
 BATCH = 96  # frames that the model runs at a time
 REST_COLOUR = round(REST)
 
@@ -126,7 +126,7 @@ def _uniform(gx: float, gy: float) -> Draw:
 def _steepest(config: Configuration) -> np.ndarray:
     """Return frames of one colour: that of the largest gx + gy, and that of the smallest."""
     total = load(CALIBRATION).table.sum(axis=-1)
-    step = 256 >> config.bits_per_channel
+    step = config.bin_levels
     bins = [np.unravel_index(at, total.shape) for at in (total.argmax(), total.argmin())]
     colours = np.array(bins, np.uint8) * step
     return np.broadcast_to(colours[:, None, None], (2, config.rows, config.columns, 3))
@@ -197,10 +197,10 @@ def measure(extreme: Extreme, solver: str, size: int, simulator: str) -> Row:
     error = codes[0] - want
     percent = errors(codes[0] * config.depth_lsb_px, exact)
     bit = next(field for field in REGISTERS["STATUS"].fields if field.name == "saturation")
-    full_scale = 2.0 ** (config.data_width - 1)
+    full_scale = 2.0 ** (config.depth.width - 1)
     grid = f"{config.rows}x{config.columns}"
     return Row(
-        *(extreme.name, solver, grid, config.data_width, config.coefficient_width, extreme.repeat * len(frames)),
+        *(extreme.name, solver, grid, config.depth.width, config.coefficient.width, extreme.repeat * len(frames)),
         _largest(percent["rms_percent_of_peak"]),
         _largest(percent["max_percent_of_peak"]),
         float(np.sqrt((error**2).mean(axis=(1, 2))).max()),
@@ -261,7 +261,7 @@ def model_drift(solver: str, size: int, count: int, advance: Callable[[int], obj
     rms = np.concatenate(squares)
     name, grid = f"{count:,} frames on the model", f"{size}x{size}"
     return Row(
-        *(name, solver, grid, config.data_width, config.coefficient_width, count),
+        *(name, solver, grid, config.depth.width, config.coefficient.width, count),
         max(_largest(each["rms_percent_of_peak"]) or 0.0 for each in percent),
         max(_largest(each["max_percent_of_peak"]) or 0.0 for each in percent),
         float(rms.max()),

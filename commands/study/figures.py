@@ -29,7 +29,7 @@ from commands.run.sim_table import coefficient_words
 from commands.study import baselines, budget, trade_front
 from commands.study.accuracy import errors
 from tactile_depth.chip import latency
-from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.configuration import STORED, Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.chip.limits import most_lanes
 from tactile_depth.depth.twin import Twin
@@ -245,7 +245,7 @@ def routed_alone() -> Table:
     for _, figures, source in runs("fpga TARGET=nexus"):
         clocks = ", ".join(f"{mhz:.1f}" for mhz in figures["fmax_mhz_by_seed"].values())
         used = (f"{figures['utilization'][cell]['used']:,}" for cell in NEXUS_CELLS)
-        words = (figures["data_width"], figures["lanes"], figures["device"], figures["products_in_luts"])
+        words = (figures[STORED], figures["lanes"], figures["device"], figures["products_in_luts"])
         rows.append((*words, f"{figures['fmax_mhz']:.1f} ({clocks})", f"{figures['clock_mhz']:g}", *used, *source))
     head = ("bits of a word", "lanes P", "device", "products in LUTs", "routed clock, MHz: median (each seed)")
     return Table((*head, "assumed elsewhere, MHz", *NEXUS_CELLS.values(), *SOURCE), rows)

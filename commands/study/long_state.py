@@ -125,7 +125,7 @@ def counts(config: Configuration, clipped_per_frame: int, clocks_per_frame: int)
         "DEPTH_DROPPED": config.rows * config.columns,
     }
     rows = [_count(name, each.get(name, 1), model.values[name]) for name in COUNTERS]
-    contact = ContactEvents(config.rows, config.columns, config.data_width, bottom_first=True)
+    contact = ContactEvents(config.rows, config.columns, config.depth.width, bottom_first=True)
     contact.frames = largest
     codes = np.zeros((config.rows, config.columns), np.int64)
     record = contact.whole_frame(codes, Settings(1, 1, 1, 1, 1), time=largest)

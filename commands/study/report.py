@@ -25,10 +25,9 @@ from commands.common.tabular import Table, shown
 from commands.hardware import asic, synth
 from commands.run import reflex, reflex_tables, sim
 from commands.study import baselines, budget, extremes, sweep, trade, trade_front
-from commands.study.accuracy import WORST
 from commands.study.rows import Row
 from tactile_depth.base import files
-from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.configuration import SOLVER_WIDTHS, STORED, Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth
 from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.depth import reference
@@ -226,12 +225,12 @@ def word_section(rows: Sequence[Row], folder: Path) -> Section:
     default = Configuration()
     for solver in COLUMNS:
         look, choices = LOOKS[solver], {"solver": solver}
-        for axis, varied in ((left, "data_width"), (right, "coefficient_width")):
+        for axis, varied in zip((left, right), SOLVER_WIDTHS, strict=True):
             axis.plot(*curve(rows, choices, varied), **look, label=solver, markersize=4)
             thin = look | {"marker": "", "linewidth": 0.7}
             axis.plot(*curve(rows, choices, varied, "rms_percent_worst"), **thin)
-        safe = look | {"marker": "", "linestyle": (0, (1, 1.5)), "label": f"{solver}, DEPTH_RANGE=worst"}
-        left.plot(*curve(rows, choices | {"depth_range_px": WORST}, "data_width"), **safe)
+        safe = look | {"marker": "", "linestyle": (0, (1, 1.5)), "label": f"{solver}, {sweep.SAFE_WORD}"}
+        left.plot(*curve(rows, choices | sweep.SAFE, STORED), **safe)
     for axis, name in ((left, "bits of a stored word"), (right, "bits of a coefficient")):
         axis.axhline(RMS_PERCENT, color="black", linestyle=":")
         axis.set(yscale="log", xlabel=name)
@@ -240,8 +239,8 @@ def word_section(rows: Sequence[Row], folder: Path) -> Section:
     left.set_ylabel("RMS, % of peak")
     left.legend()
     text = (
-        f"Mean of the contacts at {SIZE} (with marks), and the worst (thin). Left with {default.coefficient_width}-bit "
-        f"coefficients, right with {default.data_width}-bit words. Dotted and level: the published {RMS_PERCENT} %; "
+        f"Mean of the contacts at {SIZE} (with marks), and the worst (thin). Left with {default.coefficient.width}-bit "
+        f"coefficients, right with {default.depth.width}-bit words. Dotted and level: the published {RMS_PERCENT} %; "
         "dotted and falling: the mean where no slopes can saturate anything."
     )
     return Section("words", "Word lengths", text, "make sweep", picture=saved(figure, folder, "words"))

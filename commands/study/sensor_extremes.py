@@ -21,19 +21,17 @@ from commands.study import long_state
 from commands.study.drawn_light import DrawnLight, Height, exact
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError, InputWarning
-from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.limits import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WIDTHS
+from tactile_depth.chip.configuration import STORED, WIDTHS, WORDS, Configuration
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.depth.pipeline import Pipeline
+from tactile_depth.depth.pipeline import THRESHOLD_MM, Pipeline
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, camera_scale
 from tactile_depth.sensor.presets import CHIP
 from tactile_depth.sensor.sensor import Sensor
 
 RESULTS = ("extremes.json",)
-CHOSEN = {run_request.WORDS[name]: f"{value:g}" for name, value in CHIP.words.items()}
+CHOSEN = {WORDS[name]: f"{value:g}" for name, value in CHIP.words.items()}
 GRID = {"ROWS": "48", "COLS": "64"}
-THRESHOLD_MM = 0.1  # of `td.Pipeline`: gel that is less deep counts as untouched
 RIGHT = 0.03  # of the true height: a map so near to the first of the stream is right again
 STATUS_BITS = ("saturation", "dark")
 
@@ -235,9 +233,10 @@ class SensorRow:
 
 def configurations(request: run_request.Request, sensor: DrawnLight) -> list[run_request.Request]:
     """Return the request, and that with the narrowest words that its grid and depth range take."""
-    narrow = replace(request, coefficient_width=COEFFICIENT_WIDTHS[0], gain_width=GAIN_WIDTHS[0])
-    for width in range(DATA_WIDTHS[0], DATA_WIDTHS[1] + 1):
-        each = replace(narrow, data_width=width)
+    narrow = {name: width.accepted[0] for name, width in WIDTHS.items()}
+    least, most = WIDTHS[STORED].accepted
+    for bits in range(least, most + 1):
+        each = replace(request, widths=narrow | {STORED: bits})
         try:
             run_request.configure(each, on_grid(sensor, sensor.untouched.astype(np.uint8)))
         except InputError:
@@ -293,7 +292,7 @@ def measure(case: Case, request: run_request.Request, drawn: DrawnLight, rtl: bo
     alone, python = _alone(drawn, request, reference, frames[worst], height_mm)
     return SensorRow(
         case=case.name,
-        words=f"{config.data_width}/{config.coefficient_width}/{config.gain_width}",
+        words="/".join(str(getattr(config, name)) for name in WIDTHS),
         frames=len(frames),
         first=by_frame[0],
         worst=by_frame[worst],
@@ -322,7 +321,7 @@ def _shown(case: Case, drawn: DrawnLight) -> tuple[np.ndarray, np.ndarray, np.nd
 
 def errors_of(depth_mm: np.ndarray, height_mm: np.ndarray) -> Errors:
     """Return the errors of a depth map (rows, columns)."""
-    free = depth_mm <= THRESHOLD_MM
+    free = depth_mm <= THRESHOLD_MM  # gel that is less deep counts as untouched
     above = depth_mm - (depth_mm[free].mean() if free.any() else 0.0)
     at_rest = above[height_mm == 0]
     return Errors(
@@ -357,12 +356,11 @@ def _alone(
     height_mm: np.ndarray | None,
 ) -> tuple[Errors | None, str]:
     """Return the errors of a picture by itself, and the refusal or the warnings of the package."""
-    widths = {name: getattr(request, name) for name in ("data_width", "coefficient_width", "gain_width")}
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", InputWarning)
             pipeline = Pipeline(
-                drawn.sensor, reference, grid=drawn.grid, depth_range_mm=request.depth_range_mm, **widths
+                drawn.sensor, reference, grid=drawn.grid, depth_range_mm=request.deepest_mm, **request.widths
             )
             result = pipeline(frame)
     except InputError as error:

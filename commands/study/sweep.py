@@ -22,14 +22,16 @@ from commands.common.repository import ROOT
 from commands.study.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
 from commands.study.rows import Row, Table, Wanted
 from tactile_depth.base.errors import InputError
-from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.limits import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, most_lanes
+from tactile_depth.chip.configuration import COEFFICIENT, DEFAULT_WIDTHS, SOLVER_WIDTHS, STORED, WIDTHS, Configuration
+from tactile_depth.chip.limits import COLUMNS, most_lanes
 
 DEFAULT_OUT = ROOT / "build" / "sweep"
 GRIDS = (32, 64, 128, 256, 512)
 LANE_GRIDS = (128, 256)  # on both the tridiagonal solver can have the most lanes
 ACCEPTED = ("OUT", "DASK_SCHEDULER")
 TABLE = Table("sweep", CONFIGURATION, MEASURED, VERSION)
+WORD = WIDTHS[STORED].variable
+SAFE, SAFE_WORD = {"depth_range_px": WORST}, "DEPTH_RANGE=worst"
 CONNECT_S, WORKERS_S = 10, 60  # wait for a cluster, and for its first worker
 
 Choices = dict[str, Any]
@@ -43,7 +45,7 @@ def plan() -> list[Choices]:
     LANE_GRIDS. The widest grids come first, so that all cores finish at about the same time.
     """
     default = Configuration()
-    widths = [range(low, high + 1) for low, high in (DATA_WIDTHS, COEFFICIENT_WIDTHS)]
+    widths = [range(low, high + 1) for low, high in (width.accepted for width in SOLVER_WIDTHS.values())]
     rows: list[Choices] = []
     for solver in COLUMNS:
         for columns in sorted(GRIDS, reverse=True):
@@ -51,9 +53,9 @@ def plan() -> list[Choices]:
                 rows.append({"solver": solver, "columns": columns})
         rows.append({"solver": solver, "neumann": True})
         for data in widths[0]:
-            rows += [{"solver": solver, "data_width": data, "coefficient_width": c} for c in widths[1]]
-            rows.append({"solver": solver, "data_width": data, "depth_range_px": WORST})
-        rows.append({"solver": solver, "neumann": True, "depth_range_px": WORST})
+            rows += [{"solver": solver, STORED: data, COEFFICIENT: c} for c in widths[1]]
+            rows.append({"solver": solver, STORED: data} | SAFE)
+        rows.append({"solver": solver, "neumann": True} | SAFE)
     for columns in LANE_GRIDS:
         grid = {"solver": "tridiagonal"} | ({"columns": columns} if columns != default.columns else {})
         rows += [grid | {"lanes": lanes} for lanes in lane_counts(columns)[1:]]
@@ -144,18 +146,15 @@ def with_lanes(rows: Sequence[Row], columns: int) -> list[Row]:
 def cost_of_worst(rows: list[Row], solver: str) -> list[str]:
     """Return the loss of accuracy with a depth range that no slopes exceed, and the word length that compensates it."""
     default, worst = (
-        {
-            int(row["data_width"]): float(row["rms_percent_mean"])
-            for row in like(rows, {"solver": solver} | chosen, "data_width")
-        }
-        for chosen in ({}, {"depth_range_px": WORST})
+        {int(row[STORED]): float(row["rms_percent_mean"]) for row in like(rows, {"solver": solver} | chosen, STORED)}
+        for chosen in ({}, SAFE)
     )
-    width = Configuration().data_width
+    width = DEFAULT_WIDTHS[STORED]
     if width not in default or width not in worst:
         return []
-    line = f"{solver}: DEPTH_RANGE=worst, {worst[width]:.4f} % in place of {default[width]:.4f} %"
+    line = f"{solver}: {SAFE_WORD}, {worst[width]:.4f} % in place of {default[width]:.4f} %"
     enough = [wide for wide, error in worst.items() if error <= default[width]]
-    return [f"{line}; as good again with DATA_WIDTH={min(enough)}" if enough else f"{line}; no words are as good"]
+    return [f"{line}; as good again with {WORD}={min(enough)}" if enough else f"{line}; no words are as good"]
 
 
 def area(row: Row) -> tuple[str, str]:
@@ -177,10 +176,10 @@ def summary(rows: list[Row]) -> str:
     costs = ("multipliers", "Mbit")
     lines = [str(tabular.Table(("solver, boundary", "mean RMS, % of peak", "worst", "cycles", *costs), by_solver))]
     for solver in COLUMNS:
-        same = like(rows, {"solver": solver}, "data_width")
-        narrow = [int(row["data_width"]) for row in same if float(row["rms_percent_mean"]) <= published.RMS_PERCENT]
+        same = like(rows, {"solver": solver}, STORED)
+        narrow = [int(row[STORED]) for row in same if float(row["rms_percent_mean"]) <= published.RMS_PERCENT]
         if narrow:
-            lines.append(f"{solver}: mean RMS at most {published.RMS_PERCENT} % from DATA_WIDTH={min(narrow)}")
+            lines.append(f"{solver}: mean RMS at most {published.RMS_PERCENT} % from {WORD}={min(narrow)}")
         lines += cost_of_worst(rows, solver)
     if by_lanes:
         lines.append(

@@ -44,12 +44,13 @@ from tactile_depth.calibrate.fitting import fit_folds
 from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.configuration import WIDTHS, Configuration
 from tactile_depth.chip.contact import threshold_comparator
 from tactile_depth.chip.contact.contact_events import Settings
 from tactile_depth.chip.latency import last_pixel_to_first_depth
 from tactile_depth.chip.limits import most_lanes
 from tactile_depth.chip.poisson.cores import fastest
+from tactile_depth.depth.pipeline import AREA_THRESHOLD_MM, THRESHOLD_MM
 from tactile_depth.depth.result import Recorder
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, load_frames, on_grid, read_picture
@@ -60,7 +61,6 @@ VARIABLES = ("PRESSES", "PITCH", "OUT", "RTL", "SEED", "SIM")
 DEFAULT_OUT = ROOT / "build" / "trade"
 FOLDS = 5
 FORMATS = ("rgb888", "rgb565", "yuyv", "raw8")
-THRESHOLD_MM, AREA_THRESHOLD_MM = 0.1, 0.3  # of the contact, as those of td.Pipeline
 
 GRIDS = ((24, 32), (48, 64), (96, 128), (192, 256))
 SQUARES = (32, 64, 128)  # of the spectral solver, the middle of the picture
@@ -69,10 +69,8 @@ WORDS = (WIDE, (20, 16, 16), (18, 15, 16), (16, 14, 16), (15, 12, 16), (14, 11, 
 MODELS = ("cubic", "quadratic", "lut")
 OPTIONS = ({"BOUNDARY": "dirichlet"}, {"LIGHT_GAINS": "0"})
 
-CONFIGURATION = (
-    *("solver", "boundary", "rows", "columns", "lanes", "data_width", "coefficient_width", "gain_width"),
-    *("gradient", "pixel_format", "light_gains"),
-)
+COMMON = ("solver", "boundary", "rows", "columns", "lanes")
+CONFIGURATION = (*COMMON, *WIDTHS, "gradient", "pixel_format", "light_gains")
 MEASURED = (
     *("problem", "presses", "height_um", "sides_height_um", "cap_percent", "untouched_um", "centroid_um"),
     *("area_percent", "saturations", "first_depth_cycles", "map_cycles", "contact_cycles"),
@@ -104,7 +102,7 @@ def plan() -> list[Choices]:
 
 
 def _choices(grid: tuple[int, int], words: tuple[int, int, int], **others: str) -> Choices:
-    names = ("ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH")
+    names = ("ROWS", "COLS", *run_request.WIDTH_VARIABLES.values())
     shape = dict(zip(names, map(str, (*grid, *words)), strict=True))
     return {"PRESET": "sensor", "CAMERA": FORMATS[0], "GRADIENT": MODELS[0], **shape, **others}
 
@@ -276,7 +274,7 @@ def _measured(
     lsb = config.depth_lsb_px * pitch
     threshold, area = (round(depth / lsb) for depth in (THRESHOLD_MM, AREA_THRESHOLD_MM))
     recorder = Recorder(
-        Settings(threshold, threshold, area, minimum_area=1, debounce=1), config.data_width, bottom_first
+        Settings(threshold, threshold, area, minimum_area=1, debounce=1), config.depth.width, bottom_first
     )
     values: list[tuple[Measured, bool, float]] = []
     for number, press in data.presses.items():
@@ -296,14 +294,8 @@ def cells(study: Study, choices: Choices) -> Row:
     """Return the cells that describe a configuration."""
     request = study.request(choices, 0)
     return {
-        "solver": request.solver,
-        "boundary": request.boundary,
-        "rows": str(request.rows),
-        "columns": str(request.columns),
-        "lanes": str(request.lanes),
-        "data_width": str(request.data_width),
-        "coefficient_width": str(request.coefficient_width),
-        "gain_width": str(request.gain_width),
+        **{name: str(getattr(request, name)) for name in COMMON},
+        **{name: str(bits) for name, bits in request.widths.items()},
         "gradient": choices["GRADIENT"],
         "pixel_format": choices["CAMERA"],
         "light_gains": str(int(request.light_gains is None and choices["GRADIENT"] != "lut")),

@@ -21,6 +21,7 @@ from commands.common.tabular import Table
 from commands.hardware.targets import TARGETS
 from commands.study.rows import Row
 from tactile_depth.base import files
+from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS, STORED, WIDTHS
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
@@ -35,7 +36,7 @@ COSTS = (
 )
 OPTIONS = (
     *("solver", "boundary", "gradient", "light_gains", "pixel_format", "rows", "columns", "lanes"),
-    *("data_width", "coefficient_width", "gain_width"),
+    *WIDTHS,
 )
 NEAR = 1.1  # depth error of the knee over the smallest: what it adds is a tenth
 
@@ -89,7 +90,7 @@ def knee(rows: Sequence[Row]) -> Row:
 def described(row: Row) -> str:
     """Return a configuration in a few words."""
     lanes = f", {row['lanes']} values a clock" if row["lanes"] != "1" else ""
-    words = f"{row['data_width']}/{row['coefficient_width']} bits"
+    words = f"{'/'.join(row[name] for name in SOLVER_WIDTHS)} bits"
     return (
         f"{row['columns']} x {row['rows']}, {row['solver']}, {row['gradient']}, {words}{lanes}, {row['pixel_format']}"
     )
@@ -118,23 +119,21 @@ HEAD = (
 )
 
 
+def _words(data: int, coefficient: int, gain: int = 16) -> Row:
+    return {name: str(bits) for name, bits in zip(WIDTHS, (data, coefficient, gain), strict=True)}
+
+
 DEFAULT = {
     **{"solver": "tridiagonal", "boundary": "neumann", "rows": "96", "columns": "128", "lanes": "1"},
-    **{"data_width": "24", "coefficient_width": "18", "gain_width": "24"},
+    **{name: str(bits) for name, bits in DEFAULT_WIDTHS.items()},
     **{"gradient": "cubic", "pixel_format": "rgb888", "light_gains": "1"},
 }
 """Configuration of td.Pipeline for a sensor of 4:3."""
 SQUARE = {"rows": "128", "columns": "128"}
 CHANGES: dict[str, Row] = {
     "24-bit default": {},
-    **{
-        f"{bits}-bit words": {"data_width": str(bits), "coefficient_width": "18", "gain_width": "16"}
-        for bits in (20, 18, 17, 16, 15, 14, 13, 12)
-    },
-    **{
-        f"{bits}-bit coefficients": {"coefficient_width": str(bits), "gain_width": "16", "data_width": "24"}
-        for bits in (14, 10)
-    },
+    **{f"{bits}-bit words": _words(bits, 18) for bits in (20, 18, 17, 16, 15, 14, 13, 12)},
+    **{f"{bits}-bit coefficients": _words(24, bits) for bits in (14, 10)},
     "192 x 256": {"rows": "192", "columns": "256"},
     "48 x 64": {"rows": "48", "columns": "64"},
     "24 x 32": {"rows": "24", "columns": "32"},
@@ -254,7 +253,7 @@ def draw(rows: Sequence[Row], path: Path) -> None:
     figure, both = plt.subplots(1, 2, figsize=(11, 4.4), layout="constrained", sharey=True)
     default, *lanes, published = (found[name] for name in LABELS)
     default_label, *lanes_labels, published_label = LABELS.values()
-    knee_label = f"knee: {best['rows']} x {best['columns']}, {best['data_width']} bits, {{:.1f}} \u00b5m"
+    knee_label = f"knee: {best['rows']} x {best['columns']}, {best[STORED]} bits, {{:.1f}} \u00b5m"
     panels: tuple[tuple[str, Callable[[Row], float], list[tuple[Row, str]]], ...] = (
         ("fullest resource of an LFE5U-85F, %", silicon, [(best, knee_label)]),
         (

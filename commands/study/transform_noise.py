@@ -49,7 +49,7 @@ def transforms(config: Configuration) -> dict[str, tuple[Callable, Callable, int
     size = config.columns
     order = makhoul(size)
     place = size - 1 - bit_reversed(size)  # of the mode at each position of a burst
-    gain = coefficient_gain(config.coefficient_width) ** (twiddle_stages(size) + 1)
+    gain = coefficient_gain(config.coefficient.width) ** (twiddle_stages(size) + 1)
     halved = 2.0 ** -halvings(size, inverse=False)
     into, out_of = config.row_forward, config.row_modes
     to_modes, from_modes = config.column_inverse, config.depth_modes
@@ -107,7 +107,7 @@ def _blocks(
     chosen = np.unique(np.concatenate((k[:4], k[size // 2 - 1 : size // 2 + 2], k[-4:]))) - 1
     if inverse:
         # Modes of depth fields at the limits of the range.
-        depth = 2.0 ** (config.depth.width - 1) * config.depth_range_px / config.depth_limit_px  # type: ignore[operator]
+        depth = 2.0 ** (config.depth.width - 1) * config.deepest_px / config.depth_limit_px
         exact = transforms(config)[core][1]
         unit = np.zeros((1, *shape))
         unit[(0,) * (dimensions + 1)] = 1

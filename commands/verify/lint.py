@@ -183,7 +183,7 @@ def yosys_cores(cores: Sequence[str]) -> str:
     write_solver(folder, Configuration(solver="tridiagonal", lanes=8))
     words, width = DEFAULT_ROM
     write_words(folder / "rom.hex", range(words), width)
-    write_gains(folder, unit_gains(Configuration()), Configuration().gain_width)
+    write_gains(folder, unit_gains(Configuration()), Configuration().gain.width)
     write_zero(folder, no_zero(Configuration()), Configuration().depth.width)
     write_nodes(folder, "nodes", no_zero(Configuration())[..., None], 1)
     write_polynomials(folder, np.zeros((2, 3, 10), np.int64), POLYNOMIAL.width)

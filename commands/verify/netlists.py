@@ -24,7 +24,7 @@ from commands.verify import items, mutants, mutate
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
-from tactile_depth.sensor.synthetic import synthetic
+from tactile_depth.sensor.synthetic import synthetic_for
 from tb.settings import RunSettings
 from tb.structures import Structure
 
@@ -80,7 +80,7 @@ def whole_design(solver: str) -> Case:
     built = Structure(
         hdl_parameters(config),
         device={"configuration": choices},
-        roms=lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
+        roms=lambda folder: write_roms(folder, synthetic_for(config), config),
     )
     return Case(WHOLE, f"{WHOLE}-{solver}", built, WHOLE_LEVELS)
 

@@ -11,7 +11,7 @@ from commands.common import repository, tabular, variables
 from commands.common import simulator as simulation
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
-from tactile_depth.sensor.synthetic import synthetic
+from tactile_depth.sensor.synthetic import synthetic_for
 from tb.settings import RunSettings
 
 CASES: dict[str, dict[str, Any]] = {
@@ -32,7 +32,7 @@ OUTCOMES = {
 def run(case: str, upsets: int, seed: int, folder: Path) -> list[dict[str, Any]]:
     """Run `upsets` experiments on one structure for each module and for its memories."""
     config = Configuration(**CASES[case])
-    write_roms(folder, synthetic(config.bits_per_channel), config)
+    write_roms(folder, synthetic_for(config), config)
     (folder / "sim.vvp").unlink(missing_ok=True)  # the runner would keep a build with other parameters
     log = folder / "run.log"
     simulation.build("icarus", "tactile_depth", repository.sources(), hdl_parameters(config), folder, log=log)

@@ -7,7 +7,7 @@ import cocotb
 import numpy as np
 
 from tactile_depth.chip.camera.area_average import LATENCY, UNITY, area_average
-from tactile_depth.chip.camera_configuration import GAIN_WIDTH
+from tactile_depth.chip.camera_configuration import GAIN
 from tb.camera.slots import Slot, Slots, Window, packed
 from tb.cases import on_bench
 from tb.stream import MANY, check_words, drive, parameters, parametrize
@@ -67,7 +67,7 @@ class Bench:
 
     def append(self, slot: Slot) -> None:
         """Append a slot, with the gains of its frame."""
-        self.stimuli.append(slot | {"in_gains": packed(self.gains, GAIN_WIDTH)})
+        self.stimuli.append(slot | {"in_gains": packed(self.gains, GAIN.width)})
 
     def leaves(self, colours: list[int], abort: int = 0) -> None:
         last = int((self.place + 1) % self.columns == 0) ^ abort
@@ -111,9 +111,9 @@ async def frames(bench: Bench, gap: float, pause: float) -> None:
 @parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.2)]))
 async def gains(bench: Bench, gap: float, pause: float) -> None:
     """Change the gains with every frame: 0, 1, the largest, each bit, and random ones."""
-    chance, largest = bench.slots.random, (1 << GAIN_WIDTH) - 1
-    for bit in range(GAIN_WIDTH):
-        of = [1 << bit, chance.choice((0, largest)), chance.getrandbits(GAIN_WIDTH)]
+    chance, largest = bench.slots.random, (1 << GAIN.width) - 1
+    for bit in range(GAIN.width):
+        of = [1 << bit, chance.choice((0, largest)), chance.getrandbits(GAIN.width)]
         for kind in chance.sample(["range", "picture", "ties", "white"], 2):
             chance.shuffle(of)
             bench.gains = (of[0], of[1], of[2])

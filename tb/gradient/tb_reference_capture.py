@@ -72,7 +72,7 @@ class Capture:
                 self.captures += 1
                 self.busy = False
                 self.due = None
-                width = self.config.gain_width
+                width = self.config.gain.width
                 got = [[word >> width * c & (1 << width) - 1 for c in range(3)] for word in self.memory]
                 np.testing.assert_array_equal(got, self.gains.reshape(-1, 3), "gains")
             if read("en") and read("in_valid"):
@@ -105,7 +105,7 @@ class Capture:
                 pass
             elif self.sums:
                 wanted, added, first = self.sums.pop(0)
-                width = self.config.gain_width
+                width = self.config.gain.width
                 before = [0 if first else self.memory[node] >> width * c for c in range(3)]
                 sums = [held + more & (1 << width) - 1 for held, more in zip(before, added, strict=True)]
                 word = sum(word << width * c for c, word in enumerate(sums))
@@ -156,9 +156,9 @@ class Capture:
         rows, columns = self.config.reference_nodes
         in_blocks = frame[: rows * block, : columns * block].astype(np.int64)
         sums = in_blocks.reshape(rows, block, columns, block, 3).sum(axis=(1, 3)).reshape(-1, 3)
-        sums = sums + self.flipped & (1 << self.config.gain_width) - 1
-        dividend = 2 * len(self.taken) * block * block << self.config.gain_fraction
-        return np.minimum((dividend // np.maximum(sums, 1) + 1) >> 1, (1 << self.config.gain_width) - 1)
+        sums = sums + self.flipped & (1 << self.config.gain.width) - 1
+        dividend = 2 * len(self.taken) * block * block << self.config.gain.fraction
+        return np.minimum((dividend // np.maximum(sums, 1) + 1) >> 1, (1 << self.config.gain.width) - 1)
 
     async def send(self, bad: Any = False) -> None:
         """Send a frame."""
@@ -217,9 +217,9 @@ async def any_sum(dut: Any) -> None:
         await device.send()
         for _ in range(8):  # until its last sum is written
             await RisingEdge(dut.clk)
-        device.flipped = device.generator.integers(0, 1 << device.config.gain_width, (len(device.memory), 3))
+        device.flipped = device.generator.integers(0, 1 << device.config.gain.width, (len(device.memory), 3))
         for node, (red, green, blue) in enumerate(device.flipped.tolist()):
-            device.memory[node] = red | green << device.config.gain_width | blue << 2 * device.config.gain_width
+            device.memory[node] = red | green << device.config.gain.width | blue << 2 * device.config.gain.width
         await device.until_done()
     assert device.captures == count
 

@@ -47,7 +47,7 @@ def random_entries(pipeline: Pipeline, name: str, rng: np.random.Generator) -> n
     if name == "coefficients":
         return one_word(np.rint(entries[:, 0] * rng.uniform(0.5, 1, len(entries))).astype(np.int64))
     if name == "reference":
-        return reference_entries((1 << config.gain_fraction) // rng.integers(90, 160, (*config.reference_nodes, 3)))
+        return reference_entries((1 << config.gain.fraction) // rng.integers(90, 160, (*config.reference_nodes, 3)))
     limit = 1 << config.data_width - 1
     return one_word(rng.integers(-limit // 8, limit // 8, len(entries)))
 

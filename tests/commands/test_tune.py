@@ -17,11 +17,11 @@ from commands.common import published, run_request, variables
 from commands.cost.cost import cost
 from commands.run import sim
 from commands.study import tune
-from commands.study.tune_search import WORST_FRAME, Limits, Search, Widths
+from commands.study.tune_search import COEFFICIENT, DATA, WORST_FRAME, Limits, Search, Widths
 from tactile_depth.calibrate.presses import gather
-from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.configuration import WORDS, Configuration
 from tactile_depth.chip.latency import last_pixel_to_last_depth
-from tactile_depth.chip.limits import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS
+from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.pictures.frames import load_frames
 from tactile_depth.sensor.presets import CHIP
 from tests import ball_presses
@@ -52,7 +52,7 @@ def falling(solver_bits: Any) -> Any:
 
 @cache
 def all_points() -> list[Any]:
-    widths = product(range(DATA_WIDTHS[0], DATA_WIDTHS[1] + 1), range(COEFFICIENT_WIDTHS[0], COEFFICIENT_WIDTHS[1] + 1))
+    widths = product(range(DATA[0], DATA[1] + 1), range(COEFFICIENT[0], COEFFICIENT[1] + 1))
     return [at for d, c in widths for s in COLUMNS if built(at := Widths(s, d, c)) is not None]
 
 
@@ -202,7 +202,7 @@ def test_auto_keeps_caps_and_centroids_of_presses_it_was_not_tuned_on(tmp_path: 
     assert variables.read(tune.main, given) == 0
     report = json.loads((tmp_path / "out" / "report.json").read_text())
     chosen = json.loads((tmp_path / "out" / "config.json").read_text())
-    assert {name: chosen[variable] for name, variable in run_request.WORDS.items()} == CHIP.words
+    assert {name: chosen[variable] for name, variable in WORDS.items()} == CHIP.words
     assert report["chosen"]["multipliers"] < 0.75 * report["default"]["multipliers"]
     assert report["chosen"]["memory_bits"] < 0.75 * report["default"]["memory_bits"]
     sensor = td.load("gelsight-mini")

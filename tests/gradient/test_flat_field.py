@@ -81,7 +81,7 @@ def test_a_frame_like_the_reference_is_flat(level: int) -> None:
     """Send the reference as a frame, at every level. Below 16 grey levels pixels are dark, and flat as well."""
     frames = np.full((1, 21, 32, 3), level, np.uint8)
     gains = captured_gains(frames, CONFIG)
-    assert np.all(np.abs(node_map(gains, CONFIG) * level - (1 << CONFIG.gain_fraction)) <= level)
+    assert np.all(np.abs(node_map(gains, CONFIG) * level - (1 << CONFIG.gain.fraction)) <= level)
     assert np.all(flat_codes(frames, gains, CONFIG) == 128)
     assert not np.any(deviations(frames, gains, CONFIG))
 

@@ -53,7 +53,7 @@ from tactile_depth.depth import reference
 from tactile_depth.depth.reference import pixel_terms
 from tactile_depth.pictures.pictures import Picture
 from tactile_depth.sensor.calibration_file import LONGEST_EXPOSURE_US, PIXEL_ASPECTS, PIXEL_PITCHES_MM
-from tactile_depth.sensor.sensor import BITS_PER_CHANNEL, CORRECTIONS, MODELS, Camera, Sensor, lighting
+from tactile_depth.sensor.sensor import CORRECTIONS, MODELS, TABLE_BITS, Camera, Sensor, lighting
 
 FEWEST, FEWEST_MEASURED = 8, 2  # presses; those that lie completely in the middle square
 DRAWS, DRAWN_OUT = 12, 6  # choices of presses for each number of them, and presses that are measured in each
@@ -158,7 +158,7 @@ def check_arguments(
     wanted = (models,) if isinstance(models, str) else tuple(models)
     if not wanted or not set(wanted) <= set(MODELS):
         raise InputError(Argument("models", ", ".join(map(str, wanted))), accepted=(*MODELS, "one or more"))
-    low, high = BITS_PER_CHANNEL
+    low, high = TABLE_BITS
     if not isinstance(bits, int) or not low <= bits <= high:
         raise InputError(Argument("bits", bits), accepted=f"a whole number from {low} to {high}")
     pixel_size(pitch_mm)

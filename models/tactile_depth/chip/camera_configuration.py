@@ -9,9 +9,10 @@ from fractions import Fraction
 from tactile_depth.base.errors import Argument, InputError, former_names, one_of
 from tactile_depth.base.resampling import crop_origin, ratio
 from tactile_depth.chip.camera.block_weights import pixels_of
+from tactile_depth.chip.fixed_point import Format
 
 LARGEST_PICTURE = 4096  # rows and columns
-GAIN_WIDTH, GAIN_FRACTION = 16, 12  # unsigned gain word
+GAIN = Format(16, 12)  # unsigned
 SAMPLE_MARGIN = 2  # bits of a sample above full scale, sign included
 CHROMA_FRACTION = 12  # of the coefficients of BT.601
 PHASES = ("rggb", "grbg", "gbrg", "bggr")
@@ -149,8 +150,8 @@ class CameraConfiguration:
             raise InputError(f"a picture of {columns} columns: two share a chroma in yuyv: give an even number")
         if not 0 <= self.black_level < 1 << self.bits:
             raise InputError(Argument("black_level", self.black_level), accepted=range(1 << self.bits))
-        if len(self.gains) != 3 or not all(0 <= code < 1 << GAIN_WIDTH for code in self.gain_codes):
-            accepted = ("three factors", f"each below {1 << GAIN_WIDTH - GAIN_FRACTION}")
+        if len(self.gains) != 3 or not all(0 <= code < 1 << GAIN.width for code in self.gain_codes):
+            accepted = ("three factors", f"each below {1 << GAIN.width - GAIN.fraction}")
             raise InputError(Argument("gains", self.gains), accepted=accepted)
         self._place_window()
         least = self.format.least_ratio
@@ -241,5 +242,5 @@ class CameraConfiguration:
 
     @property
     def gain_codes(self) -> tuple[int, int, int]:
-        red, green, blue = (round(gain * (1 << GAIN_FRACTION)) for gain in self.gains)
+        red, green, blue = (round(gain * (1 << GAIN.fraction)) for gain in self.gains)
         return red, green, blue

@@ -12,24 +12,26 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 
+from tactile_depth.base.declared import declared
 from tactile_depth.base.errors import Argument, InputError, former_names, one_of, power_of_two, within
 from tactile_depth.chip.bounds import Bounds, bounds, difference_bounds
+from tactile_depth.chip.choices import Choice, Width
 from tactile_depth.chip.fixed_point import Format
 from tactile_depth.chip.limits import (
     BLOCK,
+    BOUNDARIES,
     COARSEST_LSB,
     COEFFICIENT_LIMITS,
-    COEFFICIENT_WIDTHS,
     COLOUR_COEFFICIENT,
     COLUMNS,
-    DATA_WIDTHS,
+    DARKEST_LOG2,
     DEEPEST,
     DEPTH_HEADROOM,
     EXACT_LENGTHS,
-    GAIN_WIDTHS,
     GRADIENT_LIMITS,
     GRADIENT_MODELS,
     GUARD_BITS,
@@ -38,12 +40,12 @@ from tactile_depth.chip.limits import (
     REFERENCE_NODES,
     ROWS,
     SAMPLES,
+    SHALLOWEST_PX,
     SMALLEST_BLOCK,
-    SMALLEST_DEPTH_RANGE_PX,
     ULTRA,
     ULTRA_WIDTH,
     ULTRA_WORDS,
-    gain_fraction,
+    Boundary,
     most_lanes,
 )
 from tactile_depth.chip.poisson.transform.sdf_fft import twiddle_stages
@@ -68,8 +70,10 @@ class Configuration:
         `spectral` or `tridiagonal`.
     neumann : bool
         Zero slope at the frame's edge instead of zero depth.
-    data_width, coefficient_width : int
-        Bits of a stored word and of a coefficient.
+    lanes : int
+        Depth values per clock, a power of two. Only the tridiagonal solver has more than one.
+    data_width, coefficient_width, gain_width : int
+        Bits of a stored word, of a coefficient, and of a gain of the flat field.
     depth_range_px : float
         Largest depth that formats are sized for, in grid pixels; None: a quarter of the grid.
     gradient_limit : float
@@ -78,36 +82,32 @@ class Configuration:
         Models of polynomials: no coefficient reaches it, a power of two. Faint colours need large coefficients.
     bits_per_channel : int
         Bits of each colour that index the gradient table.
-    flat_field : bool
-        Colours are taken relative to a reference frame.
-    gain_width : int
-        Bits of a gain of the flat field.
     gradient_model : str
         `lut`, a table of colours; `quadratic` or `cubic`, polynomials of the position, which need `flat_field`.
-    light_gains : bool
-        A gain for each colour follows the light; needs polynomials.
+    flat_field : bool
+        Colours are taken relative to a reference frame.
     zero_offset : bool
         The depth that is read without contact is subtracted.
-    lanes : int
-        Depth values per clock, a power of two. Only the tridiagonal solver has more than one.
+    light_gains : bool
+        A gain for each colour follows the light; needs polynomials.
     """
 
-    columns: int = 128
-    rows: int = 0
-    solver: str = "spectral"
-    neumann: bool = False
-    data_width: int = 24
-    coefficient_width: int = 18
-    depth_range_px: float | None = None
+    columns: Annotated[int, Choice(variable="N", option="--grid {}x..")] = 128
+    rows: Annotated[int, Choice(option="--grid ..x{}")] = 0
+    solver: Annotated[str, Choice()] = "spectral"
+    neumann: Annotated[bool, Choice(argument="boundary")] = False
+    lanes: Annotated[int, Choice()] = 1
+    data_width: Annotated[int, Width(word="stored word", accepted=(12, 32))] = 24
+    coefficient_width: Annotated[int, Width(word="coefficient", accepted=(10, 24), variable="COEFF_WIDTH")] = 18
+    gain_width: Annotated[int, Width(word="gain of the flat field", accepted=(16, 24), colours=True)] = 24
+    depth_range_px: Annotated[float | None, Choice(argument="depth_range_mm", variable="DEPTH_RANGE")] = None
     gradient_limit: float = 1.0
     coefficient_limit: float = POLYNOMIAL.limit
     bits_per_channel: int = 4
+    gradient_model: Annotated[str, Choice(variable="GRADIENT", option="--model {}")] = "lut"
     flat_field: bool = False
-    gradient_model: str = "lut"
     zero_offset: bool = False
-    lanes: int = 1
-    gain_width: int = 24
-    light_gains: bool = False
+    light_gains: Annotated[bool, Choice(option="--no-light-gains")] = False
 
     def __post_init__(self) -> None:
         model, solver = Argument("gradient_model", self.gradient_model), Argument("solver", self.solver)
@@ -131,16 +131,14 @@ class Configuration:
                 remedy=("set both the same, or ", Argument("solver", "tridiagonal")),
             )
         self._check_lanes()
-        within(data_width, *DATA_WIDTHS)
-        within(Argument("coefficient_width", self.coefficient_width), *COEFFICIENT_WIDTHS)
-        within(Argument("gain_width", self.gain_width), *GAIN_WIDTHS)
+        for name, width in WIDTHS.items():
+            within(Argument(name, getattr(self, name)), *width.accepted)
         self._check_sums()
         if self.depth_range_px is None:
             object.__setattr__(self, "depth_range_px", min(self.rows, self.columns) / 4)
-        if not SMALLEST_DEPTH_RANGE_PX <= self.depth_limit_px / DEPTH_HEADROOM < math.inf:
+        if not SHALLOWEST_PX <= self.deepest_px < math.inf:
             raise InputError(
-                f"a depth range of {self.depth_range_px:g} pixels: accepted are {SMALLEST_DEPTH_RANGE_PX:g} "
-                f"pixels and more"
+                f"a depth range of {self.deepest_px:g} pixels: accepted are {SHALLOWEST_PX:g} pixels and more"
             )
         lowest, highest = GRADIENT_LIMITS
         if not lowest <= self.gradient_limit <= highest or math.log2(self.gradient_limit) % 1:
@@ -164,17 +162,15 @@ class Configuration:
                 f"the coefficients of the calibration are near {self.coefficient_limit:g}: accepted are up to "
                 f"{highest:g}: colours that change so little with the slope do not show it: use more light"
             )
-        deepest = min(
-            self.depth_limit_px / DEPTH_HEADROOM, DEEPEST * min(self.rows, self.columns) * self.gradient_limit
-        )
+        deepest = min(self.deepest_px, DEEPEST * min(self.rows, self.columns) * self.gradient_limit)
         modes = self.column_inverse if self.solver == "spectral" else self.elimination_store
         step = modes.lsb * self.depth_limit_px
         if step > COARSEST_LSB * deepest:
             enough = self.data_width + math.ceil(math.log2(step / (COARSEST_LSB * deepest)))
-            wider = (Argument("data_width", enough), " or ") if enough <= DATA_WIDTHS[1] else ()
+            wider = (Argument("data_width", enough), " or ") if enough <= WIDTHS[STORED].accepted[1] else ()
             raise InputError(
                 *(data_width, " cannot hold the formats of ", columns),
-                f" and a depth range of {self.depth_range_px:g} pixels (the step of a mode would be {step:.3g} pixels, "
+                f" and a depth range of {self.deepest_px:g} pixels (the step of a mode would be {step:.3g} pixels, "
                 f"the largest depth is {deepest:.3g})",
                 remedy=("try ", *wider, "a smaller depth range"),
             )
@@ -182,7 +178,7 @@ class Configuration:
             if bound > form.limit - form.lsb:
                 raise InputError(
                     *(f"{node} of ", columns, ", ", data_width),
-                    f" holds up to {form.limit:g} and a depth within the range of {self.depth_range_px:g} pixels can "
+                    f" holds up to {form.limit:g} and a depth within the range of {self.deepest_px:g} pixels can "
                     f"ask for {bound:.4g}",
                     remedy="a fault in the derivation of formats, please report it",
                 )
@@ -218,12 +214,27 @@ class Configuration:
         row, column = np.meshgrid(*sides, indexing="ij")
         return row, column
 
+    @property
+    def bin_levels(self) -> int:
+        """Grey levels of a colour that one entry of the gradient table holds for."""
+        return 256 >> self.bits_per_channel
+
     # Widths.
 
     @property
-    def gain_fraction(self) -> int:
-        """Fraction bits of a gain of the flat field."""
-        return gain_fraction(self.gain_width)
+    def coefficient(self) -> Format:
+        """Format of a coefficient of the solver, up to 1."""
+        return Format(self.coefficient_width, self.coefficient_width - 1)
+
+    @property
+    def gain(self) -> Format:
+        """Format of a gain of the flat field, 1 / reference, unsigned."""
+        return Format(self.gain_width, self.gain_width + DARKEST_LOG2)
+
+    @property
+    def boundary(self) -> Boundary:
+        """Name of the condition at the edge."""
+        return BOUNDARIES[not self.neumann]
 
     @property
     def arithmetic_width(self) -> int:
@@ -231,10 +242,15 @@ class Configuration:
         return self.data_width + GUARD_BITS
 
     @property
+    def deepest_px(self) -> float:
+        """Largest depth that formats are sized for, in grid pixels."""
+        assert self.depth_range_px is not None  # it is filled in
+        return self.depth_range_px
+
+    @property
     def depth_limit_px(self) -> float:
         """Full scale of the depth code, in grid pixels."""
-        assert self.depth_range_px is not None
-        return DEPTH_HEADROOM * self.depth_range_px
+        return DEPTH_HEADROOM * self.deepest_px
 
     @property
     def depth_limit_log2(self) -> int:
@@ -380,9 +396,15 @@ class Configuration:
 
     # HDL parameters.
 
-    def transform_parameters(self) -> dict[str, int]:
+    def solver_parameters(self) -> dict[str, int]:
         """Return the HDL parameters that both solvers share."""
-        return {"Columns": self.columns, "Width": self.arithmetic_width, "CoeffWidth": self.coefficient_width}
+        return {
+            "Columns": self.columns,
+            "Width": self.arithmetic_width,
+            "CoeffWidth": self.coefficient_width,
+            "InWidth": self.divergence.width,
+            "DataWidth": self.data_width,
+        }
 
     def transform(self, before: Format, inside: Format, behind: Format) -> Transform:
         """Return the formats of a transform of a solver, from those of the words before, inside and behind it."""
@@ -448,6 +470,16 @@ class Configuration:
             "spectral_divide": (self._bounds.column_inverse * deep, self.column_inverse),
             "column_inverse.output": (self._bounds.depth_modes * deep, self.depth_modes),
         }
+
+
+CHOICES = {name: choice.of(name) for name, choice in declared(Configuration, Choice).items()}
+"""Choices that users name, by field."""
+WIDTHS = {name: width for name, width in CHOICES.items() if isinstance(width, Width)}
+SOLVER_WIDTHS = {name: width for name, width in WIDTHS.items() if not width.colours}
+STORED, COEFFICIENT, GAIN = WIDTHS
+WORDS = {CHOICES[name].argument: CHOICES[name].variable for name in (*WIDTHS, "depth_range_px")}
+"""Variables of the word lengths and of the depth range, by argument of `td.Pipeline`."""
+DEFAULT_WIDTHS: dict[str, int] = {name: getattr(Configuration, name) for name in WIDTHS}
 
 
 class ExactConfiguration(Configuration):

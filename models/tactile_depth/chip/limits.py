@@ -3,13 +3,19 @@
 
 from __future__ import annotations
 
+from typing import Literal, get_args
+
 from tactile_depth.chip.fixed_point import Format
+
+Solver = Literal["tridiagonal", "spectral"]
+Boundary = Literal["neumann", "dirichlet"]
+Model = Literal["lut", "quadratic", "cubic"]
 
 GUARD_BITS = 3  # bits of the arithmetic below a stored word: a DSP48E2 multiplies 27 bits at the cost of 24
 DEPTH_HEADROOM = 9 / 8  # full scale of the depth code over the depth range: margin for depth errors
 DEEPEST = 0.67  # largest depth over N pixels for slopes up to 1 (L1 norm of the linear map), as a fraction of N
 COARSEST_LSB = 1 / 32  # of a mode's word, as a fraction of the deepest depth: coarser words lose the shape
-SMALLEST_DEPTH_RANGE_PX = 1 / 16
+SHALLOWEST_PX = 1 / 16
 
 # Styles of td_ram.sv for a frame store. A store as large as two UltraRAMs or more takes UltraRAM, which is cheaper.
 BLOCK, ULTRA = 1, 2
@@ -21,9 +27,8 @@ EXACT_LENGTHS = (8, 4096)  # rows and columns of a grid in double precision
 MOST_LANES = 64
 COLUMNS_PER_LANE = 2  # at least: the second row of a pair comes so many clocks after the first
 ZERO_OFFSET_COLUMNS_PER_LANE = 4  # at least: the capture of the zero offset adds in three clocks, td_block_sum.sv
-DATA_WIDTHS = (12, 32)
-COEFFICIENT_WIDTHS = (10, 24)
-GRADIENT_MODELS = ("lut", "quadratic", "cubic")
+GRADIENT_MODELS = get_args(Model)
+BOUNDARIES: tuple[Boundary, ...] = get_args(Boundary)
 GRADIENT_LIMITS = (2.0**-6, 2.0**6)
 
 # Flat-fielding. The reference is smooth, as the lighting is. A grid of 16 block means across the picture causes no
@@ -31,13 +36,7 @@ GRADIENT_LIMITS = (2.0**-6, 2.0**6)
 REFERENCE_NODES = 16
 SMALLEST_BLOCK = 2
 PIXEL_WIDTH = 8
-GAIN_WIDTHS = (16, 24)  # of an unsigned gain word
 DARKEST_LOG2 = 3  # a reference of 8 grey levels gives the full scale of a gain
-
-
-def gain_fraction(gain_width: int) -> int:
-    """Return the fraction bits of a gain, 1 / reference, of so many bits."""
-    return gain_width + DARKEST_LOG2
 
 
 def most_lanes(columns: int, zero_offset: bool = False) -> int:

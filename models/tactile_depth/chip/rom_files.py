@@ -143,7 +143,7 @@ def write_polynomials(folder: Path, words: np.ndarray, width: int) -> None:
 def write_thomas(folder: Path, config: Configuration) -> None:
     """Write the ROMs of thomas_table.sv."""
     table = thomas_table(config)
-    width = config.coefficient_width
+    width = config.coefficient.width
     write_words(folder / "thomas.hex", unsigned(table.words, width), width)
     settled_width, shift_width = table.settled_width, table.last_shift_width
     address_width = (len(table.words) - 1).bit_length()
@@ -159,7 +159,7 @@ def write_thomas(folder: Path, config: Configuration) -> None:
 
 def write_wide_thomas(folder: Path, config: Configuration) -> None:
     """Write the ROMs of the two tables of wide_solver.sv, the coefficients of a clock side by side in a word."""
-    width, table = config.coefficient_width, thomas_table(config)
+    width, table = config.coefficient.width, thomas_table(config)
     last = down_positions(config.columns, config.down_words)
     for name, wide in zip(("wide_down", "wide_up"), tables(config), strict=True):
         count = wide.words.shape[1]
@@ -182,12 +182,12 @@ def write_wide_thomas(folder: Path, config: Configuration) -> None:
 def write_solver(folder: Path, config: Configuration) -> None:
     """Write the ROMs of the solver."""
     if config.lanes > 1:
-        write_wide_transform(folder, config.columns, config.down_words, config.lanes, config.coefficient_width)
+        write_wide_transform(folder, config.columns, config.down_words, config.lanes, config.coefficient.width)
         write_wide_thomas(folder, config)
         return
-    write_transform(folder, config.columns, config.coefficient_width)
+    write_transform(folder, config.columns, config.coefficient.width)
     if config.solver == "tridiagonal":
         write_thomas(folder, config)
     else:
-        width = config.coefficient_width + reciprocals(config).shift_width
+        width = config.coefficient.width + reciprocals(config).shift_width
         write_words(folder / "reciprocal.hex", reciprocal_rom(config), width)

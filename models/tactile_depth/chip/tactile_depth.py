@@ -342,7 +342,7 @@ def write_roms(
         side = td_node_map.side(config.lanes, config.reference_block_log2)
         write_zero(folder, no_zero(config) if zero is None else zero, config.depth.width, side)
     if config.flat_field:
-        write_gains(folder, reference_gains(calibration, config) if gains is None else gains, config.gain_width)
+        write_gains(folder, reference_gains(calibration, config) if gains is None else gains, config.gain.width)
     if config.polynomials:
         words = polynomial_words(calibration, config)
         write_polynomials(folder, words, POLYNOMIAL.width)

@@ -138,7 +138,6 @@ def _write_frame(folder: Path, suffix: str, label: str, image: np.ndarray, resul
 
 def _describe_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> dict[str, Any]:
     config, model = pipeline.config, pipeline.config.gradient_model
-    assert config.depth_range_px is not None  # it is filled in
     error = pipeline.sensor.height_errors.get(model)
     return {
         "calibration": pipeline.sensor.name,
@@ -156,14 +155,14 @@ def _describe_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> dict[
         "reference": options.reference,
         "arithmetic": pipeline.arithmetic,
         "solver": config.solver,
-        "boundary": "neumann" if config.neumann else "dirichlet",
+        "boundary": config.boundary,
         "zero_offset": config.zero_offset,
         "light_gains": config.light_gains,
         "grid": {"rows": pipeline.grid[0], "columns": pipeline.grid[1]},
         "pixel_pitch_mm": pipeline.pixel_pitch_mm,
         "pixel_aspect": pipeline.sensor.pixel_aspect,
         "depth_lsb_mm": pipeline.depth_lsb_mm,
-        "depth_range_mm": config.depth_range_px * pipeline.pixel_pitch_mm,
+        "depth_range_mm": config.deepest_px * pipeline.pixel_pitch_mm,
         "threshold_mm": pipeline.threshold_mm,
         "area_threshold_mm": pipeline.area_threshold_mm,
     }

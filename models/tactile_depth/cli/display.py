@@ -120,15 +120,15 @@ class Display(AbstractContextManager["Display"]):
         stream.set_time(TIMELINE, sequence=index)
         if picture is not None:
             stream.log("camera", rerun.Image(picture).compress(jpeg_quality=JPEG_QUALITY))
-        depth_range = [0.0, self._highest_mm]
+        heights = [0.0, self._highest_mm]
         origin_mm = result.origin_mm if isinstance(result, DeviceFrame) else (0.0, 0.0)
-        stream.log("height", rerun.DepthImage(height, meter=MM_PER_M, colormap="viridis", depth_range=depth_range))
+        stream.log("height", rerun.DepthImage(height, meter=MM_PER_M, colormap="viridis", depth_range=heights))
         stream.log(
             "surface",
             rerun.Mesh3D.from_fields(
                 vertex_positions=vertices_mm(height, result.pixel_pitch_mm, result.pixel_aspect, origin_mm),
                 vertex_normals=_normals(_slopes(result)),
-                vertex_colors=colours(height, *depth_range).reshape(-1, 3),
+                vertex_colors=colours(height, *heights).reshape(-1, 3),
             ),
         )
         row, column = contact.centroid_mm or (math.nan, math.nan)

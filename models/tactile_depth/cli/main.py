@@ -19,6 +19,7 @@ from typing import NoReturn
 from tactile_depth.base import interruption
 from tactile_depth.base.errors import Argument, InputError, InputWarning
 from tactile_depth.base.files import cause
+from tactile_depth.chip.configuration import CHOICES
 from tactile_depth.cli import calibrate, depth, live
 from tactile_depth.cli.failure import Failure
 from tactile_depth.device.errors import DeviceError
@@ -28,32 +29,22 @@ BAD_INPUT, FAILED = 2, 3
 DESCRIPTION = "Depth in millimetres from visuotactile fingertips, bit for bit as the hardware computes it."
 
 # Arguments of the package, and the options that a user of the command gave; {} is the value.
-OPTIONS = {
+OPTIONS = {choice.argument: choice.option for choice in CHOICES.values()} | {
     "address": "device:{}",
     "arithmetic": "--arithmetic {}",
     "background": "--background {}",
     "bits": "--bits {}",
     "calibration": "--calibration {}",
     "camera_size": "--camera-size {}",
-    "columns": "--grid {}x..",
     "diameter_mm": "--diameter-mm {}",
     "exposure_us": "--exposure-us {}",
     "folder": "--out {}",
-    "gradient_model": "--model {}",
     "grid": "--grid {}",
-    "light_gains": "--no-light-gains",
     "pitch_mm": "--pitch-mm {}",
     "reference": "--reference {}",
-    "rows": "--grid ..x{}",
     "threshold_mm": "--threshold-mm {}",
     "area_threshold_mm": "--area-threshold-mm {}",
     "depth_format": "--depth-format {}",
-    "solver": "--solver {}",
-    "boundary": "--boundary {}",
-    "data_width": "--data-width {}",
-    "coefficient_width": "--coefficient-width {}",
-    "gain_width": "--gain-width {}",
-    "depth_range_mm": "--depth-range-mm {}",
 }
 
 

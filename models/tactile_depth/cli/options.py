@@ -10,14 +10,14 @@ from typing import Any, get_args
 import numpy as np
 
 from tactile_depth.base.errors import InputError
-from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.limits import GRADIENT_MODELS
-from tactile_depth.depth.pipeline import ARITHMETICS, Pipeline
+from tactile_depth.chip.configuration import CHOICES, DEFAULT_WIDTHS, WIDTHS
+from tactile_depth.chip.limits import BOUNDARIES, GRADIENT_MODELS, Solver
+from tactile_depth.depth.pipeline import AREA_THRESHOLD_MM, ARITHMETICS, THRESHOLD_MM, Pipeline
 from tactile_depth.pictures.frames import read_stack
 from tactile_depth.pictures.identify import identify
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import BUILT_IN
-from tactile_depth.sensor.presets import SENSOR, Boundary, Solver
+from tactile_depth.sensor.presets import SENSOR
 from tactile_depth.sensor.sensor import Sensor
 
 
@@ -47,14 +47,19 @@ def add_pipeline_arguments(parser: argparse.ArgumentParser) -> None:
         help="chip: every bit as in hardware (default); float: double precision",
     )
     parser.add_argument(
-        "--threshold-mm", type=float, default=0.1, metavar="MM", help="depth above which a pixel touches (default 0.1)"
+        "--threshold-mm",
+        type=float,
+        default=THRESHOLD_MM,
+        metavar="MM",
+        help=f"depth above which a pixel touches (default {THRESHOLD_MM})",
     )
     parser.add_argument(
         "--area-threshold-mm",
         type=float,
-        default=0.3,
+        default=AREA_THRESHOLD_MM,
         metavar="MM",
-        help="depth above which a pixel is in the area of a contact (default 0.3), or half the contact's peak if less",
+        help=f"depth above which a pixel is in the area of a contact (default {AREA_THRESHOLD_MM}), "
+        "or half the contact's peak if less",
     )
     parser.add_argument(
         "--model", choices=GRADIENT_MODELS, default="", help="gradient model; by default the better of the calibration"
@@ -76,24 +81,18 @@ def add_build_arguments(parser: argparse.ArgumentParser) -> None:
     """Add choices that a device is built with, which the pipeline of its host must share."""
     build = parser.add_argument_group("build of a device that has others than the defaults")
     build.add_argument("--solver", choices=get_args(Solver), default=SENSOR.solver, help=f"default {SENSOR.solver}")
-    build.add_argument(
-        "--boundary", choices=get_args(Boundary), default=SENSOR.boundary, help=f"default {SENSOR.boundary}"
-    )
-    for name, width, what in (
-        ("data", Configuration.data_width, "stored word"),
-        ("coefficient", Configuration.coefficient_width, "coefficient"),
-        ("gain", Configuration.gain_width, "gain of the flat field"),
-    ):
-        help_text = f"bits of a {what} (default {width})"
-        build.add_argument(f"--{name}-width", type=int, default=width, metavar="BITS", help=help_text)
+    build.add_argument("--boundary", choices=BOUNDARIES, default=SENSOR.boundary, help=f"default {SENSOR.boundary}")
+    for name, width in WIDTHS.items():
+        bits = DEFAULT_WIDTHS[name]
+        help_text = f"bits of a {width.word} (default {bits})"
+        build.add_argument(width.option.split()[0], type=int, default=bits, metavar="BITS", help=help_text)
     build.add_argument("--depth-range-mm", type=float, metavar="MM", help="depth that the formats are sized for")
 
 
 def build_choices(options: argparse.Namespace) -> dict[str, Any]:
     """Return the arguments of `Pipeline` that `add_build_arguments` and `add_light_and_zero_arguments` give."""
-    names = ("solver", "boundary", "data_width", "coefficient_width", "gain_width", "depth_range_mm")
     return {
-        **{name: getattr(options, name) for name in names if hasattr(options, name)},
+        **{each.argument: vars(options)[each.argument] for each in CHOICES.values() if each.argument in options},
         "zero_offset": not options.no_zero_offset,
         "light_gains": False if options.no_light_gains else None,
     }

@@ -13,7 +13,7 @@ import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import Configuration, ExactConfiguration, is_grid_of_hardware
+from tactile_depth.chip.configuration import WIDTHS, Configuration, ExactConfiguration, is_grid_of_hardware
 from tactile_depth.chip.contact.contact_events import Settings
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.depth.zero_offset import exact_zero, no_zero
@@ -21,7 +21,7 @@ from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gai
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.hardware_files import write_hardware
-from tactile_depth.chip.limits import LIGHT_GAIN
+from tactile_depth.chip.limits import BOUNDARIES, LIGHT_GAIN, Boundary, Model, Solver
 from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.chip.tactile_depth import zeroed
 from tactile_depth.depth.result import Recorder, Result
@@ -36,13 +36,13 @@ from tactile_depth.pictures.picture_check import Checked, check_picture
 from tactile_depth.pictures.pictures import Picture, Pictures
 from tactile_depth.pictures.reader import Reader, power_of_two_of
 from tactile_depth.pictures.reference_check import check_reference
-from tactile_depth.sensor.presets import SENSOR, Boundary, Model, Solver
+from tactile_depth.sensor.presets import SENSOR
 from tactile_depth.sensor.sensor import Sensor
 
 SYNTHETIC_GRID = (128, 128)
 ARITHMETICS = ("chip", "float")
 Arithmetic = Literal["chip", "float"]
-BOUNDARIES = ("neumann", "dirichlet")
+THRESHOLD_MM, AREA_THRESHOLD_MM = 0.1, 0.3  # of a contact
 THRESHOLDS = {"THRESHOLD": "on_threshold", "AREA_THRESHOLD": "area_threshold"}  # fields of Settings, by register
 PICTURES, REFERENCE = Argument("pictures"), Argument("reference")
 PIXELS_AT_ONCE = 1 << 16  # pixels of a batch of frames, whose arrays stay in a cache
@@ -73,10 +73,8 @@ class Pipeline:
         `neumann`, zero slope at the edge, or `dirichlet`, zero depth at the edge.
     model : str
         Gradient model, `lut`, `quadratic` or `cubic`; "": the best model of the sensor.
-    data_width, coefficient_width : int
-        Bits of a stored word and of a coefficient.
-    gain_width : int
-        Bits of a gain of the flat field.
+    data_width, coefficient_width, gain_width : int
+        Bits of a stored word, of a coefficient, and of a gain of the flat field.
     depth_range_mm : float, optional
         Depth that the formats are sized for; by default a quarter of the shorter side.
     zero_offset : bool
@@ -108,29 +106,25 @@ class Pipeline:
         solver: Solver = SENSOR.solver,
         boundary: Boundary = SENSOR.boundary,
         model: Model | Literal[""] = "",
-        data_width: int = 24,
-        coefficient_width: int = 18,
+        data_width: int = Configuration.data_width,
+        coefficient_width: int = Configuration.coefficient_width,
         gain_width: int = Configuration.gain_width,
         depth_range_mm: float | None = None,
         zero_offset: bool = SENSOR.zero_offset,
         light_gains: bool | None = None,
         arithmetic: Arithmetic = "chip",
-        threshold_mm: float = 0.1,
-        area_threshold_mm: float = 0.3,
+        threshold_mm: float = THRESHOLD_MM,
+        area_threshold_mm: float = AREA_THRESHOLD_MM,
     ) -> None:
         if not isinstance(sensor, Sensor):
             problem = f" is a {type(sensor).__name__}"
             raise InputError(Argument("sensor"), problem, accepted="a Sensor, as load(..) returns it")
         if grid is not None and not (len(np.shape(grid)) == 1 and len(grid) == 2 and all(map(is_whole, grid))):
             raise InputError(Argument("grid", grid), accepted=("(rows, columns)", "whole numbers"))
-        widths = (
-            Argument("data_width", data_width),
-            Argument("coefficient_width", coefficient_width),
-            Argument("gain_width", gain_width),
-        )
-        for width in widths:
-            if not is_whole(width.value):
-                raise InputError(width, accepted="a whole number, of type int")
+        widths = dict(zip(WIDTHS, (data_width, coefficient_width, gain_width), strict=True))
+        for name, bits in widths.items():
+            if not is_whole(bits):
+                raise InputError(Argument(name, bits), accepted="a whole number, of type int")
         one_of(Argument("arithmetic", arithmetic), ARITHMETICS)
         one_of(Argument("boundary", boundary), BOUNDARIES)
         sensor.require_reference(reference is not None)
@@ -148,7 +142,7 @@ class Pipeline:
             model,
             kind=kind,
             **shape,
-            **dict(widths),
+            **widths,
             depth_range_px=None if depth_range_mm is None else self.sensor.depth_range_px(depth_range_mm),
             zero_offset=zero_offset,
             light_gains=light_gains,

@@ -291,7 +291,7 @@ class Device(AbstractContextManager["Device"]):
             words = read_words(line, [*COUNTERS, "STATUS"])
             counts = line.bad_packets, line.delivered, line.lost
         levels = REGISTERS["STATUS"].unpack(words.pop("STATUS"))
-        grid = status.rows, status.columns, status.data_width
+        *grid, _ = status.shape
         sent = status.resets, status.sent, status.skipped, status.bad_packets
         return DeviceStatus._make(
             (*grid, *sent, *counts, *words.values(), bool(levels["touching"]), bool(levels["busy"]))
@@ -383,7 +383,7 @@ class Device(AbstractContextManager["Device"]):
         pipeline, frame = self.pipeline, arrival.frame
         touch, release, area = (self._codes[name] for name in THRESHOLDS)
         settings = Settings(touch, release, area, minimum_area=1, debounce=1)
-        recorder = Recorder(settings, pipeline.config.data_width, pipeline.config.solver == "tridiagonal")
+        recorder = Recorder(settings, pipeline.config.depth.width, pipeline.config.solver == "tridiagonal")
         pitch_mm = span_of(frame.depth_format) * pipeline.pixel_pitch_mm
         units = pipeline.depth_lsb_mm, pitch_mm, pipeline.sensor.pixel_aspect
         counts = frame.number, arrival.time_s, arrival.lost
@@ -398,7 +398,7 @@ class Device(AbstractContextManager["Device"]):
     @property
     def _limit_mm(self) -> float:
         """Largest depth code in mm."""
-        return ((1 << self.pipeline.config.data_width - 1) - 1) * self.pipeline.depth_lsb_mm
+        return ((1 << self.pipeline.config.depth.width - 1) - 1) * self.pipeline.depth_lsb_mm
 
 
 def _thresholds_of(pipeline: Pipeline) -> dict[str, float]:

@@ -32,7 +32,7 @@ class FrameStores:
     path : str
         Buffer, such as /dev/udmabuf0.
     rows, columns : int
-    data_width : int
+    width : int
         Bits of a depth code.
 
     Attributes
@@ -50,8 +50,8 @@ class FrameStores:
         It cannot be opened or mapped, is too small, or is not a buffer for a DMA.
     """
 
-    def __init__(self, path: str, rows: int, columns: int, data_width: int) -> None:
-        self._value_bytes = value_bytes(DepthFormat.WORDS, data_width)
+    def __init__(self, path: str, rows: int, columns: int, width: int) -> None:
+        self._value_bytes = value_bytes(DepthFormat.WORDS, width)
         self.row_bytes = columns * self._value_bytes
         self.stride = -(-self.row_bytes // ALIGNED) * ALIGNED
         size = STORES * rows * self.stride

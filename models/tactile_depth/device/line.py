@@ -217,7 +217,7 @@ class Line:
 
     def _select(self) -> None:
         """Select the format of depth, and watch for resets from then on."""
-        shift = exact_shift(self.ask().data_width)  # also that after a reset
+        shift = exact_shift(self.ask().shape[2])  # also that after a reset
         if self._format == DepthFormat.WORDS:
             shift = LARGEST_SHIFT if shift != LARGEST_SHIFT else 0
         mark = self._format, shift
@@ -323,8 +323,8 @@ class Line:
     @property
     def depth_s(self) -> float:
         """Time in which the depth of a picture that was sent comes, as a rule."""
-        status = self.status
-        depth = rate(status.rows, status.columns, self._format, status.data_width).line_bytes
+        rows, columns, width, _ = self.status.shape
+        depth = rate(rows, columns, self._format, width).line_bytes
         return self._backlog_s + 1.5 * depth * self._pace.byte_s + self._pace.look_s
 
     @property

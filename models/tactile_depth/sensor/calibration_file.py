@@ -15,13 +15,13 @@ from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, 
 from tactile_depth.base.npy import is_file, read_header
 from tactile_depth.chip.limits import COEFFICIENTS, CUBIC, GRADIENT_LIMITS
 from tactile_depth.sensor.sensor import (
-    BITS_PER_CHANNEL,
     CORRECTIONS,
     FORMAT_VERSION,
     LIGHTING_BLOCKS,
     MODELS,
     PIXEL_FORMATS,
     ROUNDING,
+    TABLE_BITS,
     Camera,
     HeightError,
     Sensor,
@@ -30,7 +30,7 @@ from tactile_depth.sensor.sensor import (
 FOLDER = Path(__file__).resolve().parent / "calibrations"
 BUILT_IN = ("synthetic", "gelsight-mini")
 LARGEST_COEFFICIENT = 1e6
-LARGEST_MEMBER = 2 * (1 << BITS_PER_CHANNEL[1]) ** 3 * np.dtype(np.longdouble).itemsize + 1024  # bytes, with a header
+LARGEST_MEMBER = 2 * (1 << TABLE_BITS[1]) ** 3 * np.dtype(np.longdouble).itemsize + 1024  # bytes, with a header
 PIXEL_PITCHES_MM = (1e-6, 1e3)
 PIXEL_ASPECTS = (0.5, 2.0)
 CAMERA_SIZES = (8, 8192)  # rows, and columns
@@ -226,7 +226,7 @@ def _member(archive: zipfile.ZipFile, name: str) -> np.ndarray:
 
 
 def _gradient(path: Path, gradient: np.ndarray) -> np.ndarray:
-    low, high = BITS_PER_CHANNEL
+    low, high = TABLE_BITS
     shapes = [(1 << b, 1 << b, 1 << b, 2) for b in range(low, high + 1)]
     if gradient.shape not in shapes or gradient.dtype.kind != "f":
         raise InputError(

@@ -4,13 +4,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Literal, cast
+from typing import cast
 
-from tactile_depth.chip.configuration import Configuration
-
-Solver = Literal["tridiagonal", "spectral"]
-Boundary = Literal["neumann", "dirichlet"]
-Model = Literal["lut", "quadratic", "cubic"]
+from tactile_depth.chip.configuration import WORDS, Configuration
+from tactile_depth.chip.limits import Boundary, Model, Solver
 
 
 @dataclass(frozen=True)
@@ -41,7 +38,7 @@ class Preset:
 
 PUBLISHED = Preset(
     solver=cast(Solver, Configuration.solver),
-    boundary="neumann" if Configuration.neumann else "dirichlet",
+    boundary=Configuration().boundary,
     model=cast(Model, Configuration.gradient_model),
     calibration="synthetic",
     grid=(Configuration.columns, Configuration.columns),
@@ -51,7 +48,7 @@ PUBLISHED = Preset(
 """The pipeline of the published design: colours as they are sent, and a table of slopes."""
 SENSOR = Preset("tridiagonal", "neumann", "cubic", "gelsight-mini", (96, 128), zero_offset=True, light_gains=True)
 """A real sensor: colours relative to a reference and to its light, and the whole picture of a camera of 4:3."""
-CHIP = replace(SENSOR, words={"data_width": 15, "coefficient_width": 10, "gain_width": 16, "depth_range_mm": 2.0})
+CHIP = replace(SENSOR, words=dict(zip(WORDS, (15, 10, 16, 2.0), strict=True)))
 """A real sensor with the shortest words that add a tenth to the error of its calibration, as `make tune TOLERANCE=auto
-DEPTH_RANGE=2 TARGET=ecp5` chose them on 45 presses of a GelSight Mini."""
+TARGET=ecp5` chose for 2 mm them on 45 presses of a GelSight Mini."""
 PRESETS = {"published": PUBLISHED, "sensor": SENSOR, "chip": CHIP}

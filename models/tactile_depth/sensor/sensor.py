@@ -21,7 +21,7 @@ from tactile_depth.chip.limits import (
     CORRECTION_BITS,
     CUBIC,
     GRADIENT_MODELS,
-    SMALLEST_DEPTH_RANGE_PX,
+    SHALLOWEST_PX,
 )
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 MODELS = GRADIENT_MODELS
 FORMAT_VERSION = 3
 PIXEL_FORMATS = tuple(FORMATS)
-BITS_PER_CHANNEL = (1, 6)
+TABLE_BITS = (1, 6)
 CORRECTIONS = (*(1 << CORRECTION_BITS,) * 3, 2)  # red, green, blue; slope
 ROUNDING = 2.0**-8  # largest relative increase of a slope by rounding to a table's format
 ASPECTS_AGREE = 0.005  # largest relative difference between the aspect ratios of a picture and of the calibrated camera
@@ -282,9 +282,9 @@ class Sensor(ByValue):
 
     def depth_range_px(self, depth_range_mm: float) -> float:
         """Return a depth range in pixels of this sensor's grid; raise InputError if the formats cannot be that fine."""
-        smallest = SMALLEST_DEPTH_RANGE_PX * self.pixel_pitch_mm
+        smallest = SHALLOWEST_PX * self.pixel_pitch_mm
         if not (is_number(depth_range_mm) and smallest <= depth_range_mm < math.inf):
-            accepted = f"{smallest:.2g} mm, {SMALLEST_DEPTH_RANGE_PX:g} of a grid pixel, and more"
+            accepted = f"{smallest:.2g} mm, {SHALLOWEST_PX:g} of a grid pixel, and more"
             raise InputError(Argument("depth_range_mm", depth_range_mm), accepted=accepted)
         return depth_range_mm / self.pixel_pitch_mm
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.limits import COEFFICIENTS, CUBIC
 from tactile_depth.sensor.scenes import GAIN, LIGHTS, REST, SYNTHETIC_PIXEL_PITCH_MM
 from tactile_depth.sensor.sensor import CORRECTIONS, Sensor
@@ -12,12 +13,12 @@ from tactile_depth.sensor.sensor import CORRECTIONS, Sensor
 LARGEST_SLOPE = 0.99  # largest slope of the table, so that its gradient limit is 1
 
 
-def synthetic(bits_per_channel: int = 4) -> Sensor:
+def synthetic(bits: int = 4) -> Sensor:
     """Return the synthetic sensor: the least-squares inverse of its colour model, as a table and as polynomials.
 
     The light is uniform and the colours are linear in the slopes, so only the first term of each polynomial is not 0.
     """
-    step = 256 >> bits_per_channel
+    step = 256 >> bits
     centre = np.arange(0, 256, step) + (step - 1) / 2
     colour = np.stack(np.meshgrid(centre, centre, centre, indexing="ij"), axis=-1)
     gradient = (colour - REST) / GAIN @ np.linalg.pinv(LIGHTS).T
@@ -28,3 +29,8 @@ def synthetic(bits_per_channel: int = 4) -> Sensor:
     cubic[..., 0] = coefficients[..., 0]
     pitch = SYNTHETIC_PIXEL_PITCH_MM
     return Sensor("synthetic", within, pitch, coefficients, LARGEST_SLOPE, cubic=cubic, corrections=corrections)
+
+
+def synthetic_for(config: Configuration) -> Sensor:
+    """Return the synthetic sensor with a table of the bits of a configuration."""
+    return synthetic(config.bits_per_channel)

@@ -13,14 +13,14 @@ from tactile_depth.chip.camera.round_divide import LATENCY as ROUND_DIVIDE
 from tactile_depth.chip.camera.round_divide import round_divide
 from tactile_depth.chip.camera.row_sums import LATENCY as ROW_SUMS
 from tactile_depth.chip.camera.row_sums import red_columns, row_sums
-from tactile_depth.chip.camera_configuration import GAIN_FRACTION
+from tactile_depth.chip.camera_configuration import GAIN
 
 GAINS = 2  # cycles
 LATENCY = ROW_SUMS + BLOCK_TOTALS + GAINS + ROUND_DIVIDE
 
 FULL_SCALE = 8
 """Bits of a colour of the grid."""
-UNITY = (1 << GAIN_FRACTION,) * 3
+UNITY = (1 << GAIN.fraction,) * 3
 """Codes of gains of 1."""
 
 
@@ -59,4 +59,4 @@ def area_average(
         )
     sums = row_sums(samples, blue_columns, numerator, denominator)
     totals = block_totals(sums, blue_rows, numerator, denominator)
-    return round_divide(totals * np.array(gains, np.int64), area, bits - FULL_SCALE + GAIN_FRACTION)
+    return round_divide(totals * np.array(gains, np.int64), area, bits - FULL_SCALE + GAIN.fraction)

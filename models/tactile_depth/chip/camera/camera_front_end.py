@@ -12,11 +12,11 @@ from tactile_depth.chip.camera.black_level import black_level
 from tactile_depth.chip.camera.camera_window import LATENCY as CAMERA_WINDOW
 from tactile_depth.chip.camera.pixel_format import latency as pixel_format_latency
 from tactile_depth.chip.camera.pixel_format import pixel_format, pixel_format_parameters
-from tactile_depth.chip.camera_configuration import GAIN_WIDTH, CameraConfiguration
+from tactile_depth.chip.camera_configuration import GAIN, CameraConfiguration
 from tactile_depth.chip.common.td_axis_skid import LATENCY as AXIS_SKID
 
 SETTINGS = {"columns": 13, "rows": 13, "window_x": 13, "window_y": 13, "black_level": 12}
-SETTINGS |= dict.fromkeys(("red_gain", "green_gain", "blue_gain"), GAIN_WIDTH)
+SETTINGS |= dict.fromkeys(("red_gain", "green_gain", "blue_gain"), GAIN.width)
 """Members of `camera_settings_t` (hdl/td_types_pkg.sv) and their bits, the first on top."""
 RESETS = ("PictureColumns", "PictureRows", "WindowX", "WindowY", "BlackLevel", "RedGain", "GreenGain", "BlueGain")
 OF_RESET = dict(zip(SETTINGS, RESETS, strict=True))

@@ -48,7 +48,7 @@ def unit_gains(config: Configuration) -> np.ndarray:
     -------
     int64 array (node rows, node columns, 3)
     """
-    return np.full((*config.reference_nodes, 3), (1 << config.gain_fraction) // FLAT_CODE, np.int64)
+    return np.full((*config.reference_nodes, 3), (1 << config.gain.fraction) // FLAT_CODE, np.int64)
 
 
 def flat_field_parameters(config: Configuration, output: Format) -> dict[str, int]:
@@ -57,8 +57,8 @@ def flat_field_parameters(config: Configuration, output: Format) -> dict[str, in
         "Rows": config.rows,
         "Columns": config.columns,
         "BlockLog2": config.reference_block_log2,
-        "GainWidth": config.gain_width,
-        "Drop": config.gain_fraction - output.fraction,
+        "GainWidth": config.gain.width,
+        "Drop": config.gain.fraction - output.fraction,
         "Offset": 1 << output.fraction if output == DEVIATION else 0,
         "OutWidth": output.width,
         "Flat": FLAT_CODE if output == CODE else 0,
@@ -89,9 +89,9 @@ def captured_gains(frames: np.ndarray, config: Configuration) -> np.ndarray:
     assert count.bit_count() == 1, "a power of two of frames"
     log2 = config.reference_block_log2
     total = block_sum(frames.astype(np.int64), log2).sum(axis=0)
-    dividend = np.int64(2 * count << (config.gain_fraction + 2 * log2))
+    dividend = np.int64(2 * count << (config.gain.fraction + 2 * log2))
     quotient = (dividend // np.maximum(total, 1) + 1) >> 1
-    return np.minimum(quotient, (1 << config.gain_width) - 1)
+    return np.minimum(quotient, (1 << config.gain.width) - 1)
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class PixelGains:
 def pixel_gains(gains: np.ndarray, config: Configuration) -> PixelGains:
     """Interpolate the gains of the nodes (node rows, node columns, 3), and find the dead pixels."""
     interpolated = node_map(gains, config)
-    return PixelGains(interpolated, np.bitwise_or.reduce(interpolated, axis=-1) >> (config.gain_width - 1) != 0)
+    return PixelGains(interpolated, np.bitwise_or.reduce(interpolated, axis=-1) >> (config.gain.width - 1) != 0)
 
 
 def dark_pixels(
@@ -188,7 +188,7 @@ def _relative(
 ) -> np.ndarray:
     """Return unsigned codes of I / ref."""
     gains = _at_pixels(gains, config)
-    code = round_half_even(frames * gains.gains, config.gain_fraction - output.fraction)
+    code = round_half_even(frames * gains.gains, config.gain.fraction - output.fraction)
     dark = dark_pixels(frames, gains, config, dark_level)
     largest = (1 << output.width) - 1
     if monitor is not None:
@@ -208,8 +208,8 @@ def deviations(
     dark = dark_pixels(frames, gains, config, dark_level)
     lit = np.where(dark[..., None], 0, frames)  # saturation is not counted at dark pixels
     ratio = lit * gains.gains
-    ratio -= 1 << config.gain_fraction
-    code = round_saturate(ratio, config.gain_fraction - DEVIATION.fraction, DEVIATION.width, monitor, "flat_field")
+    ratio -= 1 << config.gain.fraction
+    code = round_saturate(ratio, config.gain.fraction - DEVIATION.fraction, DEVIATION.width, monitor, "flat_field")
     return hold_dark(code, dark, 0)
 
 

@@ -17,8 +17,8 @@ def gradient_codes(calibration: Calibration, config: Configuration) -> np.ndarra
     return np.rint(slopes / config.gradient_lsb).astype(np.int64)
 
 
-def gradient_lookup(frames: np.ndarray, codes: np.ndarray, bits_per_channel: int) -> np.ndarray:
+def gradient_lookup(frames: np.ndarray, codes: np.ndarray, bits: int) -> np.ndarray:
     """Return the slope codes of frames: uint8 (..., rows, cols, 3) RGB to int64 (..., rows, cols, 2)."""
-    top = frames.astype(np.int64) >> (8 - bits_per_channel)
-    index = (top[..., 0] << bits_per_channel | top[..., 1]) << bits_per_channel | top[..., 2]
+    top = frames.astype(np.int64) >> (8 - bits)
+    index = (top[..., 0] << bits | top[..., 1]) << bits | top[..., 2]
     return codes[index]

@@ -20,7 +20,7 @@ READ_CLOCKS = 6
 
 def largest_log2_frames(config: Configuration) -> int:
     """Return the base-2 logarithm of the most frames in a capture: the sum of a block must fit the word of a gain."""
-    return min(LARGEST_LOG2, config.gain_width - PIXEL_WIDTH - 2 * config.reference_block_log2)
+    return min(LARGEST_LOG2, config.gain.width - PIXEL_WIDTH - 2 * config.reference_block_log2)
 
 
 def reference_capture_parameters(config: Configuration) -> dict[str, int]:
@@ -29,8 +29,8 @@ def reference_capture_parameters(config: Configuration) -> dict[str, int]:
         "Rows": config.rows,
         "Columns": config.columns,
         "BlockLog2": config.reference_block_log2,
-        "Width": config.gain_width,
-        "GainFraction": config.gain_fraction,
+        "Width": config.gain.width,
+        "GainFraction": config.gain.fraction,
         "MaxLog2": largest_log2_frames(config),
     }
 
@@ -38,7 +38,7 @@ def reference_capture_parameters(config: Configuration) -> dict[str, int]:
 def reference_capture_clocks(config: Configuration) -> int:
     """Return the cycles from the cycle that takes the last pixel of the last frame to `done`."""
     rows, columns = config.reference_nodes
-    a_gain = td_divide.cycles(config.gain_width + 1) + 1  # with one bit to round by; and a cycle to take it
+    a_gain = td_divide.cycles(config.gain.width + 1) + 1  # with one bit to round by; and a cycle to take it
     return rows * columns * (READ_CLOCKS + 3 * a_gain) + 2
 
 

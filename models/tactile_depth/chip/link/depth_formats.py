@@ -39,9 +39,9 @@ FORMATS: Final = {name: depth_format for depth_format, name in NAMES.items()}
 AVERAGED_PIXELS: Final = 2  # rows, and columns, of the grid whose mean a value of the averaged format is
 
 
-def value_bytes(depth_format: DepthFormat, data_width: int) -> int:
-    """Return the bytes of a value; `data_width` is the bits of a depth code."""
-    return -(-data_width // 8) if depth_format == DepthFormat.WORDS else SHORT_BITS // 8
+def value_bytes(depth_format: DepthFormat, width: int) -> int:
+    """Return the bytes of a value; `width` is the bits of a depth code."""
+    return -(-width // 8) if depth_format == DepthFormat.WORDS else SHORT_BITS // 8
 
 
 def sent_shape(depth_format: DepthFormat, rows: int, columns: int) -> tuple[int, int]:
@@ -55,12 +55,12 @@ def span_of(depth_format: DepthFormat) -> int:
     return AVERAGED_PIXELS if depth_format == DepthFormat.AVERAGED else 1
 
 
-def exact_shift(data_width: int) -> int:
+def exact_shift(width: int) -> int:
     """Return the least shift with which 16 bits have the range of a depth code: its bits beyond 16."""
-    return max(data_width - SHORT_BITS, 0)
+    return max(width - SHORT_BITS, 0)
 
 
-def to_bytes(codes: npt.NDArray[np.int32], depth_format: DepthFormat, data_width: int, shift: int) -> bytes:
+def to_bytes(codes: npt.NDArray[np.int32], depth_format: DepthFormat, width: int, shift: int) -> bytes:
     """Return the values that a device sends of a frame, one after another, little-endian.
 
     The 16-bit formats round half to even, once, and clip.
@@ -68,14 +68,14 @@ def to_bytes(codes: npt.NDArray[np.int32], depth_format: DepthFormat, data_width
     Parameters
     ----------
     codes : int32 array (rows, columns)
-        Depth codes of `data_width` bits, in the order in which rows leave.
+        Depth codes of `width` bits, in the order in which rows leave.
     depth_format : DepthFormat
-    data_width : int
+    width : int
     shift : int
         Bits that the 16-bit formats drop.
     """
     if depth_format == DepthFormat.WORDS:
-        count = value_bytes(depth_format, data_width)
+        count = value_bytes(depth_format, width)
         return np.ascontiguousarray(codes, "<i4").view(np.uint8).reshape(-1, 4)[:, :count].tobytes()
     wide = codes.astype(np.int64)
     if depth_format == DepthFormat.AVERAGED:

@@ -98,7 +98,7 @@ class DepthFrames:
         if self.status is None:
             self._done, self._last_resets = done, status.resets
             self._restart(DepthFormat.NONE)
-        elif _grid(self.status) != _grid(status):
+        elif self.status.shape != status.shape:
             self._restart(DepthFormat.NONE)
         self.status = status
         self._count_resets(status.resets)
@@ -110,7 +110,7 @@ class DepthFrames:
         if self._format == DepthFormat.NONE:
             self._restart(packet.depth_format)
         columns = sent_shape(packet.depth_format, self.status.rows, self.status.columns)[1]
-        size = value_bytes(packet.depth_format, self.status.data_width)
+        size = value_bytes(packet.depth_format, self.status.shape[2])
         first = (packet.row * columns + packet.column) * size
         if (
             packet.depth_format == self._format
@@ -178,7 +178,3 @@ class DepthFrames:
         more = (resets - self._last_resets) % RESETS
         self.resets += more if more < RESETS // 2 else 0
         self._last_resets = resets
-
-
-def _grid(status: Status) -> tuple[int, int, int, bool]:
-    return status.rows, status.columns, status.data_width, status.bottom_first

@@ -189,6 +189,11 @@ class Status:
     skipped: int
     bad_packets: int
 
+    @property
+    def shape(self) -> tuple[int, int, int, bool]:
+        """Rows, columns, bits of a depth code, and True where the bottom row leaves first."""
+        return self.rows, self.columns, self.data_width, self.bottom_first
+
     def pack(self) -> bytes:
         """Return kind and fields."""
         flags = BOTTOM_FIRST * self.bottom_first | SENDING * self.sending

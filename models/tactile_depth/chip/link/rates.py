@@ -34,13 +34,13 @@ class Rate(NamedTuple):
         return self.value_bytes / self.line_bytes
 
 
-def rate(rows: int, columns: int, depth_format: DepthFormat, data_width: int = 24, baud: int = 3_000_000) -> Rate:
+def rate(rows: int, columns: int, depth_format: DepthFormat, width: int = 24, baud: int = 3_000_000) -> Rate:
     """Return the rate at which depth frames of a grid fill a serial line of `baud` bits a second.
 
     Without replies and records; those take at most `most_on_line` of their bytes each.
     """
     sent_rows, sent_columns = sent_shape(depth_format, rows, columns)
-    count, size = sent_rows * sent_columns, value_bytes(depth_format, data_width)
+    count, size = sent_rows * sent_columns, value_bytes(depth_format, width)
     header, trailer = DEPTH_HEADER.size, TRAILER.size
     packets, rest = divmod(count, VALUES_A_PACKET)
     line = packets * most_on_line(header + VALUES_A_PACKET * size) + most_on_line(trailer)

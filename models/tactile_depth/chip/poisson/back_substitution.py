@@ -25,7 +25,7 @@ def back_substitution(
     -------
     int64 array of the same shape and order, codes of `config.elimination`
     """
-    rows, width, drop = d.shape[-2], config.arithmetic_width, config.coefficient_width - 1
+    rows, width, drop = d.shape[-2], config.arithmetic_width, config.coefficient.fraction
     coefficients = thomas_table(config).rows(rows - 1)[::-1]
     lift = config.elimination.fraction - config.elimination_store.fraction
     exact = np.moveaxis(d, -2, 0) * 2 ** (lift + drop)

@@ -86,13 +86,13 @@ def _fft(
 
 
 @cache
-def _graph(size: int, inverse: bool, coefficient_width: int) -> Graph:
+def _graph(size: int, inverse: bool, factor_width: int) -> Graph:
     """Return the stages of an FFT, int64 (stages, 5): the fields of `Stage`, first factor; and all factors (.., 2)."""
     table, factors = [], [np.zeros((0, 2), np.int64)]
     for stage in stages(size, inverse):
         table.append((stage.block, stage.delay, stage.rotate, stage.halve, sum(map(len, factors))))
         if not stage.delay:
-            factors.append(twiddle_factors(stage.block, inverse, coefficient_width))
+            factors.append(twiddle_factors(stage.block, inverse, factor_width))
     return read_only(np.array(table, np.int64)), read_only(np.concatenate(factors))
 
 
@@ -258,9 +258,9 @@ def dst_forward(
     x: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_forward"
 ) -> np.ndarray:
     """Model poisson/transform/dst_forward.py."""
-    size, drop = x.shape[-1], formats.coefficient_drop
-    graph = _graph(size, False, formats.coefficient_width)
-    phase, nodes = phase_factors(size, False, formats.coefficient_width), _nodes(node, "input", "phase", graph)
+    size, drop = x.shape[-1], formats.factor_drop
+    graph = _graph(size, False, formats.factor_width)
+    phase, nodes = phase_factors(size, False, formats.factor_width), _nodes(node, "input", "phase", graph)
     y, counts = np.empty(x.shape, np.int64), np.zeros((len(nodes), 2), np.int64)
     last, widths = drop + formats.output_drop, (formats.width, drop, formats.output_width)
     _forward(_bursts(x), formats.alternate, formats.input_drop, graph, phase, last, widths, y.reshape(-1, size), counts)
@@ -272,9 +272,9 @@ def dst_inverse(
     modes: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_inverse"
 ) -> np.ndarray:
     """Model poisson/transform/dst_inverse.py."""
-    size, drop = modes.shape[-1], formats.coefficient_drop
-    graph = _graph(size, True, formats.coefficient_width)
-    phase = phase_factors(size, True, formats.coefficient_width), mirror(size)
+    size, drop = modes.shape[-1], formats.factor_drop
+    graph = _graph(size, True, formats.factor_width)
+    phase = phase_factors(size, True, formats.factor_width), mirror(size)
     nodes = _nodes(node, "phase", "output", graph)
     y, counts = np.empty(modes.shape, np.int64), np.zeros((len(nodes), 2), np.int64)
     first, widths = drop + formats.input_drop, (formats.width, drop, formats.output_width)
@@ -292,7 +292,7 @@ def forward_elimination(
     frames = np.ascontiguousarray(f).reshape(-1, *f.shape[-2:])
     d = np.empty_like(frames)
     coefficients = coefficient_rows(config, f.shape[-2])
-    counts = _eliminate(frames, coefficients, config.coefficient_width - 1, config.arithmetic_width, d)
+    counts = _eliminate(frames, coefficients, config.coefficient.fraction, config.arithmetic_width, d)
     if monitor is not None:
         monitor.clipped(node + ".difference", counts[0])
         monitor.clipped(node + ".state", counts[1])
@@ -307,7 +307,7 @@ def back_substitution(
     z = np.empty_like(frames)
     coefficients = np.ascontiguousarray(thomas_table(config).rows(d.shape[-2] - 1)[::-1])
     lift = config.elimination.fraction - config.elimination_store.fraction
-    count = _substitute(frames, coefficients, lift, config.coefficient_width - 1, config.arithmetic_width, z)
+    count = _substitute(frames, coefficients, lift, config.coefficient.fraction, config.arithmetic_width, z)
     if monitor is not None:
         monitor.clipped(node, count)
     return z.reshape(d.shape)

@@ -14,7 +14,7 @@ LATENCY = 9
 
 def mean_reciprocal(config: Configuration) -> tuple[int, int]:
     """Return mantissa and drop of 1 / rows = mantissa * 2**-drop; the mantissa has coefficient_width signed bits."""
-    drop = config.coefficient_width - 2 + (config.rows - 1).bit_length()
+    drop = config.coefficient.width - 2 + (config.rows - 1).bit_length()
     return round(2**drop / config.rows), drop
 
 
@@ -28,7 +28,7 @@ def forward_elimination(
     Under Neumann the constant of the singular mode (position 0) is chosen so that its column has zero mean. A last row
     of 0 would give the mean sum over i of (i + 1) d[i] / rows; the last row is minus this mean.
     """
-    rows, width, drop = f.shape[-2], config.arithmetic_width, config.coefficient_width - 1
+    rows, width, drop = f.shape[-2], config.arithmetic_width, config.coefficient.fraction
     coefficients = coefficient_rows(config, rows)
     difference, divided = node + ".difference", node + ".state"
     f_rows = np.ascontiguousarray(np.moveaxis(f, -2, 0))
@@ -58,7 +58,7 @@ def stored(d: np.ndarray, config: Configuration, monitor: Monitor | None, node: 
     return round_saturate(
         d,
         config.elimination.fraction - config.elimination_store.fraction,
-        config.data_width,
+        config.elimination_store.width,
         monitor,
         node + ".store",
     )

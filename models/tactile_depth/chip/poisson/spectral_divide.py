@@ -42,10 +42,10 @@ def reciprocals(config: Configuration) -> Reciprocals:
     factor = ~singular / np.where(singular, 1, total) / config.transform_gain / config.depth_limit_px
     scaled = factor * 2.0 ** (config.column_inverse.fraction - config.column_forward.fraction)
     fraction, exponent = np.frexp(scaled)
-    mantissa = np.rint(fraction * 2 ** (config.coefficient_width - 1)).astype(np.int64)
-    lowest = min(int(exponent[~singular].min()), config.coefficient_width - 2)  # at least one bit is dropped
+    mantissa = np.rint(fraction * 2 ** (config.coefficient.fraction)).astype(np.int64)
+    lowest = min(int(exponent[~singular].min()), config.coefficient.width - 2)  # at least one bit is dropped
     shift = np.where(singular, 0, exponent.astype(np.int64) - lowest)
-    return Reciprocals(mantissa, shift, config.coefficient_width - 1 - lowest, max(1, int(shift.max()).bit_length()))
+    return Reciprocals(mantissa, shift, config.coefficient.fraction - lowest, max(1, int(shift.max()).bit_length()))
 
 
 def spectral_divide(
@@ -64,5 +64,5 @@ def reciprocal_rom(config: Configuration) -> np.ndarray:
     """Return the ROM words {shift, mantissa} of the lower triangle, (p, t <= p) at p (p + 1) / 2 + t, int64."""
     table = reciprocals(config)
     lower = np.tril_indices(config.columns)
-    mask = (1 << config.coefficient_width) - 1
-    return table.shift[lower] << config.coefficient_width | table.mantissa[lower] & mask
+    mask = (1 << config.coefficient.width) - 1
+    return table.shift[lower] << config.coefficient.width | table.mantissa[lower] & mask

@@ -22,9 +22,7 @@ def solver_parameters(config: Configuration) -> dict[str, int]:
     """Parameters of hdl/poisson/spectral_solver.sv."""
     table = reciprocals(config)
     return {
-        **config.transform_parameters(),
-        "InWidth": config.divergence.width,
-        "DataWidth": config.data_width,
+        **config.solver_parameters(),
         "RowForwardOut": config.row_forward.fraction - config.row_modes.fraction,
         "ColumnForwardIn": config.row_modes.fraction - config.column_forward.fraction,
         "ColumnInverseOut": config.column_inverse.fraction - config.depth_modes.fraction,

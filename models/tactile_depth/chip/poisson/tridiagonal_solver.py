@@ -26,10 +26,8 @@ def solver_parameters(config: Configuration) -> dict[str, int]:
     table = thomas_table(config)
     reciprocal, mean_drop = mean_reciprocal(config)
     return {
-        **config.transform_parameters(),
+        **config.solver_parameters(),
         "Rows": config.rows,
-        "InWidth": config.divergence.width,
-        "DataWidth": config.data_width,
         "Neumann": int(config.neumann),
         "RowForwardOut": row_forward_drop(config),
         "StoreDrop": config.elimination.fraction - config.elimination_store.fraction,

@@ -25,7 +25,7 @@ def wide_elimination(
     -------
     int64 array of the same shape, codes of `config.elimination_store`: e, and d in the last row
     """
-    rows, width, drop = f.shape[-2], config.arithmetic_width, config.coefficient_width - 1
+    rows, width, drop = f.shape[-2], config.arithmetic_width, config.coefficient.fraction
     coefficients = coefficient_rows(config, rows)
     difference, divided = node + ".difference", node + ".state"
     f_rows = np.ascontiguousarray(np.moveaxis(f, -2, 0))
@@ -44,9 +44,9 @@ def ahead(d: np.ndarray, config: Configuration, monitor: Monitor | None, node: s
     drop = config.elimination.fraction - config.elimination_store.fraction
     e = np.empty_like(d)
     inner = coefficient_rows(config, d.shape[-2])[:-1]
-    one = 2 ** (config.coefficient_width - 1)
+    one = 2 ** (config.coefficient.fraction)
     exact = d[..., :-1, :] * one - inner * d[..., 1:, :]
-    shift = config.coefficient_width - 1 + drop
-    e[..., :-1, :] = round_saturate(exact, shift, config.data_width, monitor, node + ".ahead")
-    e[..., -1, :] = round_saturate(d[..., -1, :], drop, config.data_width, monitor, node + ".store")
+    shift = config.coefficient.fraction + drop
+    e[..., :-1, :] = round_saturate(exact, shift, config.elimination_store.width, monitor, node + ".ahead")
+    e[..., -1, :] = round_saturate(d[..., -1, :], drop, config.elimination_store.width, monitor, node + ".store")
     return e

@@ -25,7 +25,7 @@ def wide_substitution(
     -------
     int64 array of the same shape and order, codes of `config.elimination`
     """
-    width, drop = config.arithmetic_width, config.coefficient_width - 1
+    width, drop = config.arithmetic_width, config.coefficient.fraction
     coefficients = ahead_rows(config)[::-1]
     lift = config.elimination.fraction - config.elimination_store.fraction
     exact = np.moveaxis(e, -2, 0) * 2 ** (lift + drop)

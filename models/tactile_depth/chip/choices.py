@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Declaration of a choice of a configuration: how users name it, and what it accepts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+
+@dataclass(frozen=True, kw_only=True)
+class Choice:
+    """Names of a choice, which stand with its field of `Configuration` and nowhere else.
+
+    Attributes
+    ----------
+    argument : str
+        Argument of `td.Pipeline`; by default the field.
+    variable : str
+        Variable of make; by default the argument in capitals.
+    option : str
+        Option of the command line, with {} for the value; by default the argument with dashes.
+    """
+
+    argument: str = ""
+    variable: str = ""
+    option: str = ""
+
+    def of(self, field: str) -> Self:
+        """Return the choice of a field with all its names."""
+        argument = self.argument or field
+        option = self.option or f"--{argument.replace('_', '-')} {{}}"
+        return replace(self, argument=argument, variable=self.variable or argument.upper(), option=option)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Width(Choice):
+    """Bits of a word, from the least to the most that are accepted.
+
+    Attributes
+    ----------
+    word : str
+        Word of so many bits.
+    colours : bool
+        It has an effect with a flat field alone.
+    """
+
+    word: str
+    accepted: tuple[int, int]
+    colours: bool = False
