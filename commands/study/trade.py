@@ -46,7 +46,6 @@ from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import WIDTHS, Configuration
 from tactile_depth.chip.contact import threshold_comparator
-from tactile_depth.chip.contact.contact_events import Settings
 from tactile_depth.chip.latency import last_pixel_to_first_depth
 from tactile_depth.chip.limits import most_lanes
 from tactile_depth.chip.poisson.cores import fastest
@@ -269,13 +268,10 @@ def _measured(
     sensor, pixels = data.sensor, data.frames.pixels
     twin = Twin(sensor, config, untouched(request, data.frames), fastest())
     every = twin.codes(pixels, monitor)
-    bottom_first = config.solver == "tridiagonal"
     pitch = sensor.pixel_pitch_mm
     lsb = config.depth_lsb_px * pitch
     threshold, area = (round(depth / lsb) for depth in (THRESHOLD_MM, AREA_THRESHOLD_MM))
-    recorder = Recorder(
-        Settings(threshold, threshold, area, minimum_area=1, debounce=1), config.depth.width, bottom_first
-    )
+    recorder = Recorder.of(config, threshold, threshold, area)
     values: list[tuple[Measured, bool, float]] = []
     for number, press in data.presses.items():
         codes = every[number]

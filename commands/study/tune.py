@@ -130,40 +130,33 @@ def lanes_within(
 
 def config_file(request: run_request.Request, at: Widths) -> dict[str, str | int | float]:
     """Return the variables of make sim that choose this configuration."""
-    square = request.rows == request.columns
-    chosen: dict[str, str | int | float] = {
+    square, press = request.rows == request.columns, request.press
+    rows, columns = request.camera_size or (0, 0)
+    chosen = {
         "PRESET": request.preset,
         "SOLVER": at.solver,
         "BOUNDARY": request.boundary,
-        **({"LANES": at.lanes} if at.lanes > 1 else {}),
+        "LANES": at.lanes if at.lanes > 1 else None,
         **({"N": request.columns} if square else {"ROWS": request.rows, "COLS": request.columns}),
         **{run_request.WIDTH_VARIABLES[name]: bits for name, bits in at.words.items()},
         "FRAMES": _absolute(request.frames),
         "SEED": request.seed,
+        "REFERENCE": _absolute(request.reference),
+        "ZERO": _absolute(request.zero),
+        "LIGHT_GAINS": None if request.light_gains is None else int(request.light_gains),
+        "PRESS": press.depth_mm,
+        **({} if press == AS_EVER else {"AT": ",".join(f"{shift:g}" for shift in press.at_mm), "NOISE": press.noise}),
+        DEEPEST: request.deepest_mm,
+        "CALIBRATION": _absolute(request.calibration),
+        "CAMERA_SIZE": f"{columns}x{rows}" if rows else None,
+        "GRADIENT": request.gradient or None,
     }
-    named = {"REFERENCE": request.reference, "ZERO": request.zero}
-    chosen |= {name: _absolute(value) for name, value in named.items() if value}
-    if request.light_gains is not None:
-        chosen["LIGHT_GAINS"] = int(request.light_gains)
-    press = request.press
-    if press.depth_mm is not None:
-        chosen["PRESS"] = press.depth_mm
-    if press != AS_EVER:
-        chosen |= {"AT": ",".join(f"{shift:g}" for shift in press.at_mm), "NOISE": press.noise}
-    if request.deepest_mm is not None:
-        chosen[DEEPEST] = request.deepest_mm
-    chosen["CALIBRATION"] = _absolute(request.calibration)
-    if request.camera_size is not None:
-        rows, columns = request.camera_size
-        chosen["CAMERA_SIZE"] = f"{columns}x{rows}"
-    if request.gradient:
-        chosen["GRADIENT"] = request.gradient
-    return chosen
+    return {name: value for name, value in chosen.items() if value is not None}
 
 
-def _absolute(source: str) -> str:
+def _absolute(source: str | None) -> str | None:
     """Return the path of a file or a folder from the root; the name of a scene or of a calibration as it is."""
-    return str(Path(source).resolve()) if Path(source).exists() else source
+    return str(Path(source).resolve()) if source and Path(source).exists() else source
 
 
 def compared(counted: Cost, base: Cost | None, limits: Limits) -> str:

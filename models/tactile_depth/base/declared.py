@@ -3,14 +3,11 @@
 
 from collections.abc import Mapping
 from functools import cache
-from typing import TypeVar, get_type_hints
-
-Extra = TypeVar("Extra")
+from typing import Any, get_type_hints
 
 
 @cache
-def declared(kind: type, of: type[Extra]) -> Mapping[str, Extra]:
+def declared(kind: type, of: type) -> Mapping[str, Any]:
     """Return the extras of the class `of` that a dataclass declares, by field, in their order."""
-    hints = get_type_hints(kind, include_extras=True)
-    stated = {name: getattr(hint, "__metadata__", ()) for name, hint in hints.items()}
-    return {name: each for name, extras in stated.items() for each in extras if isinstance(each, of)}
+    hints = get_type_hints(kind, include_extras=True).items()
+    return {name: each for name, hint in hints for each in getattr(hint, "__metadata__", ()) if isinstance(each, of)}

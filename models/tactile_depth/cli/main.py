@@ -19,6 +19,7 @@ from typing import NoReturn
 from tactile_depth.base import interruption
 from tactile_depth.base.errors import Argument, InputError, InputWarning
 from tactile_depth.base.files import cause
+from tactile_depth.chip.choices import Choice
 from tactile_depth.chip.configuration import CHOICES
 from tactile_depth.cli import calibrate, depth, live
 from tactile_depth.cli.failure import Failure
@@ -29,23 +30,15 @@ BAD_INPUT, FAILED = 2, 3
 DESCRIPTION = "Depth in millimetres from visuotactile fingertips, bit for bit as the hardware computes it."
 
 # Arguments of the package, and the options that a user of the command gave; {} is the value.
-OPTIONS = {choice.argument: choice.option for choice in CHOICES.values()} | {
-    "address": "device:{}",
-    "arithmetic": "--arithmetic {}",
-    "background": "--background {}",
-    "bits": "--bits {}",
-    "calibration": "--calibration {}",
-    "camera_size": "--camera-size {}",
-    "diameter_mm": "--diameter-mm {}",
-    "exposure_us": "--exposure-us {}",
-    "folder": "--out {}",
-    "grid": "--grid {}",
-    "pitch_mm": "--pitch-mm {}",
-    "reference": "--reference {}",
-    "threshold_mm": "--threshold-mm {}",
-    "area_threshold_mm": "--area-threshold-mm {}",
-    "depth_format": "--depth-format {}",
-}
+SAME = (
+    *("arithmetic", "background", "bits", "calibration", "camera_size", "diameter_mm", "exposure_us", "grid"),
+    *("pitch_mm", "reference", "threshold_mm", "area_threshold_mm", "depth_format"),
+)
+OPTIONS = (
+    {choice.argument: choice.option for choice in CHOICES.values()}
+    | {name: Choice().of(name).option for name in SAME}
+    | {"address": "device:{}", "folder": "--out {}"}
+)
 
 
 def named(argument: Argument) -> str:

@@ -14,7 +14,6 @@ import numpy as np
 from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import WIDTHS, Configuration, ExactConfiguration, is_grid_of_hardware
-from tactile_depth.chip.contact.contact_events import Settings
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.depth.zero_offset import exact_zero, no_zero
 from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gains, require_light
@@ -155,8 +154,7 @@ class Pipeline:
             raise InputError(Argument("area_threshold_mm", area_threshold_mm), accepted="a depth, 0 or more")
         self._threshold_mm, self._area_threshold_mm = threshold_mm, area_threshold_mm
         threshold, area = (round(depth / self.depth_lsb_mm) for depth in (threshold_mm, area_threshold_mm))
-        settings = Settings(threshold, threshold, area, minimum_area=1, debounce=1)
-        self._recorder = Recorder(settings, data_width, self.config.solver == "tridiagonal")
+        self._recorder = Recorder.of(self.config, threshold, threshold, area)
         self._zero = no_zero(self.config)
         self._exact_zero = np.zeros(self.grid)
         self._use_reference(rest)

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tactile_depth.base.by_value import ByValue
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.centroid import FRACTION
 from tactile_depth.chip.contact.contact_debounce import TOUCHING
 from tactile_depth.chip.contact.contact_events import ContactEvents, Record, Settings
@@ -140,6 +141,12 @@ class Recorder:
     settings: Settings
     width: int
     bottom_first: bool
+
+    @classmethod
+    def of(cls, config: Configuration, touch: int, release: int, area: int) -> Recorder:
+        """Return the recorder of a configuration at these depth codes of its thresholds."""
+        settings = Settings(touch, release, area, minimum_area=1, debounce=1)
+        return cls(settings, config.depth.width, config.solver == "tridiagonal")
 
     def events(self, grid: tuple[int, int]) -> ContactEvents:
         """Return the state before the first picture of a stream."""

@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
 from tactile_depth.base.npy import is_array
-from tactile_depth.chip.contact.contact_events import Settings
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gains, require_light
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
@@ -381,9 +380,7 @@ class Device(AbstractContextManager["Device"]):
 
     def _frame(self, arrival: Arrival, picture: int | None) -> DeviceFrame:
         pipeline, frame = self.pipeline, arrival.frame
-        touch, release, area = (self._codes[name] for name in THRESHOLDS)
-        settings = Settings(touch, release, area, minimum_area=1, debounce=1)
-        recorder = Recorder(settings, pipeline.config.depth.width, pipeline.config.solver == "tridiagonal")
+        recorder = Recorder.of(pipeline.config, *(self._codes[name] for name in THRESHOLDS))
         pitch_mm = span_of(frame.depth_format) * pipeline.pixel_pitch_mm
         units = pipeline.depth_lsb_mm, pitch_mm, pipeline.sensor.pixel_aspect
         counts = frame.number, arrival.time_s, arrival.lost
