@@ -11,11 +11,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from commands.common.repository import ROOT
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.bounds import bounds
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import Configuration, Format
+from tactile_depth.chip.configuration import DEFAULT_WIDTHS, WIDTHS, WORDS, Configuration, Format
 from tactile_depth.chip.limits import DEPTH_HEADROOM
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.poisson.spectral_solver import spectral_solver
@@ -268,3 +269,26 @@ def test_the_width_that_an_error_asks_for_is_accepted() -> None:
         Configuration(columns=32, data_width=12, depth_range_px=200.0)
     wanted = int(re.search(r"try data_width=(\d+)", str(caught.value))[1])  # type: ignore[index]
     assert Configuration(columns=32, data_width=wanted, depth_range_px=200.0).data_width == wanted
+
+
+# Declarations.
+
+
+@pytest.mark.parametrize("argument", WORDS)
+def test_few_files_name_a_word_length(argument: str) -> None:
+    """A word length is declared once. What is about all of them loops over the declaration."""
+    names = {argument.removesuffix("_mm"), WORDS[argument].lower()}
+    spelled = re.compile("|".join(name.replace("_", "_?") for name in names), re.IGNORECASE)
+    paths = [path for folder in ("models", "commands") for path in (ROOT / folder).rglob("*.py")]
+    assert 1 < sum(bool(spelled.search(path.read_text())) for path in paths) <= 12
+
+
+@pytest.mark.parametrize("name", WIDTHS)
+def test_pages_state_the_default_and_the_range_of_a_width(name: str) -> None:
+    width, default = WIDTHS[name], str(DEFAULT_WIDTHS[name])
+    low, high = width.accepted
+    (line,) = [line for line in (ROOT / "docs/make-sim.md").read_text().splitlines() if f"`{width.variable}`" in line]
+    assert re.search(rf"{width.word}[^,|]*\({low} to {high}\)", line)
+    assert default in line.split("|")[2]
+    option = width.option.split()[0]
+    assert re.search(rf"`{option}`.*\b{default}\b", (ROOT / "docs/cli.md").read_text())
