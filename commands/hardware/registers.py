@@ -9,6 +9,7 @@ access layer of peakrdl-python go to build/: they have thousands of lines.
 """
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap as wrapped
@@ -28,6 +29,7 @@ from commands.common.tabular import records
 from tactile_depth.base import files
 from tactile_depth.chip.camera.pixel_format import chroma_codes
 from tactile_depth.chip.camera_configuration import FORMATS
+from tactile_depth.chip.registers.register_map import Field, Register
 
 FUSESOC = ROOT / "tactile_depth.core"
 VENDOR = "tactile-depth"  # of the IP-XACT components
@@ -111,31 +113,31 @@ def is_setting(field: FieldNode) -> bool:
     return access(field) == "rw" and not field.is_hw_writable
 
 
-def field_of(node: FieldNode) -> dict[str, Any]:
-    """Return a field as the JSON states it."""
+def field_of(node: FieldNode) -> Field:
+    """Return a field of a register."""
     encode = node.get_property("encode")
-    return {
-        "name": node.inst_name,
-        "low": node.low,
-        "high": node.high,
-        "access": access(node),
-        "reset": node.get_property("reset"),
-        "signed": node.get_property("is_signed", default=False),
-        "setting": is_setting(node),
-        "values": {member.name: member.value for member in encode} if encode else {},
-        "description": node.get_property("name"),
-    }
+    return Field(
+        node.inst_name,
+        node.low,
+        node.high,
+        access(node),
+        node.get_property("reset"),
+        node.get_property("is_signed", default=False),
+        is_setting(node),
+        {member.name: member.value for member in encode} if encode else {},
+    )
 
 
-def register_of(node: RegNode) -> dict[str, Any]:
-    """Return a register as the JSON states it."""
-    return {
-        "name": node.inst_name,
-        "offset": node.absolute_address,
-        "description": node.get_property("name"),
-        "made_elsewhere": node.get_property("made_elsewhere", default=False),
-        "fields": [field_of(field) for field in node.fields()],
-    }
+def register_of(node: RegNode) -> Register:
+    """Return a register."""
+    return Register(node.inst_name, node.absolute_address, tuple(map(field_of, node.fields())))
+
+
+def stated(each: Register | Field) -> dict[str, Any]:
+    """Return a register or a field as the JSON states it, without what has its default."""
+    default = vars(Field("", 0, 0, ""))
+    values = {name: [*map(stated, value)] if name == "fields" else value for name, value in vars(each).items()}
+    return {name: value for name, value in values.items() if name in ("low", "high") or value != default.get(name)}
 
 
 def camel(name: str) -> str:
@@ -143,29 +145,29 @@ def camel(name: str) -> str:
     return "".join(word.capitalize() for word in name.split("_"))
 
 
-def package(of: Map, registers: list[dict[str, Any]]) -> str:
-    """Return the text of the SystemVerilog package of a map."""
+def package(of: Map, registers: list[Register], elsewhere: Collection[str]) -> str:
+    """Return the text of the SystemVerilog package of a map; bits of registers made `elsewhere` have no names."""
     prefix = camel(of.prefix)
     offsets, resets, bits, values = [], [], [], []
     for register in registers:
-        name = camel(register["name"])
-        offsets.append(f"localparam int {name}Offset = 32'h{register['offset']:03x};")
-        reset = sum((field["reset"] or 0) << field["low"] for field in register["fields"])
+        name = camel(register.name)
+        offsets.append(f"localparam int {name}Offset = 32'h{register.offset:03x};")
+        reset = sum((field.reset or 0) << field.low for field in register.fields)
         if reset:
             resets.append(f"localparam int {name}Reset = 32'h{reset:08x};")
-        for field in () if register["made_elsewhere"] else register["fields"]:
-            if field["name"] == "value":  # the register is this number
+        for field in () if register.name in elsewhere else register.fields:
+            if field.name == "value":  # the register is this number
                 continue
-            single = field["low"] == field["high"]
-            bits.append(f"localparam int {name}{camel(field['name'])}{'Bit' if single else 'Lsb'} = {field['low']};")
-            if field["values"] and not single:
-                bits.append(f"localparam int {name}{camel(field['name'])}Width = {field['high'] - field['low'] + 1};")
-                values.append(f"localparam int {name}{camel(field['name'])}Count = {len(field['values'])};")
-            for value, code in field["values"].items():
+            single = field.low == field.high
+            bits.append(f"localparam int {name}{camel(field.name)}{'Bit' if single else 'Lsb'} = {field.low};")
+            if field.values and not single:
+                bits.append(f"localparam int {name}{camel(field.name)}Width = {field.width};")
+                values.append(f"localparam int {name}{camel(field.name)}Count = {len(field.values)};")
+            for value, code in field.values.items():
                 values.append(f"localparam int {name}{camel(value)} = {code};")
-    settings = [register for register in registers if any(field["setting"] for field in register["fields"])]
-    writable = [register for register in registers if any(field["access"] != "ro" for field in register["fields"])]
-    words = sum(register["name"].startswith("RECORD_") for register in registers)
+    settings = [register for register in registers if any(field.setting for field in register.fields)]
+    writable = [register for register in registers if register.writable]
+    words = sum(register.name.startswith("RECORD_") for register in registers)
     sections = {
         "Byte offsets.": [f"localparam int {prefix}AddressWidth = {address_width(registers)};", *offsets],
         "Words of a record of contact.": [f"localparam int RecordWords = {words};"] if words else [],
@@ -206,18 +208,18 @@ def package(of: Map, registers: list[dict[str, Any]]) -> str:
     )
 
 
-def settings_of(prefix: str, registers: list[dict[str, Any]]) -> list[str]:
+def settings_of(prefix: str, registers: list[Register]) -> list[str]:
     """Return the declarations of number, offset, bits and reset value of each register with settings."""
     words: dict[str, list[str]] = {"Offsets": [], "Masks": [], "Resets": []}
     for register in registers:
-        fields = [field for field in register["fields"] if field["setting"]]
-        mask = sum((1 << field["high"] + 1) - (1 << field["low"]) for field in fields)
-        reset = sum((field["reset"] or 0) << field["low"] for field in fields)
-        words["Offsets"].append(f"{camel(register['name'])}Offset")
+        fields = [field for field in register.fields if field.setting]
+        mask = sum(field.mask for field in fields)
+        reset = sum((field.reset or 0) << field.low for field in fields)
+        words["Offsets"].append(f"{camel(register.name)}Offset")
         words["Masks"].append(f"32'h{mask:08x}")
         words["Resets"].append(f"32'h{reset:08x}")
     lines = [f"localparam int {prefix}Settings = {len(registers)};"]
-    lines += [f"localparam int {camel(register['name'])}Setting = {n};" for n, register in enumerate(registers)]
+    lines += [f"localparam int {camel(register.name)}Setting = {n};" for n, register in enumerate(registers)]
     for name, values in words.items():
         listed = ", ".join(reversed(values))
         lines.append(f"localparam logic [32*{prefix}Settings-1:0] {prefix}Setting{name} = {{")
@@ -225,9 +227,9 @@ def settings_of(prefix: str, registers: list[dict[str, Any]]) -> list[str]:
     return lines
 
 
-def predicate(name: str, registers: list[dict[str, Any]]) -> list[str]:
+def predicate(name: str, registers: list[Register]) -> list[str]:
     """Return a function that is high for the offsets of some registers."""
-    listed = ", ".join(f"{camel(register['name'])}Offset" for register in registers)
+    listed = ", ".join(f"{camel(register.name)}Offset" for register in registers)
     *lines, last = (f"  {line}" for line in wrapped(listed, 90))
     return [
         f"function automatic logic {name}(input logic [31:0] offset);",
@@ -261,9 +263,9 @@ def of_format(name: str, values: dict[str, int]) -> list[str]:
     ]
 
 
-def address_width(registers: list[dict[str, Any]]) -> int:
+def address_width(registers: list[Register]) -> int:
     """Return the bits of a byte address: 10, enough for 256 registers, or more for a larger map."""
-    return max(10, max(register["offset"] for register in registers).bit_length())
+    return max(10, max(register.offset for register in registers).bit_length())
 
 
 def fusesoc_core() -> str:
@@ -297,15 +299,18 @@ def ip_xact(of: Map, folder: Path) -> Path:
 def generated(of: Map) -> dict[Path, str]:
     """Return the text of each committed file that is written from a map."""
     top = compiled(of.source).top
-    registers = [register_of(node) for node in top.registers(unroll=True)]
-    described = {"written_by": of.written_by, "address_width": address_width(registers), "registers": registers}
+    nodes = [*top.registers(unroll=True)]
+    registers = [*map(register_of, nodes)]
+    elsewhere = {node.inst_name for node in nodes if node.get_property("made_elsewhere", default=False)}
+    described = {"written_by": of.written_by, "address_width": address_width(registers)}
+    described["registers"] = [*map(stated, registers)]
     with files.temporary() as folder:
         page = folder / of.page
         MarkdownExporter().export(top, str(page), input_files=[str(of.source.relative_to(ROOT))])
         return {
             GENERATED / of.page: f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n{page.read_text()}",
             ROOT / "models" / "tactile_depth" / "chip" / "registers" / of.data: records(described) + "\n",
-            of.package: package(of, registers),
+            of.package: package(of, registers, elsewhere),
         }
 
 

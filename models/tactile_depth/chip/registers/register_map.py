@@ -2,15 +2,16 @@
 """The maps of the AXI4-Lite registers, for models, testbenches and commands.
 
 The sources are registers/tactile_depth.rdl and registers/camera.rdl. `make registers` compiles them into the JSON files
-that are read here, so that a run needs no SystemRDL tools. models/tactile_depth/chip/registers/axil_registers.py and
-models/tactile_depth/chip/camera/camera_registers.py model the behaviour of the registers.
+that are read here, so that a run needs no SystemRDL tools; they leave out what has its default.
+models/tactile_depth/chip/registers/axil_registers.py and models/tactile_depth/chip/camera/camera_registers.py model the
+behaviour of the registers.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from importlib import resources
 from typing import Any
@@ -50,11 +51,10 @@ class Field:
     low: int
     high: int
     access: str
-    reset: int | None
-    signed: bool
-    setting: bool
-    values: Mapping[str, int]
-    description: str
+    reset: int | None = None
+    signed: bool = False
+    setting: bool = False
+    values: Mapping[str, int] = field(default_factory=dict)
 
     @cached_property
     def width(self) -> int:
@@ -74,16 +74,12 @@ class Register:
     ----------
     offset : int
         Byte address, a multiple of 4.
-    made_elsewhere : bool
-        True if hdl/registers/axil_registers.sv takes the value as one input word.
     fields : tuple of Field
         A register that holds a single number has one field, `value`.
     """
 
     name: str
     offset: int
-    description: str
-    made_elsewhere: bool
     fields: tuple[Field, ...]
 
     @cached_property
@@ -95,10 +91,10 @@ class Register:
     def reset(self) -> int | None:
         """Word after reset; None if a field has no fixed reset value."""
         word = 0
-        for field in self.fields:
-            if field.reset is None:
+        for each in self.fields:
+            if each.reset is None:
                 return None
-            word |= field.reset << field.low
+            word |= each.reset << each.low
         return word
 
     def mask(self, *accesses: str) -> int:
@@ -107,9 +103,9 @@ class Register:
 
     def field(self, name: str) -> Field:
         """Return the field of that name; raise KeyError with the accepted names otherwise."""
-        for field in self.fields:
-            if field.name == name:
-                return field
+        for each in self.fields:
+            if each.name == name:
+                return each
         raise KeyError(f"{self.name} has no field {name}: it has {', '.join(f.name for f in self.fields)}")
 
     def unpack(self, word: int) -> dict[str, int]:
