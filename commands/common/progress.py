@@ -1,18 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Progress bars of work that another process does."""
+"""Progress bars, and those of work that another process does."""
 
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 
 from tqdm import tqdm
+
+progress_bar = partial(tqdm, leave=False, disable=None)  # of a terminal; it vanishes at the end
 
 
 @contextmanager
 def following(what: str, total: int, unit: str, count: Callable[[], int]) -> Iterator[None]:
     """Show a bar that a thread moves to what `count` returns, until the block ends."""
     finished = threading.Event()
-    with tqdm(total=total, desc=what, unit=unit, leave=False, disable=None) as bar:
+    with progress_bar(total=total, desc=what, unit=unit) as bar:
 
         def follow() -> None:
             while not finished.wait(0.2):

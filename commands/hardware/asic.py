@@ -10,7 +10,6 @@ Writes asic.json into OUT. Exit status: 0, 1 when the gates differ from the mode
 
 import hashlib
 import importlib.metadata
-import json
 import os
 import re
 import shutil
@@ -22,9 +21,10 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from tqdm import tqdm
 
 from commands.common import recorded, repository, run_request, variables
+from commands.common.progress import progress_bar
+from commands.common.results import save
 from commands.common.tabular import Table
 from commands.common.variables import ClockMhz, Place, real
 from commands.cost.cost import MACRO_BITS
@@ -258,7 +258,7 @@ def measure(request: run_request.Request, options: Options, work: Path) -> dict[
         frames=count,
         window=range(middle, min(middle + WINDOW_CLOCKS, size)),
     )
-    with tqdm(total=3, unit="step", desc="synthesis", leave=False, disable=None) as bar:
+    with progress_bar(total=3, unit="step", desc="synthesis") as bar:
         reading = synthesis.read(work, config, calibration=calibration, options="--keep-hierarchy")
         netlist, macros, where = synthesise(work, reading, TOP, options.file, library, period_ns)
         bar.update()
@@ -311,7 +311,7 @@ def run(request: run_request.Request, options: Options) -> int:
     with synthesis.workspace(out, ["asic.json"]) as work:
         run_request.announce(request, config)
         report = {"command": " ".join(["make", *sys.argv]), **measure(request, options, work)}
-        (work / "asic.json").write_text(json.dumps(report, indent=1) + "\n")
+        save(work / "asic.json", report)
         files.replace(work, ["asic.json"], out)
     print(text(report))
     wrong = report["codes_wrong"] + report["clocks_wrong_with_delays"]

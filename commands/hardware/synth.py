@@ -26,9 +26,9 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
-from tqdm import tqdm
-
 from commands.common import published, recorded, repository, run_request, variables
+from commands.common.progress import progress_bar
+from commands.common.results import save
 from commands.common.signals import threads
 from commands.common.tabular import Table
 from commands.common.variables import numbers, one
@@ -188,7 +188,7 @@ def mapped(
         scripts.append(script)
     with threads(len(scripts)) as pool:
         runs = [pool.submit(yosys.run, script) for script in scripts]
-        finished = tqdm(as_completed(runs), desc=label, total=len(runs), unit="mapping", leave=False, disable=None)
+        finished = progress_bar(as_completed(runs), desc=label, total=len(runs), unit="mapping")
         faults = [fault for run in finished if (fault := run.result())]
     if faults:
         raise RuntimeError("; ".join(faults))
@@ -448,7 +448,7 @@ def main(of: SynthRun) -> int:
                 if not grids:
                     keep_sources(folder, config, out)
             document["designs"].append(asdict(built[-1]))
-            (work / "resources.json").write_text(json.dumps(document, indent=1) + "\n")
+            save(work / "resources.json", document)
             files.replace(work, ["resources.json"], out)
     recorded.record("synth", sys.argv[1:], recordable(built, name))
     if grids:

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from tqdm import tqdm
 
 from commands.common import repository, variables
+from commands.common.progress import progress_bar
 from commands.common.run_request import camera_choice
 from commands.run import draw
 from tactile_depth.base import files
@@ -163,7 +163,7 @@ def draw_presses(path: Path, fit: Fit, presses: GridPresses) -> None:
 
 
 def _progress(views: list[View]) -> Iterable[View]:
-    return tqdm(views, "leaving out", leave=False, disable=None)
+    return progress_bar(views, "leaving out")
 
 
 def main() -> None:

@@ -12,7 +12,6 @@ status: 0 done, 1 the RTL is wrong, 2 bad input.
 """
 
 import itertools
-import json
 import math
 import os
 from collections.abc import Iterator, Sequence
@@ -21,12 +20,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tqdm import tqdm
 
 from commands.common import published, variables
 from commands.common import simulator as simulation
 from commands.common.machine import machine
-from commands.common.progress import following
+from commands.common.progress import following, progress_bar
+from commands.common.results import save, written
 from commands.common.run_request import CONTACT_THRESHOLD, threshold_code
 from commands.common.signals import threads
 from commands.run import bench, reflex_picture
@@ -143,7 +142,7 @@ def loop(request: ReflexRun, setup: Setup, draws: Draws) -> list[Loop]:
     pixels = np.stack(
         [
             model.picture(setup, draws, one.trial, one.frame, request.size)
-            for one in tqdm(sent, desc="rendering", unit="frame", leave=False, disable=None)
+            for one in progress_bar(sent, desc="rendering", unit="frame")
         ]
     )
     calibration = model.calibration_on(request.size)
@@ -317,13 +316,11 @@ def run(request: ReflexRun) -> None:
     Raises InputError, Mismatch or RuntimeError.
     """
     simulation.check(request.simulator)
-    with files.workspace(request.out, RESULTS) as work:
+    with written(request.out, RESULTS) as work:
         document = measure(request)
         print(show(document))
-        (work / "reflex.json").write_text(json.dumps(document, indent=1) + "\n")
+        save(work / "reflex.json", document)
         reflex_picture.plot(work / "reflex.png", document)
-        files.replace(work, RESULTS, request.out)
-    print(f"results: {os.path.relpath(request.out)}")
 
 
 main = run

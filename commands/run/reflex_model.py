@@ -8,9 +8,9 @@ from typing import Annotated, Any
 
 import numpy as np
 from scipy.stats import mannwhitneyu
-from tqdm import tqdm
 
 from commands.common import published
+from commands.common.progress import progress_bar
 from commands.common.repository import ROOT
 from commands.common.run_request import CONTACT_THRESHOLD
 from commands.common.simulator import SIMULATORS, Simulator
@@ -185,7 +185,7 @@ def in_software(setup: Setup, draws: Draws, size: int, name: str) -> tuple[np.nd
     """Return `first_above` of each trial: deciding frames, compute and wake-up in ms."""
     calibration = calibration_on(size)
     reference.depth(picture(setup, draws, 0, 0, size), calibration)  # the first is slower: imports, plans
-    trials = tqdm(range(len(draws.phase)), desc=name, unit="trial", leave=False, disable=None, delay=2)
+    trials = progress_bar(range(len(draws.phase)), desc=name, unit="trial", delay=2)
     decided = [first_above(setup, draws, trial, size, calibration) for trial in trials]
     frames, compute, wake_up = (np.array(values) for values in zip(*decided, strict=True))
     return frames, compute, wake_up

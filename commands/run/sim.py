@@ -4,7 +4,6 @@
 Takes the variables of docs/make-sim.md as KEY=VALUE arguments. Exit status: docs/exit-status.md.
 """
 
-import json
 import os
 import shutil
 import sys
@@ -18,6 +17,7 @@ import numpy as np
 from commands.common import repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.common.progress import following
+from commands.common.results import save
 from commands.common.run_request import WITH_CAMERA, Request, announce, check_grid, chosen, configure, load_sensor
 from commands.common.zero_offset import untouched
 from commands.run import bench
@@ -126,7 +126,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
         report["warnings"] = [] if difference.count else warnings(config, report["rms_percent_of_peak"], clips)
         report["warnings"] += flagged.warnings()
         np.save(result / "depth.npy", rtl_codes.reshape(-1, *grid).astype(np.int32))
-        (result / "report.json").write_text(json.dumps(report, indent=1) + "\n")
+        save(result / "report.json", report)
         pitch = calibration.pixel_pitch_mm
         draw_depth(
             result / "depth.png",

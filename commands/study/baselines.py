@@ -18,7 +18,6 @@ requirements-baselines.txt.
 import gc
 import importlib.metadata
 import importlib.util
-import json
 import math
 import multiprocessing
 import os
@@ -36,13 +35,13 @@ from unittest import mock
 
 import matplotlib
 import numpy as np
-from tqdm import tqdm
 
 from commands.common import published, recorded, repository
 from commands.common.machine import machine
+from commands.common.progress import progress_bar
+from commands.common.results import save, written
 from commands.common.tabular import Table
 from commands.common.variables import ClockMhz, Mismatch, Place, numbers, real, whole
-from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
@@ -220,7 +219,7 @@ def measure_all(request: BaselinesRun) -> tuple[dict[str, Any], list[dict[str, A
     rows: list[dict[str, Any]] = []
     scenes = {size: scene(size) for size in request.grids}
     until = time.monotonic() + SECONDS
-    with tqdm(jobs, leave=False, disable=None) as bar:
+    with progress_bar(jobs) as bar:
         for done, (number, threads) in enumerate(bar):
             method = METHODS[number]
             bar.set_description(f"{method.name}, {threads} threads")
@@ -434,7 +433,7 @@ def run(request: BaselinesRun) -> dict[str, Any]:
 
     Raises InputError, Mismatch or RuntimeError; InputError on a busy machine.
     """
-    with files.workspace(request.out, RESULTS) as work:
+    with written(request.out, RESULTS) as work:
         if (load := os.getloadavg()[0]) > request.max_load:
             raise InputError(
                 f"other programs are running: a load of {load:.2g} in the last minute, at most {request.max_load:g} "
@@ -442,10 +441,8 @@ def run(request: BaselinesRun) -> dict[str, Any]:
             )
         document, rows = measure_all(request)
         print(show(document))
-        (work / "baselines.json").write_text(json.dumps(document, indent=1) + "\n")
+        save(work / "baselines.json", document)
         plot(work / "baselines.png", document, rows)
-        files.replace(work, RESULTS, request.out)
-    print(f"results: {os.path.relpath(request.out)}")
     return document
 
 

@@ -18,7 +18,6 @@ flat; how far the gel beside a contact is displaced is not known, and a part of 
 from __future__ import annotations
 
 import json
-import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -28,10 +27,11 @@ from typing import Annotated, Any
 import matplotlib
 import numpy as np
 from scipy.ndimage import distance_transform_edt
-from tqdm import tqdm
 
 import tactile_depth as td
 from commands.common import recorded, repository, variables
+from commands.common.progress import progress_bar
+from commands.common.results import save, written
 from commands.common.run_request import camera_choice
 from commands.common.tabular import Table
 from commands.common.variables import Place, Several, one, real, whole
@@ -51,7 +51,6 @@ from commands.study.budget_steps import (
     products,
 )
 from commands.study.drawn_sensor import PLACES, DrawnSensor
-from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.calibrate.fitting import Fit, fit_presses
 from tactile_depth.calibrate.presses import AT_REST, GridPresses, PressPictures, camera_pitch_mm, gather, to_grid
@@ -119,7 +118,7 @@ class BudgetRun:
 
 
 def fitted(presses: GridPresses) -> Fit:
-    return fit_presses(presses, ("cubic",), progress=lambda each: tqdm(each, "fits", leave=False, disable=None))
+    return fit_presses(presses, ("cubic",), progress=lambda each: progress_bar(each, "fits"))
 
 
 def drawn_contacts(request: BudgetRun) -> Iterator[tuple[str, dict[str, np.ndarray]]]:
@@ -227,7 +226,7 @@ def source(
 ) -> dict[str, Any]:
     """Return the numbers of a source by place and measure."""
     found: dict[str, list[dict[str, np.ndarray]]] = {}
-    for place, each in tqdm(pictures, name, count, leave=False, disable=None):
+    for place, each in progress_bar(pictures, name, count):
         found.setdefault(place, []).append(each)
     places = {
         place: {"pictures": len(found[place])}
@@ -367,7 +366,7 @@ def plot(path: Path, document: dict[str, Any]) -> None:
 
 def run(request: BudgetRun) -> None:
     """Measure, print, and write budget.json and budget.png. Raises InputError."""
-    with files.workspace(request.out, RESULTS) as work:
+    with written(request.out, RESULTS) as work:
         missing, folder = "", request.folder
         try:
             folder = folder or data_folder()
@@ -390,12 +389,10 @@ def run(request: BudgetRun) -> None:
         document = {"setting": used, "without": missing, "sources": sources}
         print(f"{setting(document)}\n")
         print(*tables(document), sep="\n\n", end="\n\n")
-        (work / RESULTS[0]).write_text(json.dumps(document, indent=1) + "\n")
+        save(work / RESULTS[0], document)
         plot(work / RESULTS[1], document)
-        files.replace(work, RESULTS, request.out)
-    if missing:
-        print(f"no real presses were measured: {missing}")
-    print(f"results: {os.path.relpath(request.out)}")
+        if missing:
+            print(f"no real presses were measured: {missing}")
 
 
 def main(request: BudgetRun) -> None:

@@ -6,18 +6,17 @@ the certificate allows it, 1 if not, 2 on bad input.
 """
 
 import dataclasses
-import json
 import math
-import os
 from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
-from tqdm import tqdm
 
 from commands.common import repository, run_request, tabular
 from commands.common import simulator as simulation
+from commands.common.progress import progress_bar
+from commands.common.results import save, written
 from commands.common.variables import Flag
 from commands.run import sim, sim_table
 from commands.study.certificate import Node, certify, slope_response
@@ -223,7 +222,7 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
     run_request.announce(request, config)
 
     shape = "{desc} {percentage:.0f} % {bar} {remaining}"
-    with tqdm(total=1.0, desc="certifying", leave=False, disable=None, delay=3, bar_format=shape) as bar:
+    with progress_bar(total=1.0, desc="certifying", delay=3, bar_format=shape) as bar:
         nodes = certify(config, bar.update)
     print(nodes_table(nodes))
     for line in summary(nodes, config, pixel_pitch_mm):
@@ -233,7 +232,7 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
 
     frames, attempts = worst_frames(nodes, calibration, config)
     peaks = Peaks({node.name: node.form.width for node in nodes}, len(frames))
-    for first in tqdm(range(0, len(frames), BATCH), desc="model", leave=False, disable=None, delay=3):
+    for first in progress_bar(range(0, len(frames), BATCH), desc="model", delay=3):
         peaks.first = first
         tactile_depth(frames[first : first + BATCH], calibration, config, peaks)
     faults = check_model(frames, attempts, nodes, peaks)
@@ -258,13 +257,11 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
         "rtl": rtl,
         "faults": faults,
     }
-    with files.workspace(out, RESULTS) as work:
+    with written(out, RESULTS) as work:
         np.save(work / "worst.npy", frames)
-        (work / "certificate.json").write_text(json.dumps(document, indent=1) + "\n")
-        files.replace(work, RESULTS, out)
-    for fault in faults:
-        print(fault)
-    print(f"results: {os.path.relpath(out)}")
+        save(work / "certificate.json", document)
+        for fault in faults:
+            print(fault)
     return 1 if faults else 0
 
 

@@ -8,18 +8,17 @@ PRESET=sensor: the rows of sensor_extremes.py. Variables: ROWS and COLS (48 x 64
 depth range, SIM, OUT, RTL=0 for no simulation.
 """
 
-import json
-import os
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from tqdm import tqdm
 
 from commands.common import repository, run_request, tabular, variables
 from commands.common import simulator as simulation
+from commands.common.progress import progress_bar
+from commands.common.results import save, written
 from commands.common.tabular import Column
 from commands.common.variables import Flag, Several
 from commands.study import certify as certificate
@@ -292,7 +291,7 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
     ]
     rows: list[Row] = []
     broken: list[str] = []
-    with tqdm(total=len(plan), leave=False, disable=None) as bar:
+    with progress_bar(total=len(plan)) as bar:
         for extreme, solver in plan:
             bar.set_description(f"{extreme.name}, {solver}")
             rows.append(measure(extreme, solver, size, simulator))
@@ -300,7 +299,7 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
             bar.update()
     count = SHORT_MODEL if short else LONG_MODEL
     for solver in COLUMNS:
-        with tqdm(total=count, desc=f"model, {solver}", unit="frame", leave=False, disable=None) as bar:
+        with progress_bar(total=count, desc=f"model, {solver}", unit="frame") as bar:
             rows.append(model_drift(solver, size, count, bar.update))
         if not rows[-1].bit_exact:
             broken.append(f"{rows[-1].extreme}, {solver}: the error drifts")
@@ -315,12 +314,10 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
     document = as_document(rows, measured)
     print(tabular.shown(Row, rows), end="\n\n")
     print(tabular.shown(Compliance, measured))
-    with files.workspace(out, RESULTS) as work:
-        (work / RESULTS[0]).write_text(json.dumps(document, indent=1) + "\n")
-        files.replace(work, RESULTS, out)
-    for fault in broken:
-        print(fault)
-    print(f"results: {os.path.relpath(out)}")
+    with written(out, RESULTS) as work:
+        save(work / RESULTS[0], document)
+        for fault in broken:
+            print(fault)
     return 1 if broken else 0
 
 

@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-from tqdm import tqdm
 
 import tactile_depth as td
 from commands.common import simulator as simulation
+from commands.common.progress import progress_bar
 from commands.common.tabular import Table
 from commands.common.variables import EQUAL, MISMATCH, Flag, Place, real
 from commands.run import bench
@@ -136,7 +136,7 @@ def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
     images = {press.name: press.image for press in pictures.presses}
     views = [view for view in presses.views if view.press.name in fit.without]
     same, lit, differing = list[Measured](), {light: list[Measured]() for light in LIGHTS}, 0
-    for view in tqdm(views, "presses", leave=False, disable=None):
+    for view in progress_bar(views, "presses"):
         name = view.press.name
         image = images[name]
         picture = image if isinstance(image, np.ndarray) else read_picture(Path(image))
@@ -169,9 +169,7 @@ def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
     print(f"\n{Table(head, rows)}")
     numbers = [number for number in NUMBERS if number + DRAWN_OUT <= len(presses.views)]
     if numbers and central.sum() >= DRAWN_OUT:
-        by_number = errors_by_number(
-            presses, numbers, progress=lambda each: tqdm(each, "fits", leave=False, disable=None)
-        )
+        by_number = errors_by_number(presses, numbers, progress=lambda each: progress_bar(each, "fits"))
         rows = [[str(number), f"{cap:.3f}", f"{1000 * rms:.1f}"] for number, (cap, rms) in by_number.items()]
         print(f"\n{Table(('presses fitted', 'caps, RMS error in the middle', 'height RMS, um'), rows)}")
     if simulator is not None:

@@ -4,17 +4,16 @@
 Each row is a stream through the RTL, and its worst picture by itself through `td.Pipeline`, which may refuse or warn.
 """
 
-import json
-import os
 import warnings
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from tqdm import tqdm
 
 from commands.common import run_request, tabular
+from commands.common.progress import progress_bar
+from commands.common.results import save, written
 from commands.run import sim, sim_table
 from commands.run.flags import flags
 from commands.study import long_state
@@ -408,7 +407,7 @@ def run(request: run_request.Request, out: Path, rtl: bool) -> int:
     every = configurations(request, drawn)
     rows: list[SensorRow] = []
     broken: list[str] = []
-    with tqdm(total=len(every) * len(CASES), leave=False, disable=None) as bar:
+    with progress_bar(total=len(every) * len(CASES)) as bar:
         for each in every:
             for case in CASES:
                 bar.set_description(case.name)
@@ -430,10 +429,8 @@ def run(request: run_request.Request, out: Path, rtl: bool) -> int:
         "light": [asdict(state) for state in lights],
         "counts": [asdict(count) for count in counts],
     }
-    with files.workspace(out, RESULTS) as work:
-        (work / RESULTS[0]).write_text(json.dumps(document, indent=1) + "\n")
-        files.replace(work, RESULTS, out)
-    for fault in broken:
-        print(fault)
-    print(f"results: {os.path.relpath(out)}")
+    with written(out, RESULTS) as work:
+        save(work / RESULTS[0], document)
+        for fault in broken:
+            print(fault)
     return 1 if broken else 0

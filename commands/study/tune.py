@@ -21,6 +21,8 @@ from tqdm import tqdm
 
 from commands.common import repository, run_request
 from commands.common import simulator as simulation
+from commands.common.progress import progress_bar
+from commands.common.results import save
 from commands.common.variables import Several
 from commands.common.zero_offset import untouched
 from commands.cost.cost import Cost
@@ -221,7 +223,7 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
         )
     print(how)
 
-    with tqdm(desc="tuning", unit=" configurations", leave=False, disable=None) as bar:
+    with progress_bar(desc="tuning", unit=" configurations") as bar:
         measure = _measurement(request, tuning, calibration, widest, limits.judgement, bar)
         search = Search(build, measure, limits, limits.aim, lanes)
         best = search.cheapest(solvers)
@@ -267,7 +269,7 @@ def _write(out: Path, documents: dict[str, Any]) -> None:
     """Write the results, both or neither."""
     with files.workspace(out) as work:
         for name, content in documents.items():
-            (work / name).write_text(json.dumps(content, indent=1) + "\n")
+            save(work / name, content)
         files.replace(work, documents, out)
 
 

@@ -12,7 +12,6 @@ not prove them equivalent.
 Exit status: 1 if all cores together score below 97 %, or a core below 95 %.
 """
 
-import json
 import os
 import time
 from dataclasses import asdict, dataclass, field
@@ -21,10 +20,9 @@ from multiprocessing.pool import ThreadPool
 from pathlib import Path
 from typing import Annotated
 
-from tqdm import tqdm
-
 from commands.common import repository, variables
-from commands.common.progress import following
+from commands.common.progress import following, progress_bar
+from commands.common.results import save
 from commands.verify import equivalence, mutants, sign_off
 from commands.verify.equivalence import EQUIVALENT, settle
 from tactile_depth.chip.configuration import Configuration
@@ -109,7 +107,7 @@ def mutate(name: str, count: int, seed: int, jobs: int, seconds: int) -> Outcome
         numbers = [mutant.number for mutant in lived]
         with ThreadPool(jobs) as pool:
             verdicts = pool.imap(partial(settle, graph, folder=folder, seconds=seconds), numbers)
-            shown = tqdm(verdicts, f"{name}, survivors", len(numbers), leave=False, disable=None)
+            shown = progress_bar(verdicts, f"{name}, survivors", len(numbers))
             for number, (verdict, how) in zip(numbers, shown, strict=True):
                 setattr(outcome, verdict, getattr(outcome, verdict) + 1)
                 outcome.settled_by[how] = outcome.settled_by.get(how, 0) + 1
@@ -119,7 +117,7 @@ def mutate(name: str, count: int, seed: int, jobs: int, seconds: int) -> Outcome
                 outcome.contradictions += 1
                 survived(number, "contradiction", "killed, but proven equivalent")
     outcome.seconds = time.monotonic() - began
-    (OUT / name / "outcome.json").write_text(json.dumps(asdict(outcome) | {"score": outcome.score}, indent=1) + "\n")
+    save(OUT / name / "outcome.json", asdict(outcome) | {"score": outcome.score})
     return outcome
 
 
@@ -157,7 +155,7 @@ def main(
         for survivor in outcomes[-1].survivors:
             if survivor["verdict"] != EQUIVALENT:
                 print("    {structure}/{mutant} {verdict} {how}: {what}".format(**survivor), flush=True)
-    (OUT / "results.json").write_text(json.dumps([asdict(o) | {"score": o.score} for o in outcomes], indent=1) + "\n")
+    save(OUT / "results.json", [asdict(o) | {"score": o.score} for o in outcomes])
     missed = [outcome.core for outcome in outcomes if not outcome.passed]
     total = score(sum(o.killed for o in outcomes), sum(o.mutants - o.equivalent for o in outcomes))
     print(

@@ -7,7 +7,6 @@ against model in bulk), `power_ups` (the quick tests of every core and of the to
 is the number of processes, 2 by default.
 """
 
-import json
 import resource
 import time
 from collections import Counter
@@ -18,6 +17,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from commands.common import repository, tabular, variables
+from commands.common.results import save
 from commands.verify import items
 from tactile_depth.base.errors import Argument, InputError
 from tb.settings import RunSettings
@@ -103,7 +103,7 @@ def main(names: Annotated[Sequence[str], _parts, "PARTS"] = tuple(PARTS), jobs: 
         print(f"{name}: {parts[-1].seconds:.0f} s, {len(parts[-1].failures) or 'nothing'} failed", flush=True)
     report = repository.ROOT / "build" / "regress.json"
     report.parent.mkdir(exist_ok=True)
-    report.write_text(json.dumps([asdict(part) for part in parts], indent=1) + "\n")
+    save(report, [asdict(part) for part in parts])
     print(f"\n{lines_of(parts)}")
     for part in parts:
         if part.name == "faults":
