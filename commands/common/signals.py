@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Interruption by SIGINT, SIGTERM or SIGHUP: child processes end, and the command removes its temporary files."""
+"""Interruption by SIGINT, SIGTERM or SIGHUP: child processes end, and the command removes its temporary files.
+
+Nobody is told of SIGKILL: a process beside each command, its guard, ends what a run leaves.
+"""
 
 import contextlib
+import os
 import signal
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -14,24 +18,30 @@ import psutil
 from tactile_depth.base import interruption
 
 GRACE_S = 2.0  # from SIGTERM to SIGKILL of a child
+POLL_S = 0.5  # of a guard
+RUN = "TACTILE_DEPTH_RUN"
+"""Variable of each process of a run: `/`, the make that its command follows or 0, `-`, and the id of the command."""
+_guards: set[int] = set()
 
 
 def living(known: Iterable[psutil.Process] = ()) -> list[psutil.Process]:
     """Return the living descendants of this process and those of `known`, whose parents may have ended.
 
-    Trackers of multiprocessing are left out: they delete the shared memory of the workers, and end by themselves.
+    Trackers of multiprocessing are left out: they delete the shared memory of the workers, and end by themselves. The
+    guard of this process is left out too.
     """
     processes = []
     for process in {*known, *psutil.Process().children(recursive=True)}:
         with contextlib.suppress(psutil.Error):  # the process has ended meanwhile
-            if process.status() != psutil.STATUS_ZOMBIE and "resource_tracker" not in " ".join(process.cmdline()):
+            left_out = process.pid in _guards or "resource_tracker" in " ".join(process.cmdline())
+            if process.status() != psutil.STATUS_ZOMBIE and not left_out:
                 processes.append(process)
     return processes
 
 
-def end_children() -> None:
-    """End all descendants by SIGTERM, and by SIGKILL those that still run after `GRACE_S`."""
-    processes = living()
+def end_children(known: Iterable[psutil.Process] = ()) -> None:
+    """End descendants and those that `living` adds by SIGTERM, and those that still run after `GRACE_S` by SIGKILL."""
+    processes = living(known)
     for number in (signal.SIGTERM, signal.SIGKILL):
         deadline = time.monotonic() + GRACE_S
         for process in processes:
@@ -39,6 +49,51 @@ def end_children() -> None:
                 process.send_signal(number)
         while (processes := living(processes)) and time.monotonic() < deadline:
             time.sleep(0.02)  # psutil's own waiting would take the exit status from subprocess
+
+
+@contextmanager
+def guarded() -> Iterator[None]:
+    """Keep a guard: when SIGKILL ends this command, or the make that runs it, every process of the run ends."""
+    run, command = os.environ.get(RUN, ""), psutil.Process()
+    if not run.endswith(f"-{command.pid}"):  # no make has started this command
+        run = os.environ[RUN] = f"{run}/0-{command.pid}"
+    guard = os.fork()
+    if not guard:
+        try:
+            _guard(command, run)
+        finally:
+            os._exit(0)
+    _guards.add(guard)
+    try:
+        yield
+    finally:
+        if os.getpid() == command.pid:  # no forked worker
+            os.kill(guard, signal.SIGKILL)
+            os.waitpid(guard, 0)
+            _guards.remove(guard)
+
+
+def _guard(command: psutil.Process, run: str) -> None:
+    """Wait until a command ends or another process than its make is its parent, then end every process of the run."""
+    os.setsid()  # a signal to the terminal does not end the guard
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    for stream in range(3):
+        os.dup2(nowhere, stream)
+    os.closerange(3, os.sysconf("SC_OPEN_MAX"))  # nobody waits for the guard at a pipe or a lock
+    make = int(run.rpartition("/")[2].partition("-")[0])
+    with contextlib.suppress(psutil.Error):  # the command has ended
+        while command.status() != psutil.STATUS_ZOMBIE and make in (0, command.ppid()):
+            time.sleep(POLL_S)
+    while processes := living(of_run(run)):
+        end_children(processes)
+
+
+def of_run(run: str) -> Iterator[psutil.Process]:
+    """Yield the processes of a run but this one."""
+    for process in psutil.process_iter():
+        with contextlib.suppress(psutil.Error):  # it has ended, or belongs to another user
+            if process.pid != os.getpid() and f"{process.environ().get(RUN)}/".startswith(f"{run}/"):
+                yield process
 
 
 class Pool(ThreadPoolExecutor):

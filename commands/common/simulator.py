@@ -26,7 +26,7 @@ import find_libpython
 from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import Runner, Verilator, get_runner
 
-from commands.common import variables
+from commands.common import signals, variables
 from commands.common.repository import HDL, ROOT, sources
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, one_of
@@ -293,7 +293,7 @@ def run(
 
 
 def main() -> None:
-    with tempfile.TemporaryDirectory() as place:
+    with signals.guarded(), tempfile.TemporaryDirectory() as place:
         for fast in (False, True):
             build("verilator", SMALL, sources(SMALL), {}, Path(place, str(fast)), fast=fast, log=Path(place, LOG))
 

@@ -122,6 +122,22 @@ def test_a_signal_to_the_terminal_or_to_make_alone_ends_make_and_its_command(
     assert list(tmp_path.iterdir()) == [makefile]
 
 
+@pytest.mark.parametrize("outer", [["make"], [sys.executable, "-m", "commands"]], ids=["make", "command"])
+def test_5_s_after_sigkill_no_process_of_the_run_lives(tmp_path: Path, makefile: Path, outer: list[str]) -> None:
+    configuration = ["N=64", "ROWS=24", "SOLVER=tridiagonal", f"DATA_WIDTH={22 + len(outer)}"]  # built by no other test
+    process = started([*outer, "sim", *configuration, "SIM=verilator", f"OUT={tmp_path / 'out'}"], makefile)
+    wait_for(lambda: any("cc1plus" in line for line in members(process.pid).values()), "the compiler")
+    make, command = 0, process.pid
+    if outer == ["make"]:
+        make, (command,) = process.pid, (child.pid for child in psutil.Process(process.pid).children())
+    run = f"{os.environ.get(signals.RUN, '')}/{make}-{command}"
+    assert len([*signals.of_run(run)]) >= 3  # make, c++ and cc1plus at least
+    process.kill()
+    time.sleep(5)
+    assert [*signals.of_run(run)] == []
+    assert members(process.pid) == {}
+
+
 def test_a_signal_while_modules_are_imported_prints_one_line(tmp_path: Path) -> None:
     process = started([sys.executable, "-X", "importtime", "-m", "commands", "sim"], ROOT)
     lines = []
