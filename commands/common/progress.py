@@ -11,6 +11,14 @@ from tqdm import tqdm
 progress_bar = partial(tqdm, leave=False, disable=None)  # of a terminal; it vanishes at the end
 
 
+def duration(seconds: float) -> str:
+    """Return a time in the unit that people would say."""
+    for unit, of in (("hours", 3600), ("minutes", 60)):
+        if seconds >= 1.5 * of:
+            return f"{seconds / of:.0f} {unit}"
+    return f"{max(1, seconds):.0f} s"
+
+
 @contextmanager
 def following(what: str, total: int, unit: str, count: Callable[[], int]) -> Iterator[None]:
     """Show a bar that a thread moves to what `count` returns, until the block ends."""

@@ -81,7 +81,11 @@ def document_of(command: Any, name: str) -> dict[str, Any]:
     """Return the results of make reflex or make baselines; run the command first if it left none."""
     file = command.DEFAULT_OUT / f"{name}.json"
     if not file.exists():
-        variables.read(command.run, ["MAX_LOAD=10000"] if name == "baselines" else [])  # the load is printed
+        words = [
+            f"OUT={command.DEFAULT_OUT}",
+            *(["MAX_LOAD=10000"] if name == "baselines" else []),
+        ]  # it prints the load
+        variables.read(command.run, words)
     return json.loads(file.read_text())
 
 

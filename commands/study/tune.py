@@ -11,6 +11,7 @@ variables of docs/commands.md as KEY=VALUE arguments. Exit status: 0 found and p
 import json
 import math
 import os
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -21,14 +22,14 @@ from tqdm import tqdm
 
 from commands.common import repository, run_request
 from commands.common import simulator as simulation
-from commands.common.progress import progress_bar
+from commands.common.progress import duration, progress_bar
 from commands.common.results import save
 from commands.common.variables import Several
 from commands.common.zero_offset import untouched
 from commands.cost.cost import Cost
 from commands.run import sim
 from commands.study.accuracy import SMALLEST_PEAK_PX, errors
-from commands.study.tune_search import ALL_FRAMES, AUTO, COEFFICIENT, DATA, Judgement, Limits, Search, Widths
+from commands.study.tune_search import ALL_FRAMES, AUTO, COEFFICIENT, DATA, MEASURED, Judgement, Limits, Search, Widths
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS, WORDS, Configuration
@@ -43,6 +44,7 @@ AUTO_SHARE = 0.1  # fraction that TOLERANCE=auto adds to the error of the calibr
 NOT_OF_SIM = (*run_request.WIDTH_VARIABLES.values(), "REPEAT", "GAPS", "STALLS", "WAVES", "CONFIG")
 OF_SIM = tuple(name for name in run_request.ACCEPTED if name not in NOT_OF_SIM)
 DEFAULT_OUT = repository.ROOT / "build" / "tune"
+RESULTS = ("config.json", "report.json")
 DEFAULT_FRAMES = "bench"
 DEFAULT = [DEFAULT_WIDTHS[name] for name in SOLVER_WIDTHS]
 *_, DEEPEST = WORDS.values()
@@ -183,6 +185,7 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
     request, solvers = chosen
     simulation.check(request.simulator)
     out = request.out or DEFAULT_OUT
+    files.check(out, RESULTS)
     calibration = run_request.load_sensor(request)
     automatic = math.isnan(limits.tolerance)
     if automatic:
@@ -215,7 +218,6 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
     assert widest is not None
     exact = Twin(calibration, widest).exact_px(frames.pixels)
     tuning, proving, how = split(frames, np.abs(exact).max(axis=(1, 2)), request.seed)
-    files.check(out, ("config.json", "report.json"))
     run_request.announce(request, widest)
     if automatic:
         print(
@@ -226,6 +228,10 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
     with progress_bar(desc="tuning", unit=" configurations") as bar:
         measure = _measurement(request, tuning, calibration, widest, limits.judgement, bar)
         search = Search(build, measure, limits, limits.aim, lanes)
+        began = time.monotonic()
+        search.error(search.point(solvers[0], DATA[1], COEFFICIENT[1]))  # the first of those measured
+        whole = (time.monotonic() - began) * len(solvers) * MEASURED
+        bar.write(f"tuning takes about {duration(whole)}, and the proof in RTL follows")
         best = search.cheapest(solvers)
         if best is None:
             print(_none(search, solvers))

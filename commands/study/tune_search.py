@@ -115,6 +115,10 @@ class Widths:
         return dict(zip(WIDTHS, (self.data, self.coefficient, self.gain), strict=True))
 
 
+# Points of a solver that most searches measure: the widest, and a bisection of each width.
+MEASURED = 1 + sum((high - low).bit_length() for low, high in (DATA, COEFFICIENT))
+
+
 @dataclass
 class Search:
     """Search of the cheapest point within the tolerance and the limits.

@@ -138,6 +138,9 @@ def test_a_process_is_pinned_to_its_threads(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_the_report_runs_what_has_not_been_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def run(request: BaselinesRun) -> None:
+        (request.out / "baselines.json").write_text(json.dumps({"load": request.max_load}))
+
     monkeypatch.setattr(baselines, "DEFAULT_OUT", tmp_path)
-    monkeypatch.setattr(baselines, "run", lambda request: (request.out / "baselines.json").write_text('{"runs": 3}'))
-    assert report.document_of(baselines, "baselines") == {"runs": 3}
+    monkeypatch.setattr(baselines, "run", run)
+    assert report.document_of(baselines, "baselines") == {"load": 10_000}
