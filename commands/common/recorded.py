@@ -8,6 +8,7 @@ To record one more run, add its line with `{}` and run it.
 import hashlib
 import importlib
 import json
+import sys
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -56,9 +57,9 @@ def since(line: str, entry: Mapping[str, Any]) -> str:
     return "same" if entry.get("sources") == sources(line) else "changed"
 
 
-def record(command: str, arguments: Sequence[str], figures: Any) -> None:
-    """Write the figures of a run whose line is in the file and whose sources are committed."""
-    results, line = load(), command_line(command, arguments)
+def record(figures: Any) -> None:
+    """Write the figures of this run if its line is in the file and its sources are committed."""
+    results, line = load(), command_line(sys.argv[0], sys.argv[1:])
     if line not in results:
         return
     commit = git("rev-parse", "--short=7", "HEAD")

@@ -316,7 +316,7 @@ def run(request: run_request.Request, options: Options) -> int:
     print(text(report))
     wrong = report["codes_wrong"] + report["clocks_wrong_with_delays"]
     print(f"gates {'DIFFER from' if wrong else 'equal'} the model: {report['codes']:,} codes")
-    recorded.record("asic", sys.argv[1:], recordable(report))
+    recorded.record(recordable(report))
     print(f"results: {os.path.relpath(out)}")
     return variables.MISMATCH if wrong else variables.EQUAL
 

@@ -435,7 +435,7 @@ def main(request: Annotated[Request, variables.Several(VARIABLES, request_of)]) 
         earlier = [path.name for path in out.glob("*.bit")]
         files.replace(work, [name for name in (report.get("bitstream"), written) if name], out, earlier)
     print(table(report))
-    recorded.record("fpga", sys.argv[1:], {name: report[name] for name in RECORDED if name in report})
+    recorded.record({name: report[name] for name in RECORDED if name in report})
     print(f"results: {os.path.relpath(out)}")
     for line in (problems := missed(report)):
         print(line)

@@ -450,7 +450,7 @@ def main(of: SynthRun) -> int:
             document["designs"].append(asdict(built[-1]))
             save(work / "resources.json", document)
             files.replace(work, ["resources.json"], out)
-    recorded.record("synth", sys.argv[1:], recordable(built, name))
+    recorded.record(recordable(built, name))
     if grids:
         depths = [
             f"{each.configuration['solver']}, {each.configuration['grid']}: " + "".join(depth_text(each))

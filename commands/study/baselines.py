@@ -22,7 +22,6 @@ import math
 import multiprocessing
 import os
 import signal
-import sys
 import time
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -460,4 +459,4 @@ def recordable(document: dict[str, Any]) -> dict[str, Any]:
 
 
 def main(request: BaselinesRun) -> None:
-    recorded.record("baselines", sys.argv[1:], recordable(run(request)))
+    recorded.record(recordable(run(request)))

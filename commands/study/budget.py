@@ -18,7 +18,6 @@ flat; how far the gel beside a contact is displaced is not known, and a part of 
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -399,4 +398,4 @@ def main(request: BudgetRun) -> None:
     run(request)
     document = read(request.out)
     if not document["without"]:
-        recorded.record("budget", sys.argv[1:], _rounded(document))
+        recorded.record(_rounded(document))

@@ -343,7 +343,7 @@ def main() -> None:
         rows = study_rows(study, plan())
         front = front_of(rows)
         print(summary(front))
-        recorded.record("trade", sys.argv[1:], asdict(front))
+        recorded.record(asdict(front))
         write_beaten(rows, study.folder)
         draw(rows, study.folder / "trade.png")
         print(f"results: {os.path.relpath(study.folder)}")

@@ -78,12 +78,15 @@ def test_a_run_is_recorded_with_its_commit(results: Path, monkeypatch: pytest.Mo
     design = synth.Design(described, totals, {}, {"memory in UltraRAM": 1.0}, [], [], "", 1.0)
     before = results.read_text()
     monkeypatch.setattr(recorded, "git", git_where(changed=True))
-    recorded.record("synth", ["PRESET=published", "N=16"], synth.recordable([design], DEFAULT_TARGET))
+    monkeypatch.setattr("sys.argv", ["synth", *["PRESET=published", "N=16"]])
+    recorded.record(synth.recordable([design], DEFAULT_TARGET))
     assert results.read_text() == before
     monkeypatch.setattr(recorded, "git", git_where(changed=False))
-    recorded.record("synth", ["PRESET=published", "N=32"], synth.recordable([design], DEFAULT_TARGET))
+    monkeypatch.setattr("sys.argv", ["synth", *["PRESET=published", "N=32"]])
+    recorded.record(synth.recordable([design], DEFAULT_TARGET))
     assert json.loads(results.read_text()) == json.loads(before), "a line that is not in the file is not recorded"
-    recorded.record("synth", ["PRESET=published", "N=16"], synth.recordable([design], DEFAULT_TARGET))
+    monkeypatch.setattr("sys.argv", ["synth", *["PRESET=published", "N=16"]])
+    recorded.record(synth.recordable([design], DEFAULT_TARGET))
     assert figures.synthesized(over_grids=False).markdown().splitlines()[2] == (
         "| small | 16 x 16 | 5 | 5 | 5 | 5 | 5 | 1.0 | 1234567 | same |"
     )

@@ -119,13 +119,12 @@ def test_what_does_not_fit_is_named_with_how_much() -> None:
     )
 
 
-def test_a_design_too_large_ends_with_a_line(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_design_too_large_ends_with_a_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, run_command: Any) -> None:
     small = replace(XCZU7EV, has={**XCZU7EV.has, "BRAM36": 10})
     monkeypatch.setattr(synth, "TARGETS", {"xczu7ev": small})
-    assert variables.read(synth.main, ["PRESET=published", "N=16", "SOLVER=tridiagonal", f"OUT={tmp_path}"]) == 1
-    error = capsys.readouterr().err.strip()
+    ended = run_command("synth", "PRESET=published", "N=16", "SOLVER=tridiagonal", f"OUT={tmp_path}")
+    (error,) = ended.errors
+    assert ended.status == 1
     assert error == "make synth: it does not fit the XCZU7EV: BRAM36 12.5 of 10, 2.5 too many"
     (design,) = json.loads((tmp_path / "resources.json").read_text())["designs"]
     assert design["misfit"]
