@@ -25,12 +25,12 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.depth.zero_capture import captured_zero
 from tactile_depth.chip.depth.zero_offset import zero_offset
 from tactile_depth.chip.gradient.flat_field import captured_gains
+from tactile_depth.chip.limits import MODELS
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.tactile_depth import slope_codes, solve
 from tactile_depth.depth.reference import pixel_terms, polynomials_at_pixels, weighted
 from tactile_depth.pictures.frames import read_picture
 from tactile_depth.sensor.scenes import LIGHTS
-from tactile_depth.sensor.sensor import MODELS
 from tests.ball_presses import (
     CAMERA,
     PITCH,

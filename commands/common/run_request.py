@@ -20,7 +20,7 @@ from tactile_depth.base.errors import InputError
 from tactile_depth.base.npy import is_file
 from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoice, CameraConfiguration
 from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS, WIDTHS, WORDS, Configuration
-from tactile_depth.chip.limits import BOUNDARIES, COLUMNS, GRADIENT_MODELS
+from tactile_depth.chip.limits import BOUNDARIES, COLUMNS, MODELS
 from tactile_depth.pictures.frames import REST_SCENE
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import BUILT_IN
@@ -151,7 +151,7 @@ def of_values(
         light_gains=_light_gains(values, PRESETS[name]),
         calibration=_calibration(values),
         camera_size=_camera_size(values),
-        gradient=choice("GRADIENT", ("", *GRADIENT_MODELS)),
+        gradient=choice("GRADIENT", ("", *MODELS)),
         repeat=int(number("REPEAT", 1, 1, 100_000)),
         seed=int(number("SEED", 1, 0, 10**9)),
         gaps=number("GAPS", 0, 0, 0.99, float),
@@ -302,6 +302,11 @@ def described_camera(camera: CameraConfiguration | None) -> dict[str, Any]:
 def words_of(config: Configuration, colours: bool = False) -> str:
     """Return the widths as names of folders state them; those of colours only if asked for."""
     return "-".join(f"{name[0]}{getattr(config, name)}" for name in (WIDTHS if colours else SOLVER_WIDTHS))
+
+
+def model_of(config: Configuration) -> str:
+    """Return the gradient model as names of folders state it."""
+    return f"-{config.gradient_model}" if config.flat_field else ""
 
 
 def threshold_code(config: Configuration) -> int:

@@ -419,7 +419,7 @@ def main(request: Annotated[Request, variables.Several(VARIABLES, request_of)]) 
     design = request.design
     frames, _, config = synthesis.design(design)  # refuses bad input before anything is made
     camera_of(request, frames.camera)
-    colours = f"-{config.gradient_model}-g{config.gain.width}" if config.flat_field else ""
+    colours = run_request.model_of(config) + (f"-g{config.gain.width}" if config.flat_field else "")
     colours += "-light" if config.light_gains else ""
     colours += "-zero" if config.zero_offset else ""
     colours += f"-{request.sensor.name}" if request.sensor else ""

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The generator of tactile_depth.core: a configuration as a core of FuseSoC.
 
-Its parameters are NAME and the variables of `make sim` that choose a configuration; commands/hardware/synth.py names
-them. The core holds the module tactile_depth_<NAME>, which a design instantiates, and its tables in a folder <NAME>.
+Its parameters are NAME and the variables of `make sim` that choose a configuration; commands/common/run_request.py
+names them. The core holds the module tactile_depth_<NAME>, which a design instantiates, and its tables in a folder
+<NAME>.
 """
 
 import sys

@@ -26,8 +26,9 @@ from tactile_depth.calibrate.evaluation import slopes_and_depths
 from tactile_depth.calibrate.fitting import DEFAULT_BITS, Fit, fit_presses
 from tactile_depth.calibrate.presses import GridPresses, View, camera_pitch_mm, gather, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
+from tactile_depth.chip.limits import MODELS
 from tactile_depth.sensor.calibration_file import LONGEST_EXPOSURE_US, PIXEL_PITCHES_MM
-from tactile_depth.sensor.sensor import MODELS, TABLE_BITS
+from tactile_depth.sensor.sensor import TABLE_BITS
 
 VARIABLES = ("PRESSES", "GRADIENT", "PITCH", "BITS", "CIRCLES", "EXPOSURE_US", "CAMERA", "BAYER", "OUT")
 PRESSES_DRAWN = 3

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pixels with uncertain depth: without light, or with slopes steeper than those of the calibration."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,5 +58,5 @@ def flags(
         require_light(gains, config, f"REFERENCE={reference_name}")
         dark = dark_pixels(frames, gains, config)
     slopes = reference.slopes_of(frames, calibration, config, light=light)
-    steepest = calibration.fitted_slope.get(config.gradient_model, math.inf)
+    steepest = calibration.steepest(config)
     return Flags(dark, ~dark & (np.hypot(slopes[..., 0], slopes[..., 1]) > steepest))

@@ -155,7 +155,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
 def default_folder(request: Request, config: Configuration) -> Path:
     """Return the default folder of results, one for each configuration."""
     widths = run_request.words_of(config, config.flat_field)
-    colours = f"-{config.gradient_model}" if config.flat_field else ""
+    colours = run_request.model_of(config)
     colours += "-zero" if config.zero_offset else ""
     colours += "-light" if config.light_gains else ""
     shape = f"{config.rows}x{config.columns}"

@@ -24,7 +24,7 @@ from tactile_depth.base import files
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.gradient_lookup import gradient_codes
-from tactile_depth.chip.limits import GRADIENT_MODELS
+from tactile_depth.chip.limits import MODELS
 from tactile_depth.chip.tactile_depth import tactile_depth
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, camera_scale
@@ -211,7 +211,7 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
     calibration = dataclasses.replace(calibration, flat_field=None).scaled(camera_scale(calibration, grid))
     pixel_pitch_mm = calibration.pixel_pitch_mm
     # It begins at the slopes, and ends at the depth before the zero offset.
-    from_slopes = dataclasses.replace(request, gradient=GRADIENT_MODELS[0], zero=None)
+    from_slopes = dataclasses.replace(request, gradient=MODELS[0], zero=None)
     config = run_request.configure(from_slopes, calibration)
     shape = f"{config.rows}x{config.columns}" + (f"-{config.lanes}lanes" if config.lanes > 1 else "")
     name = f"{request.solver}-{request.boundary}-{shape}-{run_request.words_of(config)}"

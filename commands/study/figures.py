@@ -29,7 +29,7 @@ from commands.run.sim_table import coefficient_words
 from commands.study import baselines, budget, trade_front
 from commands.study.accuracy import errors
 from tactile_depth.chip import latency
-from tactile_depth.chip.configuration import STORED, Configuration
+from tactile_depth.chip.configuration import COLOURS, STORED, Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.chip.limits import most_lanes
 from tactile_depth.depth.twin import Twin
@@ -41,9 +41,9 @@ GRIDS = (64, 128, 256)
 LANE_GRIDS = (*GRIDS, 512)
 FEWEST_LANES_AGAINST_SOFTWARE = 16
 FRAMES = "FRAMES=contacts"
-REAL_SENSOR = {"flat_field": True, "gradient_model": "cubic", "light_gains": True, "neumann": True, "zero_offset": True}
+REAL_SENSOR = COLOURS | {"neumann": True, "zero_offset": True}
 BUILDS = {  # of docs/architecture.md, 128 x 128
-    "tridiagonal, real sensor": Configuration(solver="tridiagonal", **REAL_SENSOR),  # type: ignore[arg-type]
+    "tridiagonal, real sensor": Configuration(solver="tridiagonal", **REAL_SENSOR),
     "tridiagonal, as sent": Configuration(solver="tridiagonal"),
     "spectral, as sent": Configuration(),
 }

@@ -25,7 +25,7 @@ from commands.hardware import fpga
 from commands.hardware import yosys as yosys_runner
 from commands.verify import items
 from tactile_depth.chip.camera.register_lists import pins, write_list
-from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.configuration import COLOURS, Configuration
 from tactile_depth.chip.depth.zero_offset import no_zero
 from tactile_depth.chip.gradient.flat_field import unit_gains
 from tactile_depth.chip.limits import COLUMNS, POLYNOMIAL
@@ -95,14 +95,11 @@ def structures() -> list[Structure]:
     Three more have colours relative to a reference, and one of these a zero offset and light gains.
     """
     flat = [
-        Structure(TOP, Configuration(flat_field=True, **choices))
+        Structure(TOP, Configuration(**{"flat_field": True, **choices}))
         for choices in (
             {"columns": 16, "gradient_model": "quadratic"},
             {"solver": "tridiagonal"},
-            {
-                **{"columns": 16, "solver": "tridiagonal", "lanes": 4, "gradient_model": "cubic"},
-                **{"zero_offset": True, "light_gains": True},
-            },
+            {**COLOURS, "columns": 16, "solver": "tridiagonal", "lanes": 4, "zero_offset": True},
         )
     ]
     return flat + [

@@ -47,13 +47,13 @@ from tactile_depth.calibrate.presses import (
 )
 from tactile_depth.chip.gradient.flat_field import FLAT_CODE
 from tactile_depth.chip.gradient.polynomial_gradient import correction_codes, correction_unit, correction_units
-from tactile_depth.chip.limits import COEFFICIENTS, CORRECTION_BITS, CUBIC, DEVIATION, GRADIENT_LIMITS
+from tactile_depth.chip.limits import COEFFICIENTS, CORRECTION_BITS, CUBIC, DEVIATION, GRADIENT_LIMITS, MODELS
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.depth import reference
 from tactile_depth.depth.reference import pixel_terms
 from tactile_depth.pictures.pictures import Picture
 from tactile_depth.sensor.calibration_file import LONGEST_EXPOSURE_US, PIXEL_ASPECTS, PIXEL_PITCHES_MM
-from tactile_depth.sensor.sensor import CORRECTIONS, MODELS, TABLE_BITS, Camera, Sensor, lighting
+from tactile_depth.sensor.sensor import CORRECTIONS, TABLE_BITS, Camera, Sensor, lighting
 
 FEWEST, FEWEST_MEASURED = 8, 2  # presses; those that lie completely in the middle square
 DRAWS, DRAWN_OUT = 12, 6  # choices of presses for each number of them, and presses that are measured in each

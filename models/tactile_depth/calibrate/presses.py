@@ -17,7 +17,7 @@ from tactile_depth.calibrate.ball_press import BallPress, Circle
 from tactile_depth.calibrate.circles import find_circle, require_circle_finder
 from tactile_depth.calibrate.press_folder import background_path, read_presses
 from tactile_depth.chip.camera_configuration import FORMATS, CameraChoice
-from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.configuration import COLOURS, Configuration
 from tactile_depth.chip.gradient.flat_field import captured_gains, flat_codes, ratios, require_light
 from tactile_depth.chip.gradient.light_gains import Light, settled
 from tactile_depth.pictures.frames import read_picture
@@ -353,7 +353,7 @@ def to_grid(
     if find_circles or compare_circles or any(press.circle is None for press in pictures.presses):
         require_circle_finder()
     shape: dict[str, Any] = {"columns": grid[1], "rows": grid[0], "solver": "tridiagonal"}
-    config = Configuration(**shape, flat_field=True, gradient_model="cubic", light_gains=True)
+    config = Configuration(**shape, **COLOURS)
     sampler = grid_sampler(BACKGROUND, (camera[0], camera[1]), grid, choice)
     rest = sampler.frame(background)
     gains = captured_gains(rest[None], config)

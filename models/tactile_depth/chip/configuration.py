@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -33,8 +33,8 @@ from tactile_depth.chip.limits import (
     DEPTH_HEADROOM,
     EXACT_LENGTHS,
     GRADIENT_LIMITS,
-    GRADIENT_MODELS,
     GUARD_BITS,
+    MODELS,
     PIXEL_WIDTH,
     POLYNOMIAL,
     REFERENCE_NODES,
@@ -112,7 +112,7 @@ class Configuration:
     def __post_init__(self) -> None:
         model, solver = Argument("gradient_model", self.gradient_model), Argument("solver", self.solver)
         columns, data_width = Argument("columns", self.columns), Argument("data_width", self.data_width)
-        one_of(model, GRADIENT_MODELS)
+        one_of(model, MODELS)
         if self.polynomials and not self.flat_field:
             raise InputError(model, " without a reference: it takes colours relative to one", remedy="give one")
         if self.light_gains and not self.polynomials:
@@ -472,6 +472,8 @@ class Configuration:
         }
 
 
+COLOURS: dict[str, Any] = {"flat_field": True, "gradient_model": "cubic", "light_gains": True}
+"""Choices for colours of a real sensor, which are relative to a reference and to its light."""
 CHOICES = {name: choice.of(name) for name, choice in declared(Configuration, Choice).items()}
 """Choices that users name, by field."""
 WIDTHS = {name: width for name, width in CHOICES.items() if isinstance(width, Width)}

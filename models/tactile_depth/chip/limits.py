@@ -27,7 +27,7 @@ EXACT_LENGTHS = (8, 4096)  # rows and columns of a grid in double precision
 MOST_LANES = 64
 COLUMNS_PER_LANE = 2  # at least: the second row of a pair comes so many clocks after the first
 ZERO_OFFSET_COLUMNS_PER_LANE = 4  # at least: the capture of the zero offset adds in three clocks, td_block_sum.sv
-GRADIENT_MODELS = get_args(Model)
+MODELS: tuple[str, ...] = get_args(Model)
 BOUNDARIES: tuple[Boundary, ...] = get_args(Boundary)
 GRADIENT_LIMITS = (2.0**-6, 2.0**6)
 

@@ -23,11 +23,11 @@ from tactile_depth.calibrate.presses import (
     gather,
     to_grid,
 )
+from tactile_depth.chip.limits import MODELS
 from tactile_depth.cli.measure import DEVICE, address_of, grid_of, measure
 from tactile_depth.cli.options import add_build_arguments, add_light_and_zero_arguments, build_choices, size
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.pictures.frames import read_pictures
-from tactile_depth.sensor.sensor import MODELS
 
 NAME = "calibrate"
 HELP = "Fit a calibration to ball presses; load it into a device and measure it there, if one is named."

@@ -11,7 +11,7 @@ import numpy as np
 
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import CHOICES, DEFAULT_WIDTHS, WIDTHS
-from tactile_depth.chip.limits import BOUNDARIES, GRADIENT_MODELS, Solver
+from tactile_depth.chip.limits import BOUNDARIES, MODELS, Solver
 from tactile_depth.depth.pipeline import AREA_THRESHOLD_MM, ARITHMETICS, THRESHOLD_MM, Pipeline
 from tactile_depth.pictures.frames import read_stack
 from tactile_depth.pictures.identify import identify
@@ -62,7 +62,7 @@ def add_pipeline_arguments(parser: argparse.ArgumentParser) -> None:
         "or half the contact's peak if less",
     )
     parser.add_argument(
-        "--model", choices=GRADIENT_MODELS, default="", help="gradient model; by default the better of the calibration"
+        "--model", choices=MODELS, default="", help="gradient model; by default the better of the calibration"
     )
     add_light_and_zero_arguments(parser)
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -215,7 +214,7 @@ class Pipeline:
             self._recorder,
             self.depth_lsb_mm,
             self.pixel_pitch_mm,
-            self.sensor.fitted_slope.get(self.config.gradient_model, math.inf),
+            self.sensor.steepest(self.config),
             self.sensor.height_errors.get(self.config.gradient_model),
             streamed,
             self._warned(checked, gains, depth_mm, None if stream is None else stream.warned),

@@ -13,12 +13,11 @@ import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, warn
 from tactile_depth.base.npy import is_file, read_header
-from tactile_depth.chip.limits import COEFFICIENTS, CUBIC, GRADIENT_LIMITS
+from tactile_depth.chip.limits import COEFFICIENTS, CUBIC, GRADIENT_LIMITS, MODELS
 from tactile_depth.sensor.sensor import (
     CORRECTIONS,
     FORMAT_VERSION,
     LIGHTING_BLOCKS,
-    MODELS,
     PIXEL_FORMATS,
     ROUNDING,
     TABLE_BITS,

@@ -39,7 +39,7 @@ class Preset:
 PUBLISHED = Preset(
     solver=cast(Solver, Configuration.solver),
     boundary=Configuration().boundary,
-    model=cast(Model, Configuration.gradient_model),
+    model="lut",
     calibration="synthetic",
     grid=(Configuration.columns, Configuration.columns),
     zero_offset=Configuration.zero_offset,

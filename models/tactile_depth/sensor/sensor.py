@@ -20,14 +20,13 @@ from tactile_depth.chip.limits import (
     COEFFICIENT_LIMITS,
     CORRECTION_BITS,
     CUBIC,
-    GRADIENT_MODELS,
+    MODELS,
     SHALLOWEST_PX,
 )
 
 if TYPE_CHECKING:
     from tactile_depth.chip.configuration import Configuration
 
-MODELS = GRADIENT_MODELS
 FORMAT_VERSION = 3
 PIXEL_FORMATS = tuple(FORMATS)
 TABLE_BITS = (1, 6)
@@ -255,7 +254,7 @@ class Sensor(ByValue):
 
         kind = kind or Configuration
         flat_field = self.reference is not None
-        model = model or (self.model if flat_field else GRADIENT_MODELS[0])
+        model = model or (self.model if flat_field else MODELS[0])
         self.require_model(model)
         self.require_reference(flat_field)
         config = kind(
@@ -287,6 +286,10 @@ class Sensor(ByValue):
             accepted = f"{smallest:.2g} mm, {SHALLOWEST_PX:g} of a grid pixel, and more"
             raise InputError(Argument("depth_range_mm", depth_range_mm), accepted=accepted)
         return depth_range_mm / self.pixel_pitch_mm
+
+    def steepest(self, config: Configuration) -> float:
+        """Return the largest slope that the model of a configuration was fitted to; infinite if it is unknown."""
+        return self.fitted_slope.get(config.gradient_model, math.inf)
 
     def check(self, config: Configuration, gains_given: bool = False) -> None:
         """Raise InputError unless a configuration agrees with this sensor, because depth would be wrong.
