@@ -2,6 +2,7 @@
 """Search of `make tune`: the cheapest word lengths whose error is within a target, and the limits of the user."""
 
 import math
+import time
 from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -158,6 +159,12 @@ class Search:
     def rank(self, at: Widths) -> tuple[float, int]:
         counted = self.cost(at)
         return (math.inf, 0) if counted is None else (self.limits.weight(counted), counted.first_depth_cycles)
+
+    def seconds(self, solvers: list[str]) -> float:
+        """Return about how long `cheapest` takes, by the time of the first point that it measures."""
+        began = time.monotonic()
+        self.error(self.point(solvers[0], DATA[1], COEFFICIENT[1]))
+        return (time.monotonic() - began) * len(solvers) * MEASURED
 
     def cheapest(self, solvers: list[str]) -> Widths | None:
         candidates: list[Widths] = []
