@@ -116,6 +116,7 @@ def test_with_a_camera_the_module_is_a_tactile_sensor(tmp_path: Path, form: tupl
     assert command("NAME=finger", f"OUT={tmp_path}", *choices)[0] == 0
     path = tmp_path / "tactile_sensor_finger.sv"
     assert "frames_lost" in path.read_text()
+    assert {file.name for file in tmp_path.glob("*.xml")} == {"tactile_depth.xml", "camera.xml"}
     files, build = [*repository.sources(), path], tmp_path / "build"
     build.mkdir()
     simulation.build("icarus", "tactile_sensor_finger", files, {}, build, log=build / "build.log")

@@ -48,4 +48,4 @@ def main(
         names = [file.name for file in work.iterdir()]
         files.replace(work, names, out)
     run_request.announce(request, config)
-    print(f"wrote {os.path.relpath(out / path.name)}, {count} table files and {c_header.FILE} beside it")
+    print(f"wrote {os.path.relpath(out / path.name)}, {count} table files, {c_header.FILE} and IP-XACT beside it")
