@@ -16,7 +16,7 @@ from commands.hardware import yosys
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.transform.sdf_fft import twiddle_stages
-from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters, write_roms
+from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
 from tactile_depth.sensor.synthetic import synthetic
 
 DEVICES = {device.name: device for device in (XCZU7EV, ECP5)}
@@ -190,7 +190,7 @@ def test_blocks_of_an_ecp5(words: int, width: int, rom: bool, blocks: int) -> No
 )
 def test_small_memories_are_as_many_luts_as_the_tools_give_them(device: Device, luts: int) -> None:
     """The figures are "memory" in the report of `make synth PRESET=published N=32 SOLVER=tridiagonal`."""
-    assert memories(top_parameters(Configuration(columns=32, solver="tridiagonal")), device) == luts
+    assert memories(Configuration(columns=32, solver="tridiagonal"), device) == luts
 
 
 @pytest.mark.parametrize("run", json.loads(RUNS.read_text()), ids=lambda run: f"{run['device']}-{run['variables']}")
@@ -199,7 +199,7 @@ def test_the_model_is_near_the_recorded_runs(run: dict[str, Any]) -> None:
     device, count = DEVICES[run["device"]], cost(Configuration(**run["configuration"]))
     assert count.blocks_of(device) == run["blocks"]
     assert count.multipliers_of(device) == pytest.approx(run["multipliers"], abs=2)  # products by constants
-    error = sum(logic(count.parameters, device).values()) / sum(run["logic"].values()) - 1
+    error = sum(logic(count.config, device).values()) / sum(run["logic"].values()) - 1
     assert abs(error) <= (FITTED if run["fitted"] else CHECKED)
 
 

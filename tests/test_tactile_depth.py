@@ -9,7 +9,7 @@ import pytest
 
 from formal.entries import Cone
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.limits import ULTRA
+from tactile_depth.chip.resources import ULTRA
 from tactile_depth.chip.tactile_depth import config_value, top_parameters, write_roms
 from tactile_depth.sensor.synthetic import synthetic
 from tb.settings import RUN

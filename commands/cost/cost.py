@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -12,11 +11,11 @@ from typing import NamedTuple
 
 from commands.cost.devices import ECP5, XCZU7EV, Device
 from commands.cost.luts import luts
-from commands.cost.parts import Memory, Multiplier, parts
+from commands.cost.parts import parts
 from tactile_depth.base.errors import Argument, one_of
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
-from tactile_depth.chip.tactile_depth import top_parameters
+from tactile_depth.chip.resources import Memory, Multiplier
 
 __all__ = ["ECP5", "KINDS", "XCZU7EV", "CameraCost", "Cost", "camera_cost", "cost"]
 
@@ -47,22 +46,21 @@ class Cost:
 
     Attributes
     ----------
+    config : Configuration
     multipliers : list of Multiplier
     memories : list of Memory
     first_depth_cycles, last_pixel_cycles : int
         Cycles from the first and from the last pixel of a frame to its first depth.
     map_cycles : int
         Cycles from the last pixel of a frame to its last depth.
-    parameters : mapping
-        Numbers of the RTL, as `top_parameters` returns them.
     """
 
+    config: Configuration
     multipliers: list[Multiplier]
     memories: list[Memory]
     first_depth_cycles: int
     last_pixel_cycles: int
     map_cycles: int
-    parameters: Mapping[str, int]
 
     @cached_property
     def tiles(self) -> int:
@@ -82,17 +80,11 @@ class Cost:
         return sum(self._memories_of(device, "ultra"))
 
     def _memories_of(self, device: Device, kind: str) -> list[float]:
-        return [device.memories(each.words, each.width, each.style, each.rom)[kind] for each in self.memories]
+        return [device.memories(each)[kind] for each in self.memories]
 
     def luts_of(self, device: Device) -> int:
         """Return the number of LUTs of a device, within the error that docs/hardware.md states."""
-        if device not in self._luts:  # it takes as long as all the rest of a cost
-            self._luts[device] = luts(self.parameters, device)
-        return self._luts[device]
-
-    @cached_property
-    def _luts(self) -> dict[Device, int]:
-        return {}
+        return luts(self.config, device)
 
     @cached_property
     def power_mw(self) -> float:
@@ -117,28 +109,26 @@ class Cost:
     def by_core(self) -> dict[str, tuple[int, int]]:
         """Return multipliers of 27 x 18 bits and memory bits of each core, in the order of the data."""
         counts: dict[str, tuple[int, int]] = {}
-        for part in parts(self.parameters):
+        for part in parts(self.config):
             tiles, bits = counts.get(part.core, (0, 0))
             if isinstance(part, Multiplier):
-                tiles += XCZU7EV.multipliers(part.a, part.b)
-            else:
-                bits += part.bits
-            counts[part.core] = tiles, bits
+                counts[part.core] = tiles + XCZU7EV.multipliers(part.a, part.b), bits
+            elif isinstance(part, Memory):
+                counts[part.core] = tiles, bits + part.bits
         return counts
 
 
 @lru_cache(maxsize=4096)  # a search asks for the same ones again and again
 def cost(config: Configuration) -> Cost:
     """Count the multipliers and memories in the RTL of a configuration."""
-    parameters = top_parameters(config)
-    found = parts(parameters)
+    found = parts(config)
     return Cost(
+        config,
         [part for part in found if isinstance(part, Multiplier)],
         [part for part in found if isinstance(part, Memory)],
         first_depth_latency(config),
         last_pixel_to_first_depth(config),
         last_pixel_to_last_depth(config),
-        parameters,
     )
 
 

@@ -6,9 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-# Styles of td_ram.sv and td_rom.sv.
-DISTRIBUTED, BLOCK, ULTRA, BY_SIZE = 0, 1, 2, 3
-DISTRIBUTED_BITS = 4096  # a memory of more bits is a block memory by its size, hdl/td_types_pkg.sv
+from tactile_depth.chip.resources import BY_SIZE, DISTRIBUTED, DISTRIBUTED_BITS, ULTRA, Memory
 
 
 @dataclass(frozen=True)
@@ -51,13 +49,13 @@ class Device:
         wide, narrow = self.ports
         return min(parts(a, wide) * parts(b, narrow), parts(b, wide) * parts(a, narrow))
 
-    def memories(self, words: int, width: int, style: int, rom: bool) -> dict[str, float]:
+    def memories(self, array: Memory) -> dict[str, float]:
         """Return the block memories and UltraRAMs of an array; both 0 where it is built of LUTs."""
-        if style == ULTRA and self.ultra_shape:
+        if array.style == ULTRA and self.ultra_shape:
             deep, wide = self.ultra_shape
-            return {"ultra": math.ceil(words / deep) * math.ceil(width / wide), "block": 0.0}
-        built = style != DISTRIBUTED and (style != BY_SIZE or words * width > DISTRIBUTED_BITS)
-        return {"ultra": 0.0, "block": self.blocks(words, width, rom) if built else 0.0}
+            return {"ultra": math.ceil(array.words / deep) * math.ceil(array.width / wide), "block": 0.0}
+        built = array.style != DISTRIBUTED and (array.style != BY_SIZE or array.bits > DISTRIBUTED_BITS)
+        return {"ultra": 0.0, "block": self.blocks(array.words, array.width, array.rom) if built else 0.0}
 
     def blocks(self, words: int, width: int, rom: bool = False) -> float:
         """Return the number of block memories of an array, by the plain rule; half of a BRAM36 where 18 Kb are enough.

@@ -6,7 +6,9 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from commands.cost.devices import BLOCK, DISTRIBUTED, ULTRA, XCZU7EV
+from commands.cost.devices import XCZU7EV
+from tactile_depth.chip.resources import BLOCK, DISTRIBUTED, ULTRA
+from tactile_depth.chip.resources import Memory as Array
 
 TOP = "tactile_depth"
 STYLES = {"ultra": ULTRA, "block": BLOCK}
@@ -25,7 +27,7 @@ class Memory:
 
     def plain(self) -> dict[str, float]:
         """Return UltraRAMs and block RAMs by its style and the rule of commands/cost/devices.py."""
-        built = XCZU7EV.memories(self.depth, self.width, STYLES.get(self.style, DISTRIBUTED), self.rom)
+        built = XCZU7EV.memories(Array("", self.width, self.depth, STYLES.get(self.style, DISTRIBUTED), self.rom))
         return {"UltraRAM": built["ultra"], "BRAM36": built["block"]}
 
 

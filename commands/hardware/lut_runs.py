@@ -20,7 +20,6 @@ from commands.cost.luts import RUNS, grouped, logic, memories
 from commands.hardware import synth, synthesis, targets
 from commands.hardware.targets import MEMORY
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.tactile_depth import top_parameters
 
 
 def runs_of(report: Path, fitted: bool) -> list[dict[str, Any]]:
@@ -50,7 +49,7 @@ def runs_of(report: Path, fitted: bool) -> list[dict[str, Any]]:
                 "multipliers": design["totals"][device.multiplier],
                 "blocks": design["totals"][device.block],
                 "memories": int(design["details"][MEMORY]),
-                "logic": grouped(found, top_parameters(config)),
+                "logic": grouped(found, config),
             }
         )
     return runs
@@ -65,10 +64,10 @@ def runs_and_model() -> Table:
         numbers = {
             "multipliers": count.multipliers_of(device),
             "blocks": count.blocks_of(device),
-            "memories": memories(count.parameters, device),
+            "memories": memories(count.config, device),
         }
         both = [f"{n:,g}" if n == run[name] else f"{n:,g}, tool {run[name]:,g}" for name, n in numbers.items()]
-        tool, model = sum(run["logic"].values()), sum(logic(count.parameters, device).values())
+        tool, model = sum(run["logic"].values()), sum(logic(count.config, device).values())
         difference = f"{100 * (model / tool - 1):+.1f} %"
         fitted = "yes" if run["fitted"] else "no"
         rows.append((device.name, f"`{run['variables']}`", *both, f"{model:,.0f}", f"{tool:,.0f}", difference, fitted))

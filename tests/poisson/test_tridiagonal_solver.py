@@ -9,10 +9,10 @@ import pytest
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.limits import ULTRA
 from tactile_depth.chip.poisson import spectral_solver
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.poisson.tridiagonal_solver import tridiagonal_solver
+from tactile_depth.chip.resources import ULTRA
 from tactile_depth.chip.rom_files import write_solver
 from tactile_depth.chip.tactile_depth import config_value, top_parameters
 from tactile_depth.depth import reference

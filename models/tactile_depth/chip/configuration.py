@@ -22,7 +22,6 @@ from tactile_depth.chip.bounds import Bounds, bounds, difference_bounds
 from tactile_depth.chip.choices import Choice, Width
 from tactile_depth.chip.fixed_point import Format
 from tactile_depth.chip.limits import (
-    BLOCK,
     BOUNDARIES,
     COARSEST_LSB,
     COEFFICIENT_LIMITS,
@@ -42,7 +41,6 @@ from tactile_depth.chip.limits import (
     SAMPLES,
     SHALLOWEST_PX,
     SMALLEST_BLOCK,
-    ULTRA,
     ULTRA_WIDTH,
     ULTRA_WORDS,
     Boundary,
@@ -51,6 +49,7 @@ from tactile_depth.chip.limits import (
 from tactile_depth.chip.poisson.transform.sdf_fft import twiddle_stages
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
+from tactile_depth.chip.resources import BLOCK, ULTRA
 
 
 @former_names(auto_zero="zero_offset")

@@ -17,20 +17,25 @@ from tactile_depth.chip.video import frame_guard
 
 
 def by_core(config: Configuration) -> list[tuple[str, str, int]]:
-    """Return unit, core and cycles on the way from the last pixel of a frame to its first depth, for any gaps."""
+    """Return unit, core and cycles on the way from the last pixel of a frame to its first depth, for any gaps.
+
+    Cores beside the way, 0 cycles, are listed where they have memories or words of the way.
+    """
     zero = zero_offset.latency(config.lanes, config.reference_block_log2)
+    table = 0 if config.polynomials else gradient_lookup.LATENCY
     return [
         ("video_unit", "td_axis_skid", td_axis_skid.LATENCY),
         ("video_unit", "frame_guard", frame_guard.LATENCY),
-        ("gradient_unit", "flat_field", flat_field.LATENCY if config.flat_field else 0),
-        ("gradient_unit", "light_gains", light_gains.LATENCY if config.light_gains else 0),
-        ("gradient_unit", "polynomial_gradient", polynomial_gradient.LATENCY)
-        if config.polynomials
-        else ("gradient_unit", "gradient_lookup", gradient_lookup.LATENCY),
+        *[("gradient_unit", "flat_field", flat_field.LATENCY), ("gradient_unit", "reference_capture", 0)]
+        * config.flat_field,
+        *[("gradient_unit", "light_gains", light_gains.LATENCY)] * config.light_gains,
+        *[("gradient_unit", "polynomial_gradient", polynomial_gradient.LATENCY)] * config.polynomials,
+        *[("gradient_unit", "gradient_lookup", table)] * (config.gradient_model != "quadratic"),
         ("poisson_unit", "divergence", divergence.LATENCY),
         *(("poisson_unit", *step) for step in by_solver_core(config)),
-        ("depth_unit", "zero_offset", zero if config.zero_offset else 0),
+        *[("depth_unit", "zero_offset", zero), ("depth_unit", "zero_capture", 0)] * config.zero_offset,
         ("contact_unit", "depth_gate", td_axis_skid.LATENCY),
+        ("contact_unit", "contact_events", 0),
     ]
 
 

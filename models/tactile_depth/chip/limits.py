@@ -17,8 +17,7 @@ DEEPEST = 0.67  # largest depth over N pixels for slopes up to 1 (L1 norm of the
 COARSEST_LSB = 1 / 32  # of a mode's word, as a fraction of the deepest depth: coarser words lose the shape
 SHALLOWEST_PX = 1 / 16
 
-# Styles of td_ram.sv for a frame store. A store as large as two UltraRAMs or more takes UltraRAM, which is cheaper.
-BLOCK, ULTRA = 1, 2
+# A frame store as large as two UltraRAMs or more takes UltraRAM, which is cheaper.
 ULTRA_WORDS, ULTRA_WIDTH = 4096, 72
 
 COLUMNS = {"spectral": (16, 512), "tridiagonal": (16, 1024)}

@@ -8,10 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact import centroid
 from tactile_depth.chip.contact.contact_debounce import ContactDebounce
 from tactile_depth.chip.contact.contact_peak import ContactPeak, Peak, cycles_to_peak
 from tactile_depth.chip.contact.contact_sums import ContactSums, Sums, cycles_to_sums
+from tactile_depth.chip.resources import DEPTH_MARKS, Memory, Parts, Words
 
 WORD_BITS = 32
 CYCLES_TO_TOUCHING = 3  # from the last depth of a frame to `touching`
@@ -208,3 +210,8 @@ class ContactEvents:
         self.debounce.reset()
         self.frames, self.last_peak, self.settings = 0, None, None
         self.peak.found, self.sums.threshold = None, None
+
+
+def parts(config: Configuration) -> Parts:
+    bits = config.lanes * config.data_width
+    return [Words(bits), Memory("delay lines", bits + DEPTH_MARKS, config.lanes.bit_length() + 5)]

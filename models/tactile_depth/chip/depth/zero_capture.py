@@ -5,9 +5,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactile_depth.chip.common import td_node_map
 from tactile_depth.chip.common.td_block_sum import CYCLES_TO_SUM, block_sum
 from tactile_depth.chip.common.td_round_saturate import round_half_even
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.resources import BLOCK, Memory, Parts, Words
 
 LARGEST_LOG2 = 8
 """Base-2 logarithm of the most frames in a capture; it equals that of reference_capture."""
@@ -40,3 +42,11 @@ def captured_zero(codes: np.ndarray, config: Configuration) -> np.ndarray:
     log2 = count.bit_length() - 1
     sums = block_sum(codes, config.reference_block_log2).sum(axis=0)
     return round_half_even(sums, 2 * config.reference_block_log2 + log2)
+
+
+def parts(config: Configuration) -> Parts:
+    """Return the sums of nodes that are written at once."""
+    log2, (rows, columns) = config.reference_block_log2, config.reference_nodes
+    side = td_node_map.side(config.lanes, log2)
+    width = side * (config.data_width + 2 * log2 + LARGEST_LOG2)
+    return [Words(config.lanes * config.data_width), Memory("tables", width, rows * columns // side, BLOCK)]

@@ -16,6 +16,7 @@ from tactile_depth.chip.common.td_block_sum import block_sum
 from tactile_depth.chip.common.td_node_map import interpolated, node_map
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.resources import DEPTH_MARKS, Memory, Multiplier, Parts, Words, banks
 
 
 def no_zero(config: Configuration) -> np.ndarray:
@@ -47,3 +48,15 @@ def exact_zero(depth: np.ndarray, untouched: np.ndarray, config: Configuration) 
 def latency(lanes: int, block_log2: int) -> int:
     """Return the latency: td_node_map and the subtraction."""
     return td_node_map.latency(lanes, block_log2) + 1
+
+
+def parts(config: Configuration) -> Parts:
+    """Return the tables of nodes, the products by row weights, and the line of depths."""
+    log2, data, lanes = config.reference_block_log2, config.data_width, config.lanes
+    side, (rows, columns) = td_node_map.side(lanes, log2), config.reference_nodes
+    return [
+        Words(lanes * data),
+        *banks(data, rows * columns // side) * (side * td_node_map.tables(lanes, log2)),
+        Memory("delay lines", lanes * data + DEPTH_MARKS, td_node_map.latency(lanes, log2)),
+        *[Multiplier(data + 1, log2 + 2)] * side,
+    ]

@@ -31,9 +31,11 @@ from tactile_depth.chip.common.td_round_saturate import Monitor, round_half_even
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import Format
 from tactile_depth.chip.limits import DARKEST_LOG2, DEVIATION, RATIO
+from tactile_depth.chip.resources import Memory, Multiplier, Parts, Words, banks
 
 LATENCY = td_node_map.latency(1, 1) + 3
 
+PIXEL_MARKS = 1 + 4  # dark, and the position: they travel with a pixel through td_node_map
 FLAT_CODE = 128
 CODE_WIDTH = 8
 CODE = Format(CODE_WIDTH, FLAT_CODE.bit_length() - 1)
@@ -220,3 +222,14 @@ def hold_dark(codes: np.ndarray, dark: np.ndarray, flat: int) -> np.ndarray:
     columns = np.arange(dark.shape[-1])
     last = np.maximum.accumulate(np.where(dark, -1, columns), axis=-1)[..., None]
     return np.where(last < 0, flat, np.take_along_axis(codes, np.maximum(last, 0), axis=-2))
+
+
+def parts(config: Configuration) -> Parts:
+    """Return the tables of gains, and the products of a node by its row weight, of a colour by its gain."""
+    gain, log2, (rows, columns) = config.gain_width, config.reference_block_log2, config.reference_nodes
+    return [
+        Words(gain),
+        *[Multiplier(gain + 1, log2 + 2), Multiplier(gain + 1, 9)] * 3,
+        *banks(gain, rows * columns) * 3,
+        Memory("delay lines", 3 * 8 + PIXEL_MARKS, td_node_map.latency(1, log2)),
+    ]

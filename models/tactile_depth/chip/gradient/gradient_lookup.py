@@ -7,6 +7,8 @@ import numpy as np
 
 from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import CORRECTION_BITS, CORRECTION_WIDTH
+from tactile_depth.chip.resources import Parts, Words, banks
 
 LATENCY = 4
 
@@ -22,3 +24,11 @@ def gradient_lookup(frames: np.ndarray, codes: np.ndarray, bits: int) -> np.ndar
     top = frames.astype(np.int64) >> (8 - bits)
     index = (top[..., 0] << bits | top[..., 1]) << bits | top[..., 2]
     return codes[index]
+
+
+def parts(config: Configuration) -> Parts:
+    """Return the tables of slopes or, with polynomials, of corrections."""
+    bits, width = config.bits_per_channel, config.gradient.width
+    if config.polynomials:
+        bits, width = CORRECTION_BITS, CORRECTION_WIDTH
+    return [Words(width), *banks(2 * width, 1 << 3 * bits)]

@@ -27,6 +27,7 @@ from tactile_depth.chip.common.td_round_saturate import Monitor, round_half_even
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import Format
 from tactile_depth.chip.limits import DEVIATION, LIGHT_GAIN, RATIO
+from tactile_depth.chip.resources import Multiplier, Parts, Words
 
 LATENCY = 2
 NEAR_LOG2 = 3
@@ -186,3 +187,7 @@ class LightFilter:
         """Return the gains of frames, int64 (..., 3), that follow one another, from ratios (..., rows, columns, 3)."""
         pictures = ratios.reshape(-1, *ratios.shape[-3:])
         return np.array([self.take(picture) for picture in pictures]).reshape(*ratios.shape[:-3], 3)
+
+
+def parts(_config: Configuration) -> Parts:
+    return [Words(0), *[Multiplier(RATIO.width + 1, LIGHT_GAIN.width + 1)] * 3]

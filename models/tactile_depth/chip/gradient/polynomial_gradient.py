@@ -33,10 +33,12 @@ from tactile_depth.chip.limits import (
     COLOUR_COEFFICIENT,
     CORRECTION_BITS,
     CORRECTION_WIDTH,
+    CUBIC,
     DEVIATION,
     FINE_BITS,
     POLYNOMIAL,
 )
+from tactile_depth.chip.resources import DISTRIBUTED, Multiplier, Parts, Words, banks
 
 UNIT_BITS = 12  # of the unit of a correction, from its first: a correction is right within 2**-12 of itself
 LATENCY = 12
@@ -230,3 +232,9 @@ def gradient_parameters(config: Configuration) -> dict[str, int]:
         "CorrectionUnit": round(unit / 2.0**log2) << log2,
         "Drop": drop,
     }
+
+
+def parts(_config: Configuration) -> Parts:
+    words = math.prod(CUBIC) // 6
+    products = [Multiplier(DEVIATION.width, COLOUR_COEFFICIENT.width)] * 6
+    return [Words(0), *products, *banks(POLYNOMIAL.width, words, DISTRIBUTED) * 6]

@@ -11,6 +11,7 @@ from tactile_depth.chip.common import td_divide
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.flat_field import captured_gains
 from tactile_depth.chip.limits import PIXEL_WIDTH
+from tactile_depth.chip.resources import Parts, Words
 
 LARGEST_LOG2 = 8
 """Base-2 logarithm of the most frames in a capture; large blocks reduce it (`largest_log2_frames`)."""
@@ -70,3 +71,7 @@ def reference_capture(
         if len(taken) == wanted:
             return index, captured_gains(np.stack(taken), config)
     return None
+
+
+def parts(config: Configuration) -> Parts:
+    return [Words(config.gain_width)]

@@ -5,6 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.resources import Memory, Parts, Words
+
 LATENCY = 2
 
 
@@ -32,3 +35,9 @@ def divergence(gradient: np.ndarray, neumann: bool = False) -> np.ndarray:
     f[..., 0, :] += gy[..., 0, :]
     f[..., 1:, :] += gy[..., 1:, :] - gy[..., :-1, :]
     return f
+
+
+def parts(config: Configuration) -> Parts:
+    """Return the buffer of the row above."""
+    slope = config.gradient.width
+    return [Words(slope), Memory("row buffers", slope, config.columns)]

@@ -7,7 +7,8 @@ import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.poisson.thomas_table import thomas_table
+from tactile_depth.chip.poisson.thomas_table import table_parts, thomas_table
+from tactile_depth.chip.resources import Memory, Multiplier, Parts, Words, products, rom
 
 LATENCY = 9
 
@@ -71,3 +72,24 @@ def zero_mean(d: np.ndarray, config: Configuration, monitor: Monitor | None, nod
     moment = (d[..., :-1, 0] * np.arange(1, rows)).sum(axis=-1)
     mean = round_saturate(moment, config.moment_drop, width, monitor, node + ".moment")
     d[..., -1, 0] = round_saturate(-mean * reciprocal, mean_drop - config.moment_drop, width, monitor, node + ".mean")
+
+
+def parts(config: Configuration) -> Parts:
+    last = rom(thomas_table(config).last_shift_width + config.coefficient_width, config.columns)
+    return [*thomas_parts(config), last, *mean_products(config)]
+
+
+def thomas_parts(config: Configuration) -> Parts:
+    """Return those of an elimination or a substitution of a word per clock."""
+    return [
+        Words(config.data_width),
+        *products(config, 1),
+        Memory("row buffers", config.arithmetic_width, config.columns),
+        *table_parts(thomas_table(config), config.coefficient_width),
+    ]
+
+
+def mean_products(config: Configuration) -> list[Multiplier]:
+    """Return the products of column_mean.sv, which only Neumann has."""
+    row_number = (config.rows - 1).bit_length() + 2  # 1 to rows, signed
+    return [Multiplier(config.arithmetic_width, row_number), *products(config, 1)] * config.neumann

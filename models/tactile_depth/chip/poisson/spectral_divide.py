@@ -11,6 +11,7 @@ import numpy as np
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.transform.orders import eigenvalues
+from tactile_depth.chip.resources import Parts, Words, products, rom
 
 LATENCY = 6
 
@@ -66,3 +67,12 @@ def reciprocal_rom(config: Configuration) -> np.ndarray:
     lower = np.tril_indices(config.columns)
     mask = (1 << config.coefficient.width) - 1
     return table.shift[lower] << config.coefficient.width | table.mantissa[lower] & mask
+
+
+def parts(config: Configuration) -> Parts:
+    size = config.columns
+    return [
+        Words(config.data_width),
+        *products(config, 1),
+        rom(reciprocals(config).shift_width + config.coefficient_width, size * (size + 1) // 2),
+    ]

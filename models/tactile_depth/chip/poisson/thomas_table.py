@@ -15,6 +15,7 @@ import numpy as np
 
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.transform.orders import eigenvalues
+from tactile_depth.chip.resources import Memory, rom
 
 LATENCY = 5
 
@@ -130,3 +131,9 @@ def wide_table(codes: np.ndarray, positions: np.ndarray) -> WideTable:
     base = np.concatenate(([0], np.cumsum(settled + 1)[:-1]))
     words = np.concatenate([bursts[: last + 1, clock] for clock, last in enumerate(settled)])
     return WideTable(words, base, settled)
+
+
+def table_parts(table: ThomasTable | WideTable, width: int) -> list[Memory]:
+    """Return the two ROMs of a table of words of `width` bits, without that of the last row."""
+    index = (len(table.words) - 1).bit_length() + table.settled_width
+    return [rom(width, len(table.words)), rom(index, len(table.base))]

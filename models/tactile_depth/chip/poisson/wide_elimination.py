@@ -7,7 +7,10 @@ import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.poisson.forward_elimination import coefficient_rows, zero_mean
+from tactile_depth.chip.poisson.forward_elimination import coefficient_rows, mean_products, zero_mean
+from tactile_depth.chip.poisson.thomas_table import WideTable, table_parts, thomas_table, wide_table
+from tactile_depth.chip.poisson.wide_stack import down_positions
+from tactile_depth.chip.resources import Memory, Parts, Words, products, rom
 
 LATENCY = 9  # from the first modes of a row to its first d, with which e of the row above leaves
 
@@ -50,3 +53,22 @@ def ahead(d: np.ndarray, config: Configuration, monitor: Monitor | None, node: s
     e[..., :-1, :] = round_saturate(exact, shift, config.elimination_store.width, monitor, node + ".ahead")
     e[..., -1, :] = round_saturate(d[..., -1, :], drop, config.elimination_store.width, monitor, node + ".store")
     return e
+
+
+def table(config: Configuration) -> WideTable:
+    """Return the table of the coefficients down the rows."""
+    positions = down_positions(config.columns, config.down_words)
+    return wide_table(coefficient_rows(config, config.rows)[:-1], positions)
+
+
+def parts(config: Configuration) -> Parts:
+    down, coefficient = config.down_words, config.coefficient_width
+    clocks = config.columns // down
+    return [
+        Words(down * config.data_width),
+        *products(config, 2 * down),
+        Memory("row buffers", down * (coefficient + config.arithmetic_width), clocks),
+        *table_parts(table(config), down * coefficient),
+        rom(down * (thomas_table(config).last_shift_width + coefficient), clocks),
+        *mean_products(config),
+    ]

@@ -10,28 +10,21 @@ import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.poisson import tridiagonal_solver
+from tactile_depth.chip.poisson import tridiagonal_solver, wide_elimination, wide_substitution
 from tactile_depth.chip.poisson.cores import NUMPY, Cores
-from tactile_depth.chip.poisson.forward_elimination import coefficient_rows
 from tactile_depth.chip.poisson.frame_stack import frame_stack
-from tactile_depth.chip.poisson.thomas_table import WideTable, ahead_rows, wide_table
+from tactile_depth.chip.poisson.thomas_table import WideTable
 from tactile_depth.chip.poisson.transform.wide_commutator import LEAD
 from tactile_depth.chip.poisson.transform.wide_dst_forward import latency as forward_latency
 from tactile_depth.chip.poisson.transform.wide_dst_inverse import latency as inverse_latency
-from tactile_depth.chip.poisson.transform.wide_row_pairs import up_positions
 from tactile_depth.chip.poisson.transform.wide_rows import LATENCY as WIDE_ROWS
 from tactile_depth.chip.poisson.tridiagonal_solver import row_forward, row_inverse
-from tactile_depth.chip.poisson.wide_elimination import LATENCY as WIDE_ELIMINATION
-from tactile_depth.chip.poisson.wide_stack import down_positions
 from tactile_depth.chip.poisson.wide_stack import latency as stack_latency
-from tactile_depth.chip.poisson.wide_substitution import LATENCY as WIDE_SUBSTITUTION
 
 
 def tables(config: Configuration) -> tuple[WideTable, WideTable]:
     """Return the tables of the coefficients down and up the rows."""
-    down = wide_table(coefficient_rows(config, config.rows)[:-1], down_positions(config.columns, config.down_words))
-    up = wide_table(ahead_rows(config), up_positions(config.columns, config.lanes))
-    return down, up
+    return wide_elimination.table(config), wide_substitution.table(config)
 
 
 def solver_parameters(config: Configuration) -> dict[str, int]:
@@ -71,8 +64,8 @@ def latency_by_core(columns: int, down_words: int, lanes: int) -> list[tuple[str
     return [
         ("wide_rows", WIDE_ROWS + LEAD),
         ("wide_dst_forward, of the last row", forward_latency(columns, down_words)),
-        ("wide_elimination", WIDE_ELIMINATION),
+        ("wide_elimination", wide_elimination.LATENCY),
         ("wide_stack, turns the order of the rows", stack_latency(columns, down_words, lanes)),
-        ("wide_substitution", WIDE_SUBSTITUTION),
+        ("wide_substitution", wide_substitution.LATENCY),
         ("wide_dst_inverse, of the first two rows out", inverse_latency(columns, lanes) - LEAD),
     ]

@@ -7,9 +7,12 @@ import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.poisson.thomas_table import ahead_rows
+from tactile_depth.chip.poisson.thomas_table import WideTable, ahead_rows, table_parts, wide_table
+from tactile_depth.chip.poisson.transform.wide_row_pairs import up_positions
+from tactile_depth.chip.resources import LONGEST_SHIFT, Memory, Parts, Words, products
 
 LATENCY = 2
+LOOP = 4  # clocks from a word to the product with it and back
 
 
 def wide_substitution(
@@ -36,3 +39,19 @@ def wide_substitution(
             row -= coefficients[step - 2] * z_rows[step - 2]
         z_rows[step] = round_saturate(row, drop, width, monitor, node)
     return z
+
+
+def table(config: Configuration) -> WideTable:
+    """Return the table of the coefficients up the rows."""
+    return wide_table(ahead_rows(config), up_positions(config.columns, config.lanes))
+
+
+def parts(config: Configuration) -> Parts:
+    lanes = config.lanes
+    wait = config.columns // lanes * 2 - LOOP
+    return [
+        Words(lanes * config.data_width),
+        *products(config, lanes),
+        *[Memory("delay lines", config.arithmetic_width, wait)] * (lanes if wait > LONGEST_SHIFT else 0),
+        *table_parts(table(config), lanes * config.coefficient_width),
+    ]

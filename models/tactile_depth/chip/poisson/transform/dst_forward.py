@@ -8,10 +8,12 @@ import numpy as np
 from tactile_depth.chip.common.td_rom import LATENCY as MEMORY_READ
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.chip.poisson.transform.sdf_fft import latency as sdf_fft_latency
+from tactile_depth.chip.poisson.transform.sdf_fft import parts as fft_parts
 from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import LATENCY as TWIDDLE_MULTIPLY
 from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_multiply
+from tactile_depth.chip.resources import Parts, Sizes, Words, products, rom
 
 SIGN = 2  # cycles of sign and rounding
 
@@ -52,3 +54,10 @@ def dst_forward(
 def latency(size: int) -> int:
     """Return the latency of a transform: read of the memory at its input, sign, FFT, phase."""
     return MEMORY_READ + SIGN + sdf_fft_latency(size) + TWIDDLE_MULTIPLY
+
+
+def parts(config: Sizes) -> Parts:
+    """Return those of the rows, and of the columns of the spectral solver; a phase gives its real part alone."""
+    factors = rom(3 * config.coefficient_width, config.columns)
+    instance = [Words(config.data_width), *fft_parts(config, False), *products(config, 2), factors]
+    return instance * (2 if config.solver == "spectral" else 1)

@@ -10,10 +10,12 @@ from tactile_depth.chip.poisson.transform.dst_forward import SIGN, alternate_sig
 from tactile_depth.chip.poisson.transform.mode_pairs import latency as mode_pairs_latency
 from tactile_depth.chip.poisson.transform.mode_pairs import mode_pairs
 from tactile_depth.chip.poisson.transform.sdf_fft import latency as sdf_fft_latency
+from tactile_depth.chip.poisson.transform.sdf_fft import parts as fft_parts
 from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import LATENCY as TWIDDLE_MULTIPLY
 from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_multiply
+from tactile_depth.chip.resources import DISTRIBUTED, Memory, Multiplier, Parts, Sizes, Words, rom
 
 
 def dst_inverse(
@@ -42,3 +44,19 @@ def dst_inverse(
 def latency(size: int) -> int:
     """Return the latency of a transform: pairs, phase, FFT, sign."""
     return mode_pairs_latency(size) + TWIDDLE_MULTIPLY + sdf_fft_latency(size) + SIGN
+
+
+def parts(config: Sizes) -> Parts:
+    """Return those of the words of the arithmetic, and of the stored words of the spectral solver; with mode_pairs."""
+    size, coefficient, found = config.columns, config.coefficient_width, Parts()
+    widths = [config.arithmetic_width, config.data_width]
+    for width in widths if config.solver == "spectral" else widths[:1]:
+        found += [
+            Words(config.data_width),
+            *[Multiplier(width, coefficient)] * 4,
+            Memory("delay lines", width, size // 2 + 1),
+            Memory("row buffers", width, size, DISTRIBUTED),
+            rom(3 * coefficient, size),
+            *fft_parts(config, True),
+        ]
+    return found

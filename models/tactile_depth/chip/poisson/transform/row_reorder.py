@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.transform.orders import makhoul, natural
+from tactile_depth.chip.resources import Memory, Parts, Words
 
 LATENCY = 2  # from the last word of a row
 
@@ -14,3 +16,12 @@ def row_reorder(rows: np.ndarray, to_burst: bool) -> np.ndarray:
     """Reorder rows (..., N) from natural to Makhoul order, or back."""
     order = makhoul if to_burst else natural
     return rows[..., order(rows.shape[-1])]
+
+
+def parts(config: Configuration) -> Parts:
+    """Return the buffers of divergence and of depth."""
+    widths = config.divergence.width, config.data_width
+    return [
+        *[Words(config.data_width)] * 2,
+        *(Memory("row buffers", width, 2 * config.columns) for width in widths),
+    ]

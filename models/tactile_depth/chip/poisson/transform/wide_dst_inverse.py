@@ -6,15 +6,19 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.transform.dst_forward import SIGN, alternate_sign
 from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_multiply
 from tactile_depth.chip.poisson.transform.wide_corner_turn import latency as wide_corner_turn_latency
 from tactile_depth.chip.poisson.transform.wide_fft import latency as wide_fft_latency
+from tactile_depth.chip.poisson.transform.wide_fft import parts as fft_parts
 from tactile_depth.chip.poisson.transform.wide_row_pairs import latency as wide_row_pairs_latency
 from tactile_depth.chip.poisson.transform.wide_row_pairs import wide_row_pairs
 from tactile_depth.chip.poisson.transform.wide_twiddle import LATENCY as WIDE_TWIDDLE
+from tactile_depth.chip.poisson.transform.wide_twiddle import factors_rom
+from tactile_depth.chip.resources import LONGEST_SHIFT, Memory, Parts, Words, products
 
 
 def wide_dst_inverse(
@@ -55,3 +59,22 @@ def latency(size: int, words: int) -> int:
     paths = words // 2
     rotated = wide_row_pairs_latency(size, paths) + WIDE_TWIDDLE
     return rotated + wide_fft_latency(size, paths) + SIGN + wide_corner_turn_latency(size, paths)
+
+
+def parts(config: Configuration) -> Parts:
+    """Return those of the core with its pairs of rows and its corner turn."""
+    size, data, width, paths = config.columns, config.data_width, config.arithmetic_width, config.lanes // 2
+    beats = size // paths
+    half = beats // 2
+    turned = Memory("row buffers", data, 2 * half if paths == 1 else 2 * beats)
+    turn = latency(size, config.lanes) - wide_corner_turn_latency(size, paths)
+    return [
+        Words(paths * data),
+        *[Memory("delay lines", width, half)] * (2 * paths if half > LONGEST_SHIFT else 0),
+        *[Memory("row buffers", 2 * width, half)] * (2 * paths),
+        *products(config, 4 * paths),
+        factors_rom(config, paths),
+        *fft_parts(config, paths, True),
+        Memory("delay lines", 1, turn),
+        *[turned] * (4 if paths == 1 else 2 * paths),
+    ]

@@ -6,12 +6,16 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.transform.sdf_fft import latency as sdf_fft_latency
-from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft, twiddle_stages
+from tactile_depth.chip.poisson.transform.sdf_fft import parts as sdf_fft_parts
+from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft, stages, twiddle_stages
 from tactile_depth.chip.poisson.transform.twiddle_multiply import twiddle_factors
 from tactile_depth.chip.poisson.transform.wide_butterfly import LATENCY as BUTTERFLY
 from tactile_depth.chip.poisson.transform.wide_commutator import LEAD, from_beats, positions, to_beats
 from tactile_depth.chip.poisson.transform.wide_twiddle import LATENCY as WIDE_TWIDDLE
+from tactile_depth.chip.poisson.transform.wide_twiddle import factors_rom
+from tactile_depth.chip.resources import LONGEST_SHIFT, Memory, Parts, products
 
 
 def wide_fft(
@@ -61,3 +65,18 @@ def latency(size: int, paths: int) -> int:
         return LEAD + sdf_fft_latency(size)
     stages = (size.bit_length() - 1) * BUTTERFLY + twiddle_stages(size) * WIDE_TWIDDLE
     return size // paths - 1 + stages
+
+
+def parts(config: Configuration, paths: int, inverse: bool) -> Parts:
+    """Return a line for each path in each commutator, and the products by factors that are not 1 in every beat."""
+    if paths == 1:
+        return sdf_fft_parts(config, inverse)
+    size = config.columns
+    delays = [1 << bit for bit in range((size // paths).bit_length() - 1)]
+    lines = [Memory("delay lines", 2 * config.arithmetic_width, delay) for delay in delays if delay > LONGEST_SHIFT]
+    found: Parts = [*lines * paths]
+    for stage in stages(size, inverse):
+        if not stage.delay:
+            rotated = paths - constant_paths(size, paths, stage.block, inverse)
+            found += [*products(config, 4 * rotated), factors_rom(config, paths)]
+    return found

@@ -6,7 +6,9 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.transform.twiddle_multiply import twiddle_multiply
+from tactile_depth.chip.resources import BLOCK, DISTRIBUTED, DISTRIBUTED_BITS, Memory, rom
 
 LATENCY = 5
 
@@ -32,3 +34,9 @@ def ones(factors: np.ndarray, factor_width: int) -> int:
     """Return a word with a bit for each path, 1 where the factor is 1 in every beat."""
     one = factors == (2 ** (factor_width - 1) - 1, 0)
     return sum(int(path) << index for index, path in enumerate(np.all(one, axis=(0, 2))))
+
+
+def factors_rom(config: Configuration, paths: int) -> Memory:
+    """Return the table of factors, a block memory where the factors of one path fill one."""
+    width, beats = 3 * config.coefficient_width, config.columns // paths
+    return rom(width * paths, beats, BLOCK if width * beats > DISTRIBUTED_BITS else DISTRIBUTED)
