@@ -204,7 +204,7 @@ def test_a_contact_over_twice_as_deep_saturates_and_says_so(tmp_path: Path, solv
 
 
 def test_flat_gel_reads_nothing(tmp_path: Path) -> None:
-    report = run(tmp_path, "N=16", "FRAMES=flat")
+    report = run(tmp_path, "N=16", "FRAMES=flat", "SIM=icarus")
     assert report["rms_percent_of_peak"] == [None]
     assert report["contact_latency_cycles"] == [None]
 
@@ -228,7 +228,7 @@ def test_pictures_with_a_reference(tmp_path: Path) -> None:
         io.imsave(folder / name, frame, check_contrast=False)
     report = run(
         tmp_path,
-        "N=32",
+        *("N=32", "SIM=icarus"),
         f"FRAMES={folder}",
         f"REFERENCE={tmp_path / 'background.png'}",
         "CALIBRATION=gelsight-mini",
@@ -237,15 +237,22 @@ def test_pictures_with_a_reference(tmp_path: Path) -> None:
     assert report["pixel_pitch_mm"] == pytest.approx(240 / 32 * load("gelsight-mini").pixel_pitch_mm)
 
 
-def _press(tmp_path: Path, name: str = "ball") -> list[Any]:
+def _press(tmp_path: Path) -> list[Any]:
     """Return the variables of a drawn press, its reference and its calibration."""
-    drawn = sample(name)
+    drawn = sample("ball")
     drawn.sensor.save(tmp_path / "sensor.npz")
     for file, image in (("press.png", drawn.image), ("background.png", drawn.reference)):
         io.imsave(tmp_path / file, image, check_contrast=False)
     words: dict[str, Any] = {"FRAMES": "press.png", "REFERENCE": "background.png", "CALIBRATION": "sensor.npz"}
     small = ["ROWS=24", "COLS=32", "SOLVER=tridiagonal", "BOUNDARY=neumann", "SIM=icarus"]
     return [*small, *(f"{key}={tmp_path / file}" for key, file in words.items())]
+
+
+@pytest.fixture(scope="module")
+def pressed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, np.ndarray]:
+    """Report and codes of the drawn press."""
+    folder = tmp_path_factory.mktemp("press")
+    return run(folder, *_press(folder)), np.load(folder / "out" / "depth.npy")
 
 
 def test_the_rtl_computes_what_the_python_interface_returns(tmp_path: Path) -> None:
@@ -258,10 +265,10 @@ def test_the_rtl_computes_what_the_python_interface_returns(tmp_path: Path) -> N
     np.testing.assert_array_equal(result.depth_mm, codes * report["depth_lsb_mm"])
 
 
-def test_a_larger_picture_of_the_same_camera_has_the_same_depth(tmp_path: Path) -> None:
-    words = _press(tmp_path)
-    report = run(tmp_path, *words)
-    codes = np.load(tmp_path / "out" / "depth.npy")
+def test_a_larger_picture_of_the_same_camera_has_the_same_depth(
+    tmp_path: Path, pressed: tuple[Any, np.ndarray]
+) -> None:
+    words, (report, codes) = _press(tmp_path), pressed
     for name in ("press.png", "background.png"):
         io.imsave(tmp_path / name, io.imread(tmp_path / name).repeat(2, 0).repeat(2, 1), check_contrast=False)
     twice = run(tmp_path, *words)
@@ -269,9 +276,11 @@ def test_a_larger_picture_of_the_same_camera_has_the_same_depth(tmp_path: Path) 
     assert twice["depth_lsb_mm"] == report["depth_lsb_mm"]
 
 
-def test_dark_pixels_are_reported_and_warned_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_dark_pixels_are_reported_and_warned_of(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], pressed: tuple[Any, np.ndarray]
+) -> None:
     words = _press(tmp_path)
-    assert run(tmp_path, *words)["dark_pixels"] == [0]
+    assert pressed[0]["dark_pixels"] == [0]
     background = io.imread(tmp_path / "background.png")
     background[:80, :80] = 0
     io.imsave(tmp_path / "background.png", background, check_contrast=False)
@@ -282,10 +291,10 @@ def test_dark_pixels_are_reported_and_warned_of(tmp_path: Path, capsys: pytest.C
 
 
 def test_slopes_outside_the_calibrated_range_are_reported_and_warned_of(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], pressed: tuple[Any, np.ndarray]
 ) -> None:
     words = _press(tmp_path)
-    assert run(tmp_path, *words)["slopes_outside_calibration"] == [0]
+    assert pressed[0]["slopes_outside_calibration"] == [0]
     replace(sample("ball").sensor, fitted_slope={"cubic": 0.4}).save(tmp_path / "sensor.npz")
     report = run(tmp_path, *words)
     assert report["slopes_outside_calibration"][0] > 10
