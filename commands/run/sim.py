@@ -24,7 +24,7 @@ from commands.run import bench
 from commands.run.compare import compare, warnings
 from commands.run.draw import draw_depth
 from commands.run.flags import flags
-from commands.run.sim_table import check_registers, coefficient_words, measure, table
+from commands.run.sim_table import check_registers, coefficient_words, latencies, table
 from commands.study.accuracy import errors
 from tactile_depth.base import files
 from tactile_depth.chip import latency
@@ -111,7 +111,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
         dumps = take_dumps(request, config, frames, work, result)
         report = {
             **describe(request, config, calibration, frames),
-            **measure(played),
+            **latencies(played),
             **{key: values * request.repeat for key, values in percent.items()},
             **camera_report(request, config, frames, rtl_codes[0]),
             "bit_exact": not difference.count,
@@ -121,7 +121,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
             "waves": dumps,
             **flagged.report(request.repeat),
         }
-        differences = check_registers(played.registers, report, request.stalls)
+        differences = check_registers(played, report["frames"], clips, not request.stalls and frames.camera is None)
         report["registers_agree"] = not differences
         report["warnings"] = [] if difference.count else warnings(config, report["rms_percent_of_peak"], clips)
         report["warnings"] += flagged.warnings()

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of a run of `make sim`: latencies, the hardware's own counters, and the table that is printed."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from commands.run import bench
@@ -11,7 +13,7 @@ from tactile_depth.chip.poisson.thomas_table import thomas_table
 ROWS_SHOWN = 16
 
 
-def measure(played: bench.Played) -> dict[str, list[int | None]]:
+def latencies(played: bench.Played) -> dict[str, list[int | None]]:
     """Return the latencies of each frame in cycles, from the events of the bench."""
     taken, depth, end = (played.clocks(letter) for letter in "tde")
     first, last = taken[::2], taken[1::2]
@@ -28,17 +30,20 @@ def measure(played: bench.Played) -> dict[str, list[int | None]]:
     }
 
 
-def check_registers(registers: dict[str, int], report: dict, stalls: float) -> list[str]:
-    """Compare the counters of the hardware with the events at the pins; return one line for each difference."""
-    total = report["frames"]
-    clipped = sum(report["saturations"].values())
-    expected = {"frames_in": total, "frames_out": total, "frames_dropped": 0, "saturations": min(clipped, 2**32 - 1)}
-    if not stalls and "camera" not in report:  # with a camera it counts from the first pixel of the grid
-        expected["first_depth_latency"] = report["first_depth_latency_cycles"][-1]
+def check_registers(played: bench.Played, total: int, clips: Mapping[str, int], timed: bool) -> list[str]:
+    """Compare the counters of the hardware with the events at the pins; return one line for each difference.
+
+    `timed`: there are no stalls, and no camera, with which the latency counts from the first pixel of the grid.
+    """
+    clipped = min(sum(clips.values()), 2**32 - 1)
+    expected: dict[str, int | None]
+    expected = {"frames_in": total, "frames_out": total, "frames_dropped": 0, "saturations": clipped}
+    if timed:
+        expected["first_depth_latency"] = latencies(played)["first_depth_latency_cycles"][-1]
     return [
-        f"register {name.upper()} is {registers[name]}, expected {value}"
+        f"register {name.upper()} is {played.registers[name]}, expected {value}"
         for name, value in expected.items()
-        if registers[name] != value
+        if played.registers[name] != value
     ]
 
 

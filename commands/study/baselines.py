@@ -258,6 +258,11 @@ def threads_of(row: dict[str, Any]) -> str:
     return "device" if row["threads"] is None else str(row["threads"])
 
 
+def times_of(row: dict[str, Any]) -> list[str]:
+    """Return median, p99 and maximum of a row of software in us as text."""
+    return [f"{row[key]:,.1f}" if key in row else "-" for key in ("p50_us", "p99_us", "max_us")]
+
+
 def tables(document: dict[str, Any]) -> list[Table]:
     """Return a summary, throughput, and one table for each grid."""
     made = [fastest_and_pipeline(document), throughput(document)]
@@ -272,11 +277,10 @@ def tables(document: dict[str, Any]) -> list[Table]:
                     rows.append((name, f"{row[what]:,} clocks", micros, micros, micros, "-"))
         for row in document["software"]:
             if row["grid"] == size:
-                figures = [f"{row[key]:,.1f}" if key in row else "-" for key in ("p50_us", "p99_us", "max_us")]
                 error = row.get("problem") or f"{row['error_percent']:.6f}"
                 if row.get("runs", document["runs"]) < document["runs"]:
                     error += f" ({row['runs']} solves)"
-                rows.append((row["method"], threads_of(row), *figures, error))
+                rows.append((row["method"], threads_of(row), *times_of(row), error))
         made.append(Table(head, rows, f"{size} x {size}"))
     return made
 
@@ -302,9 +306,8 @@ def fastest_and_pipeline(document: dict[str, Any]) -> Table:
             for row in document["pipeline"]
             if row["grid"] == best["grid"]
         ]
-        figures = (f"{best[key]:,.1f}" for key in ("p50_us", "p99_us", "max_us"))
         name = f"{best['method']}, {threads_of(best)}"
-        rows.append((f"{best['grid']} x {best['grid']}", begins(best), name, *figures, *ours))
+        rows.append((f"{best['grid']} x {best['grid']}", begins(best), name, *times_of(best), *ours))
     columns = (*(f"{solver} pipeline" for solver in COLUMNS), "tridiagonal pipeline with the most lanes")
     pipelines = (f"{column}: first depth / whole map" for column in columns)
     head = ("us after the last pixel", "software from", "fastest, threads", "p50", "p99", "maximum", *pipelines)

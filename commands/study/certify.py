@@ -195,8 +195,7 @@ def stream(request: run_request.Request, config: Configuration, calibration: Sen
     with files.temporary() as folder:
         played = sim.simulate(request, config, Frames(frames, 1.0, "", labels), calibration, folder)
     codes = twin.upright(played.codes.reshape(request.repeat, *model.shape[1:]))
-    report = {"frames": request.repeat * len(frames), "saturations": clipped, **sim_table.measure(played)}
-    differences = sim_table.check_registers(played.registers, report, request.stalls)
+    differences = sim_table.check_registers(played, request.repeat * len(frames), clipped, not request.stalls)
     return Streamed(codes, clipped, played.registers, bool((codes == model).all()), differences)
 
 

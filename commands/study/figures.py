@@ -23,7 +23,7 @@ from commands.common.repository import GENERATED, ROOT
 from commands.common.tabular import Table
 from commands.common.zero_offset import untouched
 from commands.cost.cost import CAMERAS, KINDS, cost
-from commands.hardware import estimate, lut_runs, memory_model, synth
+from commands.hardware import estimate, lut_runs, memory_model, synth, synthesis
 from commands.hardware.targets import DEFAULT_TARGET, TARGETS
 from commands.run.sim_table import coefficient_words
 from commands.study import baselines, budget, trade_front
@@ -33,7 +33,6 @@ from tactile_depth.chip.configuration import COLOURS, STORED, Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.chip.limits import most_lanes
 from tactile_depth.depth.twin import Twin
-from tactile_depth.pictures.frames import load_frames, on_grid
 
 PAGES = [ROOT / "docs" / f"{name}.md" for name in ("architecture", "results", "hardware", "software", "error-budget")]
 TABLE = re.compile(r"(<!-- figures: ([^\n]+) -->\n).*?(\n<!-- end of figures -->)", re.DOTALL)
@@ -75,10 +74,7 @@ SOURCE = ("commit", "sources since")  # heads of the last columns of recorded fi
 def error_percent(arguments: list[str]) -> tuple[Configuration, str]:
     """Return the configuration of `make sim` with these variables, and its RMS error in % of peak: mean (worst)."""
     request = run_request.parse(arguments)
-    calibration, size = run_request.load_sensor(request), (request.rows, request.columns)
-    frames = load_frames(request.frames, size, request.reference, request.seed, request.press, request.camera)
-    calibration = on_grid(calibration, frames)
-    config = run_request.configure(request, calibration)
+    frames, calibration, config = synthesis.design(request)
     twin = Twin(calibration, config, untouched(request, frames))
     codes, light, _ = twin.played(frames.pixels)
     exact = twin.exact_px(frames.pixels, None if light is None else light[0])
@@ -218,15 +214,19 @@ def synthesized(over_grids: bool, target: str = DEFAULT_TARGET) -> Table:
     return Table(head, rows)
 
 
+def clocks(figures: dict[str, Any]) -> str:
+    """Return the routed clock in MHz: the median (and that of each seed)."""
+    each = ", ".join(f"{mhz:.1f}" for mhz in figures["fmax_mhz_by_seed"].values())
+    return f"{figures['fmax_mhz']:.1f} ({each})"
+
+
 def routed() -> Table:
     rows = []
     for name, figures, source in runs("fpga TARGET=ulx3s"):
-        clocks = ", ".join(f"{mhz:.1f}" for mhz in figures["fmax_mhz_by_seed"].values())
         delays = figures.get("crossing_ns_by_seed", {}).values()
         crossing = f"{max(delays):.2f} ns" if delays else "-"
         used = (f"{figures['utilization'][cell]['used']:,}" for cell in ULX3S_CELLS)
-        clock = f"{figures['fmax_mhz']:.1f} ({clocks})"
-        rows.append((name, clock, figures["clock_mhz"], crossing, *used, *source))
+        rows.append((name, clocks(figures), figures["clock_mhz"], crossing, *used, *source))
     head = (
         "build",
         "routed clock, MHz: median (each seed)",
@@ -243,10 +243,9 @@ ULX3S_CELLS = {"MULT18X18D": "MULT18X18D", "DP16KD": "DP16KD", "TRELLIS_COMB": "
 def routed_alone() -> Table:
     rows = []
     for _, figures, source in runs("fpga TARGET=nexus"):
-        clocks = ", ".join(f"{mhz:.1f}" for mhz in figures["fmax_mhz_by_seed"].values())
         used = (f"{figures['utilization'][cell]['used']:,}" for cell in NEXUS_CELLS)
         words = (figures[STORED], figures["lanes"], figures["device"], figures["products_in_luts"])
-        rows.append((*words, f"{figures['fmax_mhz']:.1f} ({clocks})", f"{figures['clock_mhz']:g}", *used, *source))
+        rows.append((*words, clocks(figures), f"{figures['clock_mhz']:g}", *used, *source))
     head = ("bits of a word", "lanes P", "device", "products in LUTs", "routed clock, MHz: median (each seed)")
     return Table((*head, "assumed elsewhere, MHz", *NEXUS_CELLS.values(), *SOURCE), rows)
 
@@ -284,7 +283,7 @@ def against_software() -> Iterator[Table]:
             solve, pixels = (best[config.columns, from_pixels] for from_pixels in (False, True))
             cycles = last_pixel_to_last_depth(config)
             micros = cycles / published.CLOCK_MHZ
-            times = (", ".join(f"{row[key]:,.1f}" for key in ("p50_us", "p99_us", "max_us")) for row in (solve, pixels))
+            times = (", ".join(baselines.times_of(row)) for row in (solve, pixels))
             earlier = (f"{row['p50_us'] / micros:.1f}" for row in (solve, pixels))
             grid = f"{config.rows} x {config.columns}"
             equal = f"{cycles / solve['p50_us']:.0f}"
@@ -331,7 +330,7 @@ def software_throughput() -> list[Table]:
 def software_methods() -> Table:
     head = ("128 x 128", "threads", "p50, us", "p99, us", "maximum, us", "error, % of peak")
     rows = [
-        (row["method"], row["threads"], *(f"{row[key]:,.1f}" for key in ("p50_us", "p99_us", "max_us")),
+        (row["method"], row["threads"], *baselines.times_of(row),
          f"{row['error_percent']:.6f}")
         for _, document, _ in runs("baselines")
         for row in document["software"]

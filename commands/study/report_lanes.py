@@ -20,10 +20,11 @@ from commands.study.report_page import Section, results, saved
 from commands.study.rows import Row
 from tactile_depth.chip.configuration import Configuration
 
+CELLS = ("DSP48E2", "LUT", "FF", "BRAM36", "UltraRAM")
 HEAD = (
     *("grid", "lanes", "last pixel to first depth, cycles", "last pixel to last depth, cycles"),
     *(f"the same at {CLOCK_MHZ:g} MHz, us", "multipliers of 27 x 18", "memory, Mbit"),
-    *("DSP48E2", "LUT", "FF", "BRAM36", "UltraRAM", "routed on the ULX3S, MHz"),
+    *(*CELLS, "routed on the ULX3S, MHz"),
 )
 
 
@@ -34,11 +35,10 @@ def cells(row: Row, designs: Sequence[dict[str, Any]], routed: Sequence[dict[str
     whole = int(row["last_pixel_to_last_depth_cycles"])
     synthesized = [design["totals"] for design in designs if wanted.items() <= design["configuration"].items()]
     clocks = [report["fmax_mhz"] for report in routed if wanted.items() <= report.items()]
-    names = ("DSP48E2", "LUT", "FF", "BRAM36", "UltraRAM")
     return (
         *(f"{columns} x {columns}", str(lanes), f"{int(row['last_pixel_to_first_depth_cycles']):,}", f"{whole:,}"),
         *(f"{whole / CLOCK_MHZ:.1f}", row["multipliers"], f"{int(row['memory_bits']) / 1e6:.2f}"),
-        *(f"{synthesized[-1][name]:,g}" if synthesized else "-" for name in names),
+        *(f"{synthesized[-1][name]:,g}" if synthesized else "-" for name in CELLS),
         f"{clocks[-1]:.1f}" if clocks else "-",
     )
 

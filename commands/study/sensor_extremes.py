@@ -18,6 +18,7 @@ from commands.run import sim, sim_table
 from commands.run.flags import flags
 from commands.study import long_state
 from commands.study.drawn_light import DrawnLight, Height, exact
+from commands.study.drawn_sensor import flat
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError, InputWarning
 from tactile_depth.chip.configuration import STORED, WIDTHS, WORDS, Configuration
@@ -59,19 +60,15 @@ class Case:
     name: str
     height: Callable[[DrawnLight], Height] | None
     lights: tuple[Colours, ...] = (EVEN,) * 3
-    reference: Callable[[DrawnLight], Height] = lambda drawn: _flat
+    reference: Callable[[DrawnLight], Height] = lambda drawn: flat
     exposure: float = 1.0
     tilt: float = 0.0
     paint: Callable[[np.ndarray, np.ndarray], None] = lambda reference, frames: None
     saturates: bool | None = False
 
 
-def _flat(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    return np.zeros(np.broadcast_shapes(x.shape, y.shape))
-
-
 def untouched(drawn: DrawnLight) -> Height:
-    return _flat
+    return flat
 
 
 def ball(drawn: DrawnLight) -> Height:
@@ -104,7 +101,7 @@ def bowl(drawn: DrawnLight) -> Height:
 
 def plate(drawn: DrawnLight) -> Height:
     """Return a flat plate, pressed 0.5 mm deep, that is larger than the picture."""
-    return lambda x, y: _flat(x, y) + 0.5
+    return lambda x, y: flat(x, y) + 0.5
 
 
 def checkerboard(drawn: DrawnLight) -> Height:
@@ -275,8 +272,7 @@ def measure(case: Case, request: run_request.Request, drawn: DrawnLight, rtl: bo
             labels = tuple(map(str, range(len(frames))))
             played = sim.simulate(request, config, Frames(frames, 1.0, "", labels), sensor, folder, twin.zero, light)
         bit_exact = bool((twin.upright(played.codes.reshape(codes.shape)) == codes).all())
-        report = {"frames": len(frames), "saturations": clipped, **sim_table.measure(played)}
-        differences = sim_table.check_registers(played.registers, report, request.stalls)
+        differences = sim_table.check_registers(played, len(frames), clipped, not request.stalls)
         status = played.registers["status"]
     assert light is not None
     dark = flags(frames, sensor, config, "", light[0]).dark.any()
@@ -309,7 +305,7 @@ def measure(case: Case, request: run_request.Request, drawn: DrawnLight, rtl: bo
 
 def _shown(case: Case, drawn: DrawnLight) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
     """Return the reference, the frames, and the true height in mm (rows, columns) of all of them."""
-    height = _flat if case.height is None else case.height(drawn)
+    height = flat if case.height is None else case.height(drawn)
     side = 1 + case.tilt * np.linspace(-1, 1, drawn.grid[1])[:, None]
     reference = drawn.pictures(drawn.levels(case.reference(drawn)), [(case.exposure,) * 3], seed=1)[0]
     lights = np.array(case.lights) * case.exposure
