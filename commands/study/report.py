@@ -19,6 +19,7 @@ import matplotlib
 import numpy as np
 
 from commands.common import run_request, variables
+from commands.common.progress import duration
 from commands.common.published import CLOCK_MHZ, FIRST_DEPTH_CYCLES, RMS_PERCENT, WORST_RMS_PERCENT
 from commands.common.repository import ROOT
 from commands.common.tabular import Table, shown
@@ -45,6 +46,7 @@ from commands.study.transform_noise import Compliance
 DEFAULT_OUT = ROOT / "build" / "report"
 SIZE = 128
 CONSECUTIVE = 1000  # frames, at least
+RTL_S = 240  # of these frames and the extremes, on two cores
 UM_PER_MM = 1000
 EXTREMES_SIZE = 64
 EXTREMES_COMMAND = f"make extremes N={EXTREMES_SIZE} SHORT=1"
@@ -342,6 +344,9 @@ def hardware_sections() -> list[Section]:
 def build(folder: Path) -> Path:
     """Measure and write the page; returns its path. Raises InputError, Mismatch or RuntimeError."""
     files.make(folder, ["report.html"])
+    missing = not (baselines.DEFAULT_OUT / baselines.RESULTS[0]).exists()
+    least = RTL_S + missing * baselines.SECONDS
+    print(f"report takes {duration(least)} at least, and the rows that the sweep lacks", flush=True)
 
     def step(name: str, call: Callable[..., Any], *arguments: Any) -> Any:
         print(f"{name} ..", flush=True)

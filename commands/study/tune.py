@@ -194,9 +194,8 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
         return replace(request, widths=at.words, solver=at.solver, lanes=at.lanes)
 
     _check_grid(request, solvers)
-    frames = load_frames(
-        request.frames, (request.rows, request.columns), request.reference, request.seed, request.press
-    )
+    shape = (request.rows, request.columns)
+    frames = load_frames(request.frames, shape, request.reference, request.seed, request.press)
     calibration = on_grid(calibration, frames)
     built: dict[Widths, Configuration | None] = {}
     refusals: list[InputError] = []
@@ -235,9 +234,8 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
     default = next((at for solver in COLUMNS if build(at := Widths(solver, *DEFAULT)) is not None), None)
     counted, base = _print_choice(search, best, default, limits)
     print(f"proof in RTL, on {len(proving.pixels)} frames that it was not tuned on:")
-    proof = out / "proof"
-    status = sim.run(replace(shaped(best), out=proof), proving)
-    report = json.loads((proof / "report.json").read_text())
+    status = sim.run(replace(shaped(best), out=out / "proof"), proving)
+    report = json.loads((out / "proof" / "report.json").read_text())
     proven = limits.judgement.of(report["rms_percent_of_peak"])
     if status or proven > limits.tolerance:
         misses = f"it misses TOLERANCE={limits.tolerance:g} on frames that it was not tuned on ({proven:.4f} % of peak)"

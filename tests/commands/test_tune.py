@@ -3,6 +3,7 @@
 
 import json
 import math
+import re
 import shutil
 from functools import cache
 from itertools import product
@@ -130,6 +131,7 @@ def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(
     assert report["chosen"]["multipliers"] <= report["default"]["multipliers"]
     assert report["chosen"]["memory_bits"] < report["default"]["memory_bits"]
     assert "make sim CONFIG=" in output
+    assert re.search(r"^tuning takes about \d+ (s|minutes|hours), and the proof in RTL follows$", output, re.MULTILINE)
     chosen = run_request.parse(
         [f"CONFIG={out / 'config.json'}", "SIM=icarus", f"OUT={tmp_path / 'sim'}", "FRAMES=ball"]
     )
