@@ -181,10 +181,6 @@ def number(values: Mapping[str, str], name: str, default: Any, low: float, high:
     return _checked(Argument(name, values[name]), kind, low, high) if values.get(name) else default
 
 
-def whole_numbers(values: Mapping[str, str], name: str, default: Sequence[int]) -> tuple[int, ...]:
-    return numbers(Argument(name, values[name])) if values.get(name) else tuple(default)
-
-
 def choice(values: Mapping[str, str], name: str, accepted: Sequence[str]) -> str:
     """Return the word in the variable `name`; the first that is accepted without that variable. Raises InputError."""
     value = values.get(name) or accepted[0]

@@ -109,8 +109,8 @@ BOARDS = {
 
 
 @dataclass(frozen=True)
-class Request:
-    """Variables of the command."""
+class BoardRun:
+    """Design, and the effort to place and route it on a board."""
 
     target: str
     seeds: tuple[int, ...]
@@ -132,11 +132,11 @@ class Request:
         return ROOT / "constraints" / self.board.options[-1]
 
 
-def request_of(values: dict[str, str]) -> Request:
-    """Return variables as a Request. Raises InputError."""
+def request_of(values: dict[str, str]) -> BoardRun:
+    """Return variables as a BoardRun. Raises InputError."""
     target = values.get("TARGET", "")
     one_of(Argument("TARGET", target), BOARDS)
-    seeds = variables.whole_numbers(values, "SEEDS", BOARDS[target].seeds)
+    seeds = variables.numbers(Argument("SEEDS", values["SEEDS"])) if "SEEDS" in values else BOARDS[target].seeds
     if not seeds or not all(1 <= seed <= LARGEST_SEED for seed in seeds) or len(set(seeds)) < len(seeds):
         raise InputError(
             f"SEEDS={values['SEEDS']}: accepted are different whole numbers from 1 with commas between, as 1,2,3"
@@ -147,13 +147,13 @@ def request_of(values: dict[str, str]) -> Request:
             [*map("=".join, values.items())], ("TARGET", "SEEDS", "MINUTES", *run_request.CONFIGURING, "OUT")
         )
         design = run_request.of_values({"SOLVER": "tridiagonal", **values}, frames="")
-        return Request(target, seeds, minutes, CLOCK_MHZ, None, design)
+        return BoardRun(target, seeds, minutes, CLOCK_MHZ, None, design)
     clock_mhz = values.get("CLOCK_MHZ", str(DEFAULT_CLOCK_MHZ))
     if clock_mhz not in map(str, CLOCKS_MHZ):
         raise InputError(f"CLOCK_MHZ={clock_mhz}: accepted are {', '.join(map(str, CLOCKS_MHZ))}")
     sensor = _sensor(values)
     design = run_request.of_values(values, run_request.WITH_CAMERA, "chip", "")
-    return Request(target, seeds, minutes, int(clock_mhz), sensor, design)
+    return BoardRun(target, seeds, minutes, int(clock_mhz), sensor, design)
 
 
 def _sensor(values: dict[str, str]) -> Camera | None:
@@ -172,7 +172,7 @@ def _sensor(values: dict[str, str]) -> Camera | None:
     return sensor
 
 
-def camera_of(request: Request, camera: CameraConfiguration | None) -> CameraConfiguration | None:
+def camera_of(request: BoardRun, camera: CameraConfiguration | None) -> CameraConfiguration | None:
     """Return the camera of a request's frames as the board's receiver delivers it. Raises InputError."""
     if request.sensor is None or camera is None:
         return None
@@ -220,7 +220,7 @@ def tool(name: str, arguments: list[str], folder: Path, log: str, processor_s: i
 
 
 def synthesize(
-    request: Request, config: Configuration, calibration: Sensor, camera: CameraConfiguration | None, folder: Path
+    request: BoardRun, config: Configuration, calibration: Sensor, camera: CameraConfiguration | None, folder: Path
 ) -> dict[str, Any]:
     """Leave the netlist in `folder`, and return what the report says of it. Raises RuntimeError."""
     top, sources = request.top, repository.BOARDS[request.target]
@@ -257,7 +257,7 @@ def too_much(log: str) -> list[str]:
     ]
 
 
-def route(request: Request, seed: int, folder: Path) -> dict[str, Any] | None:
+def route(request: BoardRun, seed: int, folder: Path) -> dict[str, Any] | None:
     """Place and route, and return nextpnr's report with the seconds that it took; None when its time is used up.
 
     Raises InputError: the design does not fit; RuntimeError.
@@ -304,7 +304,7 @@ def longest_path(report: dict[str, Any], name: str = "pipeline") -> list[str]:
     ]
 
 
-def build(request: Request, work: Path) -> dict[str, Any]:
+def build(request: BoardRun, work: Path) -> dict[str, Any]:
     """Leave the bitstream in a folder and return the report. Raises InputError or RuntimeError."""
     frames, calibration, config = synthesis.design(request.design)
     camera = camera_of(request, frames.camera)
@@ -413,7 +413,7 @@ def bitstream_name(top: str, report: dict[str, Any]) -> str:
     return f"{top}-{MISSES}.bit" if missed(report) else f"{top}.bit"
 
 
-def main(request: Annotated[Request, variables.Several(VARIABLES, request_of)]) -> int:
+def main(request: Annotated[BoardRun, variables.Several(VARIABLES, request_of)]) -> int:
     """Run the flow and return the exit status."""
     check(request.board)
     design = request.design

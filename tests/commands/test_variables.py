@@ -31,7 +31,7 @@ def test_an_empty_value_is_refused() -> None:
 def test_a_number_is_written_in_plain_digits(word: str, kind: type) -> None:
     with pytest.raises(InputError, match=r"from 1 to 20, in digits 0 to 9 without spaces and _$"):
         variables.number({"N": word}, "N", 7, 1, 20, kind)
-    assert variables.whole_numbers({"N": f"1,{word}"}, "N", (7,)) == ()
+    assert variables.numbers(Argument("N", f"1,{word}")) == ()
 
 
 @pytest.mark.parametrize(("word", "value"), [("2", 2), ("+2.5", 2.5), (".5", 0.5), ("5.", 5), ("-1e-1", -0.1)])
