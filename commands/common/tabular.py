@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of results, declared once with the fields of a result, and written for a terminal, a page, HTML or CSV.
+"""Tables of results, declared once with the fields of a result, and written for a terminal, a page or HTML.
 
 @dataclass(frozen=True)
 class Row:
