@@ -234,7 +234,8 @@ def test_a_format_too_narrow_for_the_range_is_refused_with_its_node() -> None:
 def test_no_derived_format_saturates_within_the_range(
     solver: str, neumann: bool, depth_range_px: Any, columns: int, data_width: int, coefficient_width: int
 ) -> None:
-    config = Configuration(columns, 0, solver, neumann, data_width, coefficient_width, depth_range_px)
+    words: dict[str, Any] = {"data_width": data_width, "coefficient_width": coefficient_width}
+    config = Configuration(columns, 0, solver, neumann, **words, depth_range_px=depth_range_px)
     assert {node.name for node in certify(config) if node.depths_headroom_bits < 0} == set()
 
 

@@ -95,7 +95,7 @@ class Configuration:
     rows: Annotated[int, Choice(option="--grid ..x{}")] = 0
     solver: Annotated[str, Choice()] = "spectral"
     neumann: Annotated[bool, Choice(argument="boundary")] = False
-    lanes: Annotated[int, Choice()] = 1
+    lanes: Annotated[int, Choice(option="lanes={}")] = 1  # no option of the command has it
     data_width: Annotated[int, Width(word="stored word", accepted=(12, 32))] = 24
     coefficient_width: Annotated[int, Width(word="coefficient", accepted=(10, 24), variable="COEFF_WIDTH")] = 18
     gain_width: Annotated[int, Width(word="gain of the flat field", accepted=(16, 24), colours=True)] = 24
