@@ -92,7 +92,7 @@ def coefficients(device: Device) -> dict[str, float]:
 def terms(config: Configuration, device: Device) -> Terms:
     """Count the terms of each core."""
     counted: defaultdict[str, defaultdict[str, float]] = defaultdict(lambda: defaultdict(float))
-    for part in [Words(config.lanes * config.data_width, REST), *parts(config)]:
+    for part in [Words(config.lanes * config.depth.width, REST), *parts(config)]:
         name, core = part.core, counted[part.core]
         if isinstance(part, Multiplier):
             core["split"] += (device.multipliers(part.a, part.b) - 1) * (part.a + part.b)
@@ -116,7 +116,7 @@ def terms(config: Configuration, device: Device) -> Terms:
     counted[REST]["options"] += sum(getattr(config, option) for option in OPTIONS)
     if config.neumann and config.solver == "tridiagonal":
         core = counted["forward_elimination" if config.lanes == 1 else "wide_elimination"]
-        core["column_mean"] += config.data_width
+        core["column_mean"] += config.depth.width
     return {name: dict(amounts) for name, amounts in counted.items()}
 
 

@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
+from tactile_depth.chip.fixed_point import Format
+
 # Styles of td_ram.sv and td_rom.sv.
 DISTRIBUTED, BLOCK, ULTRA, BY_SIZE = 0, 1, 2, 3
 DISTRIBUTED_BITS = 4096  # a memory of more bits is a block memory by its size, hdl/td_types_pkg.sv
@@ -27,10 +29,10 @@ class Sizes(Protocol):
     def columns(self) -> int: ...
 
     @property
-    def data_width(self) -> int: ...
+    def depth(self) -> Format: ...
 
     @property
-    def coefficient_width(self) -> int: ...
+    def coefficient(self) -> Format: ...
 
     @property
     def arithmetic_width(self) -> int: ...
@@ -72,7 +74,7 @@ class Memory:
 
 def products(config: Sizes, number: int) -> list[Multiplier]:
     """Return products of a word of the arithmetic by a coefficient."""
-    return [Multiplier(config.arithmetic_width, config.coefficient_width)] * number
+    return [Multiplier(config.arithmetic_width, config.coefficient.width)] * number
 
 
 Parts = list[Words | Multiplier | Memory]

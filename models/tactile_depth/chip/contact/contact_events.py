@@ -213,5 +213,5 @@ class ContactEvents:
 
 
 def parts(config: Configuration) -> Parts:
-    bits = config.lanes * config.data_width
+    bits = config.lanes * config.depth.width
     return [Words(bits), Memory("delay lines", bits + DEPTH_MARKS, config.lanes.bit_length() + 5)]

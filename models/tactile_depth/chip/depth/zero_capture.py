@@ -48,5 +48,5 @@ def parts(config: Configuration) -> Parts:
     """Return the sums of nodes that are written at once."""
     log2, (rows, columns) = config.reference_block_log2, config.reference_nodes
     side = td_node_map.side(config.lanes, log2)
-    width = side * (config.data_width + 2 * log2 + LARGEST_LOG2)
-    return [Words(config.lanes * config.data_width), Memory("tables", width, rows * columns // side, BLOCK)]
+    width = side * (config.depth.width + 2 * log2 + LARGEST_LOG2)
+    return [Words(config.lanes * config.depth.width), Memory("tables", width, rows * columns // side, BLOCK)]

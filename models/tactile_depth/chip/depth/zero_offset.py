@@ -52,7 +52,7 @@ def latency(lanes: int, block_log2: int) -> int:
 
 def parts(config: Configuration) -> Parts:
     """Return the tables of nodes, the products by row weights, and the line of depths."""
-    log2, data, lanes = config.reference_block_log2, config.data_width, config.lanes
+    log2, data, lanes = config.reference_block_log2, config.depth.width, config.lanes
     side, (rows, columns) = td_node_map.side(lanes, log2), config.reference_nodes
     return [
         Words(lanes * data),

@@ -75,17 +75,17 @@ def zero_mean(d: np.ndarray, config: Configuration, monitor: Monitor | None, nod
 
 
 def parts(config: Configuration) -> Parts:
-    last = rom(thomas_table(config).last_shift_width + config.coefficient_width, config.columns)
+    last = rom(thomas_table(config).last_shift_width + config.coefficient.width, config.columns)
     return [*thomas_parts(config), last, *mean_products(config)]
 
 
 def thomas_parts(config: Configuration) -> Parts:
     """Return those of an elimination or a substitution of a word per clock."""
     return [
-        Words(config.data_width),
+        Words(config.depth.width),
         *products(config, 1),
         Memory("row buffers", config.arithmetic_width, config.columns),
-        *table_parts(thomas_table(config), config.coefficient_width),
+        *table_parts(thomas_table(config), config.coefficient.width),
     ]
 
 

@@ -17,6 +17,6 @@ def frame_stack(rows: np.ndarray) -> np.ndarray:
 
 
 def parts(config: Configuration) -> Parts:
-    data, packed = config.data_width, config.words_per_row
+    data, packed = config.depth.width, config.words_per_row
     words = config.rows * -(-config.columns // packed)
     return [Words(data), Memory("frame stores", data * packed, words, config.store_style)]

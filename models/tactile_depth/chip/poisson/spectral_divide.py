@@ -72,7 +72,7 @@ def reciprocal_rom(config: Configuration) -> np.ndarray:
 def parts(config: Configuration) -> Parts:
     size = config.columns
     return [
-        Words(config.data_width),
+        Words(config.depth.width),
         *products(config, 1),
-        rom(reciprocals(config).shift_width + config.coefficient_width, size * (size + 1) // 2),
+        rom(reciprocals(config).shift_width + config.coefficient.width, size * (size + 1) // 2),
     ]

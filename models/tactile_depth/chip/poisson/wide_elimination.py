@@ -62,10 +62,10 @@ def table(config: Configuration) -> WideTable:
 
 
 def parts(config: Configuration) -> Parts:
-    down, coefficient = config.down_words, config.coefficient_width
+    down, coefficient = config.down_words, config.coefficient.width
     clocks = config.columns // down
     return [
-        Words(down * config.data_width),
+        Words(down * config.depth.width),
         *products(config, 2 * down),
         Memory("row buffers", down * (coefficient + config.arithmetic_width), clocks),
         *table_parts(table(config), down * coefficient),

@@ -32,7 +32,7 @@ def wide_stack(rows: np.ndarray, words: int) -> np.ndarray:
 
 
 def parts(config: Configuration) -> Parts:
-    lanes, data = config.lanes, config.data_width
+    lanes, data = config.lanes, config.depth.width
     group, beats = min(config.down_words, lanes // 2), config.columns // lanes  # words in a memory
     row = Memory("row buffers", group * data, beats, DISTRIBUTED)
     store = Memory("frame stores", group * data, (config.rows - 1) * beats, config.store_style)

@@ -50,8 +50,8 @@ def parts(config: Configuration) -> Parts:
     lanes = config.lanes
     wait = config.columns // lanes * 2 - LOOP
     return [
-        Words(lanes * config.data_width),
+        Words(lanes * config.depth.width),
         *products(config, lanes),
         *[Memory("delay lines", config.arithmetic_width, wait)] * (lanes if wait > LONGEST_SHIFT else 0),
-        *table_parts(table(config), lanes * config.coefficient_width),
+        *table_parts(table(config), lanes * config.coefficient.width),
     ]

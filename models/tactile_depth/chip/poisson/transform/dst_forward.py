@@ -58,6 +58,6 @@ def latency(size: int) -> int:
 
 def parts(config: Sizes) -> Parts:
     """Return those of the rows, and of the columns of the spectral solver; a phase gives its real part alone."""
-    factors = rom(3 * config.coefficient_width, config.columns)
-    instance = [Words(config.data_width), *fft_parts(config, False), *products(config, 2), factors]
+    factors = rom(3 * config.coefficient.width, config.columns)
+    instance = [Words(config.depth.width), *fft_parts(config, False), *products(config, 2), factors]
     return instance * (2 if config.solver == "spectral" else 1)

@@ -48,11 +48,11 @@ def latency(size: int) -> int:
 
 def parts(config: Sizes) -> Parts:
     """Return those of the words of the arithmetic, and of the stored words of the spectral solver; with mode_pairs."""
-    size, coefficient, found = config.columns, config.coefficient_width, Parts()
-    widths = [config.arithmetic_width, config.data_width]
+    size, coefficient, found = config.columns, config.coefficient.width, Parts()
+    widths = [config.arithmetic_width, config.depth.width]
     for width in widths if config.solver == "spectral" else widths[:1]:
         found += [
-            Words(config.data_width),
+            Words(config.depth.width),
             *[Multiplier(width, coefficient)] * 4,
             Memory("delay lines", width, size // 2 + 1),
             Memory("row buffers", width, size, DISTRIBUTED),

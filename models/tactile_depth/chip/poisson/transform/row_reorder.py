@@ -20,8 +20,8 @@ def row_reorder(rows: np.ndarray, to_burst: bool) -> np.ndarray:
 
 def parts(config: Configuration) -> Parts:
     """Return the buffers of divergence and of depth."""
-    widths = config.divergence.width, config.data_width
+    widths = config.divergence.width, config.depth.width
     return [
-        *[Words(config.data_width)] * 2,
+        *[Words(config.depth.width)] * 2,
         *(Memory("row buffers", width, 2 * config.columns) for width in widths),
     ]

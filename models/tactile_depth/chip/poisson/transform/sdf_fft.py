@@ -104,5 +104,5 @@ def parts(config: Sizes, inverse: bool) -> Parts:
         if stage.delay > LONGEST_SHIFT:
             found.append(Memory("delay lines", 2 * (config.arithmetic_width + 1), stage.delay))
         elif not stage.delay:
-            found += [*products(config, 4), rom(3 * config.coefficient_width, stage.block)]
+            found += [*products(config, 4), rom(3 * config.coefficient.width, stage.block)]
     return found

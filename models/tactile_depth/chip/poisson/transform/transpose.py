@@ -21,5 +21,5 @@ def transpose(frames: np.ndarray, makhoul_in: bool, makhoul_out: bool) -> np.nda
 
 def parts(config: Configuration) -> Parts:
     """Return the two frame stores."""
-    data = config.data_width
+    data = config.depth.width
     return [Words(data), Memory("frame stores", data, config.columns**2, config.store_style)] * 2

@@ -36,7 +36,7 @@ def latency(size: int, words: int) -> int:
 def parts(config: Configuration) -> Parts:
     down = config.down_words
     return [
-        Words(down * config.data_width),
+        Words(down * config.depth.width),
         *fft_parts(config, down, False),
         *products(config, 2 * down),
         factors_rom(config, down),

@@ -63,7 +63,7 @@ def latency(size: int, words: int) -> int:
 
 def parts(config: Configuration) -> Parts:
     """Return those of the core with its pairs of rows and its corner turn."""
-    size, data, width, paths = config.columns, config.data_width, config.arithmetic_width, config.lanes // 2
+    size, data, width, paths = config.columns, config.depth.width, config.arithmetic_width, config.lanes // 2
     beats = size // paths
     half = beats // 2
     turned = Memory("row buffers", data, 2 * half if paths == 1 else 2 * beats)

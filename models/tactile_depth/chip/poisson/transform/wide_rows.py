@@ -22,6 +22,6 @@ def wide_rows(rows: np.ndarray, paths: int) -> np.ndarray:
 def parts(config: Configuration) -> Parts:
     down = config.down_words
     return [
-        Words(down * config.data_width),
+        Words(down * config.depth.width),
         *[Memory("row buffers", config.divergence.width, 2 * config.columns // down)] * down,
     ]

@@ -38,5 +38,5 @@ def ones(factors: np.ndarray, factor_width: int) -> int:
 
 def factors_rom(config: Configuration, paths: int) -> Memory:
     """Return the table of factors, a block memory where the factors of one path fill one."""
-    width, beats = 3 * config.coefficient_width, config.columns // paths
+    width, beats = 3 * config.coefficient.width, config.columns // paths
     return rom(width * paths, beats, BLOCK if width * beats > DISTRIBUTED_BITS else DISTRIBUTED)
