@@ -102,7 +102,7 @@ def given(arguments: Sequence[str], accepted: Iterable[str]) -> dict[str, str]:
     """Return name to value of the variables.
 
     Raises InputError: a name is not accepted, or an argument is not NAME=value, or its value is empty."""
-    names = tuple(accepted)
+    names = tuple(dict.fromkeys(accepted))
     values: dict[str, str] = {}
     for argument in arguments:
         name, equals, value = argument.partition("=")
