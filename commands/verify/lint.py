@@ -206,13 +206,17 @@ def columns(files: Iterable[Path], limit: int = 120) -> str:
     )
 
 
+def simulators(tops: Sequence[Structure], files: Callable[[Structure], Sequence[Path]]) -> list[Check]:
+    """Return the checks by the simulators of tops, each with its files."""
+    return [Check(run.__name__, top.name, partial(run, top, files(top))) for run in (verilator, icarus) for top in tops]
+
+
 def core_checks(cores: Sequence[str]) -> list[Check]:
     """Return the checks of cores at their default parameters."""
     files, tops = repository.sources(), [Structure(name) for name in cores]
     own = [repository.cores()[name].hdl for name in cores]
     return [
-        *(Check("verilator", top.name, partial(verilator, top, repository.sources(top.top))) for top in tops),
-        *(Check("icarus", top.name, partial(icarus, top, repository.sources(top.top))) for top in tops),
+        *simulators(tops, lambda top: repository.sources(top.top)),
         Check("slang", "cores", partial(slang_cores, cores, files)),
         Check("yosys", "cores", partial(yosys_cores, cores)),
         Check("verible", "rules", partial(verible, own)),
@@ -247,10 +251,8 @@ def checks() -> list[Check]:
     return [
         *core_checks(list(repository.cores())),
         Check("yosys", "outermost", partial(yosys_cores, repository.outermost())),
-        *(Check("verilator", top.name, partial(verilator, top, files)) for top in designs),
-        *(Check("verilator", top.name, partial(verilator, top, with_boards)) for top in tops),
-        *(Check("icarus", top.name, partial(icarus, top, files)) for top in designs),
-        *(Check("icarus", top.name, partial(icarus, top, with_boards)) for top in tops),
+        *simulators(designs, lambda _: files),
+        *simulators(tops, lambda _: with_boards),
         *(Check("slang", top.name, partial(slang, [top.top], top.parameters, files)) for top in designs),
         Check("slang", "boards", partial(slang, modules(boards), {}, with_boards)),
         *(Check("yosys", top.name, partial(yosys_structure, top)) for top in small),
