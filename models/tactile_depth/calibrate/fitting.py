@@ -196,11 +196,6 @@ def fit_presses(
     ----------
     progress : function
         Wraps the list of the presses that are left out in turn, for example to show progress.
-
-    Raises
-    ------
-    InputError
-        Too few presses.
     """
     measured = [view for view in presses.views if view.is_whole]
     central = sum(view.press.is_central(presses.grid) for view in measured)

@@ -31,13 +31,7 @@ def background_path(folder: Path) -> Path:
 
 
 def read_presses(folder: Path) -> tuple[list[BallPress], list[str]]:
-    """Return the presses of presses.csv sorted by name, and one line for each column or line that is not used.
-
-    Raises
-    ------
-    InputError
-        The folder or its table is missing, or the table is not readable.
-    """
+    """Return the presses of presses.csv sorted by name, and one line for each column or line that is not used."""
     path = folder / TABLE
     if not is_file(path):
         raise InputError(

@@ -257,10 +257,6 @@ def gather(presses: str | Path | Sequence[BallPress], background: Picture | None
         A folder holds pictures, presses.csv (press_folder.py) and background.png or .jpg.
     background : uint8 array (rows, columns, 3), PIL image or path, optional
         Picture without contact; by default that of the folder.
-
-    Raises
-    ------
-    InputError
     """
     notes: list[str] = []
     if isinstance(presses, (str, Path)):
@@ -287,13 +283,7 @@ def gather(presses: str | Path | Sequence[BallPress], background: Picture | None
 
 
 def camera_pitch_mm(pictures: PressPictures, pitch_mm: float | None) -> float:
-    """Return millimetres per camera pixel: `pitch_mm`, or the pitch from the balls' radii in pixels.
-
-    Raises
-    ------
-    InputError
-        Both are missing, or they disagree.
-    """
+    """Return millimetres per camera pixel: `pitch_mm`, or the pitch from the balls' radii in pixels."""
     if not pictures.pitches:
         if pitch_mm is None:
             raise InputError(
@@ -337,12 +327,6 @@ def to_grid(
         Width of a pixel over its height.
     grid : (rows, columns), optional
         By default `picture_grid`, which covers the pictures.
-
-    Raises
-    ------
-    InputError
-        The background is too small or too dark, the colours of all pictures change alike, or scikit-image is needed and
-        missing.
     """
     background = pictures.background
     camera = background.shape[:2]

@@ -49,11 +49,6 @@ def c_header(
         See `table_entries`.
     thresholds : mapping
         Depth code of each register of a threshold, by the name of the register.
-
-    Raises
-    ------
-    InputError
-        The calibration and the configuration do not agree.
     """
     tables = table_entries(calibration, config, zero, gains)
     loader = resources.files(registers).joinpath("load_tables.h").read_text().partition("\n")[2]

@@ -99,12 +99,7 @@ class CameraChoice:
         check_format(self.pixel_format, self.phase)
 
     def on(self, picture: tuple[int, int], grid: tuple[int, int]) -> CameraConfiguration:
-        """Return the camera for pictures and a grid, (rows, columns) each.
-
-        Raises
-        ------
-        InputError
-        """
+        """Return the camera for pictures and a grid, (rows, columns) each."""
         return CameraConfiguration(picture, grid, self.pixel_format, self.phase, self.window)
 
 

@@ -36,11 +36,6 @@ def write_hardware(
         See `tactile_depth.chip.tactile_depth`.
     thresholds : mapping
         Depth code of each register of a threshold, by the name of the register.
-
-    Raises
-    ------
-    InputError
-        The folder cannot be written, or the calibration and the configuration do not agree.
     """
     with new_files(folder, PARAMETERS) as unfinished:
         write_roms(unfinished, sensor, config, zero, gains)

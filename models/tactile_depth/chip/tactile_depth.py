@@ -101,13 +101,7 @@ class Tables:
 
 
 def slope_tables(calibration: Calibration, config: Configuration, gains: np.ndarray | None = None) -> Tables:
-    """Compute the tables of a calibration; for `gains` see `tactile_depth`.
-
-    Raises
-    ------
-    InputError
-        The calibration and the configuration do not agree.
-    """
+    """Compute the tables of a calibration; for `gains` see `tactile_depth`."""
     calibration.check(config, gains is not None)
     if config.flat_field and gains is None:
         gains = reference_gains(calibration, config)

@@ -115,12 +115,7 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
 
 
 def press_pictures(options: argparse.Namespace) -> PressPictures:
-    """Return the presses of a folder with a table, or of a folder of pictures of one ball.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the presses of a folder with a table, or of a folder of pictures of one ball."""
     folder = Path(options.presses)
     if options.diameter_mm is None:
         return gather(folder, options.background)
@@ -132,12 +127,7 @@ def press_pictures(options: argparse.Namespace) -> PressPictures:
 
 
 def on_grid(options: argparse.Namespace, pictures: PressPictures) -> GridPresses:
-    """Return the presses on the grid, and warn of those that are left out.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the presses on the grid, and warn of those that are left out."""
     pitch_mm = options.pitch_mm and (options.pitch_mm[0] if len(options.pitch_mm) == 1 else options.pitch_mm)
     check_arguments(chosen(options), options.bits, pitch_mm, options.exposure_us)
     if options.grid is not None and min(options.grid) < SMALLEST_GRID:
@@ -157,13 +147,7 @@ def chosen(options: argparse.Namespace) -> tuple[str, ...]:
 
 
 def fitted(options: argparse.Namespace, presses: GridPresses, name: str) -> Fit:
-    """Fit to the presses, and print the error on each whole press by a fit to the others.
-
-    Raises
-    ------
-    InputError
-        Too few presses.
-    """
+    """Fit to the presses, and print the error on each whole press by a fit to the others."""
     rows, columns = presses.grid
     print(f"{len(presses.views)} presses, grid of {columns} x {rows}", presses.field_of_view, sep="\n", flush=True)
     fit = fit_presses(presses, chosen(options), options.bits, name, options.exposure_us, _progress)

@@ -59,12 +59,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
-    """Write all files of all pictures, or none.
-
-    Raises
-    ------
-    InputError
-    """
+    """Write all files of all pictures, or none."""
     out: Path = options.out or Path(f"{Path(options.pictures[0]).resolve().stem}-depth")
     reference = read_reference(options.reference)
     sensor = choose_sensor(options, reference)

@@ -51,22 +51,10 @@ class Feed(Protocol):
     takes_pictures: bool
 
     def shots(self) -> Iterator[Shot | None]:
-        """Give depth frames; None when none has arrived for a while.
-
-        Raises
-        ------
-        InputError
-            The first picture is not accepted. Later ones are counted as failed, and so are pictures without depth.
-        """
+        """Give depth frames; None when none has arrived for a while."""
 
     def capture(self, images: Sequence[np.ndarray], reference: bool) -> None:
-        """Make pictures without contact the reference, and after it the zero offset, or the zero offset alone.
-
-        Raises
-        ------
-        InputError
-            They are not accepted.
-        """
+        """Make pictures without contact the reference, and after it the zero offset, or the zero offset alone."""
 
     def end(self) -> None:
         """Count what is known at the end alone."""

@@ -223,13 +223,7 @@ def stand_in(sensor: Sensor) -> np.ndarray | None:
 
 
 def first_frames(frames: Iterator[Frame | None], source: Source) -> np.ndarray:
-    """Return the first frames of a source, uint8 (`CAPTURED`, rows, columns, 3), as a reference.
-
-    Raises
-    ------
-    InputError
-        There are fewer, or their sizes differ.
-    """
+    """Return the first frames of a source, uint8 (`CAPTURED`, rows, columns, 3), as a reference."""
     print(f"do not touch the sensor: its first {CAPTURED} frames become the reference")
     images: list[np.ndarray] = []
     for frame in frames:

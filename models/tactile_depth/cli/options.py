@@ -104,12 +104,7 @@ def read_reference(path: str) -> np.ndarray:
 
 
 def choose_sensor(options: argparse.Namespace, reference: np.ndarray) -> Sensor:
-    """Return the calibration that is named, else the built-in one that a reference looks like, and say so.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the calibration that is named, else the built-in one that a reference looks like, and say so."""
     if options.calibration is not None:
         sensor = load(options.calibration, options.camera_size)
         print(f"calibration: {sensor.name}")
@@ -122,12 +117,7 @@ def choose_sensor(options: argparse.Namespace, reference: np.ndarray) -> Sensor:
 
 
 def make_pipeline(options: argparse.Namespace, sensor: Sensor, reference: np.ndarray | None) -> Pipeline:
-    """Return the pipeline that the options describe.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the pipeline that the options describe."""
     return Pipeline(
         sensor,
         reference,

@@ -101,10 +101,6 @@ class Source(AbstractContextManager["Source"]):
     counts : Counts
         `taken`, `dropped` and the unreadable among `failed` are counted here, the others by the consumer.
 
-    Raises
-    ------
-    InputError
-        There is no such source.
     Failure
         OpenCV is missing, or the camera cannot be opened.
     """

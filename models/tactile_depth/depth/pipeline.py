@@ -180,11 +180,6 @@ class Pipeline:
         Result
             Arrays have a first axis of frames if the pictures have one.
 
-        Raises
-        ------
-        InputError
-            The pictures are not accepted, or one of them gives no right depth (`UnusablePicture`).
-
         Warns
         -----
         InputWarning

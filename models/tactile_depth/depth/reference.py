@@ -98,13 +98,7 @@ class Tables:
 
 
 def slope_tables(calibration: Sensor, config: Configuration, rest: np.ndarray | None = None) -> Tables:
-    """Compute the tables of a calibration on its grid; `rest`: colours in place of its reference, of any type.
-
-    Raises
-    ------
-    InputError
-        The calibration and the configuration do not agree.
-    """
+    """Compute the tables of a calibration on its grid; `rest`: colours in place of its reference, of any type."""
     calibration.check(config)
     if config.polynomials:
         assert calibration.reference is not None

@@ -143,13 +143,7 @@ def _check_camera(name: str, height: int, width: int) -> None:
 
 
 def on_grid(sensor: Sensor, frames: Frames) -> Sensor:
-    """Return a sensor on the grid of frames, with the frames' reference and the pitch of the grid.
-
-    Raises
-    ------
-    InputError
-        The frames do not fit this sensor's camera, or the reference that the sensor needs is missing.
-    """
+    """Return a sensor on the grid of frames, with the frames' reference and the pitch of the grid."""
     if sensor.camera is not None and frames.picture_size is None:
         raise InputError(
             f"{frames.name}: a scene is drawn for the synthetic sensor, not for {sensor.name}",
@@ -191,10 +185,6 @@ def load_frames(
     camera : CameraChoice, optional
         Pictures are converted to what this camera sends, and then taken as its hardware takes them. A scene is drawn as
         a picture of `SCENE_PICTURE`.
-
-    Raises
-    ------
-    InputError
     """
     if source in SCENES:
         return _scene(source, size, reference, seed, press, camera)
@@ -234,10 +224,6 @@ def read_pictures(
         Names the source in errors; by default its path.
     accepted : str
         Lists in errors what the caller accepts.
-
-    Raises
-    ------
-    InputError
     """
     path = Path(source)
     try:
@@ -261,12 +247,7 @@ def read_pictures(
 
 
 def read_stack(source: str | Path, name: str = "") -> np.ndarray:
-    """Return the pictures of `read_pictures` in one array, uint8 (pictures, rows, cols, 3).
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the pictures of `read_pictures` in one array, uint8 (pictures, rows, cols, 3)."""
     images = list(read_pictures(source, name)[1])
     if len({image.shape for image in images}) > 1:
         raise InputError(f"{name or source}: pictures of several sizes: give pictures of one camera")
@@ -274,13 +255,7 @@ def read_stack(source: str | Path, name: str = "") -> np.ndarray:
 
 
 def camera_scale(sensor: Sensor, config: Configuration) -> float:
-    """Return the camera pixels per grid pixel, for full pictures of a sensor's camera.
-
-    Raises
-    ------
-    InputError
-        The grid is larger than the pictures.
-    """
+    """Return the camera pixels per grid pixel, for full pictures of a sensor's camera."""
     if sensor.camera is None:
         return scene_pixel_pitch_mm(min(config.rows, config.columns)) / SYNTHETIC_PIXEL_PITCH_MM
     camera = (sensor.camera.rows, sensor.camera.columns)

@@ -65,13 +65,7 @@ def picture_grid(picture: tuple[int, int], solver: str = "tridiagonal", least_ra
 def grid_sampler(
     name: Part, picture: tuple[int, int], grid: tuple[int, int], choice: CameraChoice | None = None
 ) -> GridSampler:
-    """Return the way from pictures to a grid, (rows, columns) each; `name` names the pictures in errors.
-
-    Raises
-    ------
-    InputError
-        The pictures are smaller than the grid, or the camera cannot be built.
-    """
+    """Return the way from pictures to a grid, (rows, columns) each; `name` names the pictures in errors."""
     if picture[0] < grid[0] or picture[1] < grid[1]:
         (height, width), (rows, columns) = picture, grid
         problem = f": {width} x {height} pixels (columns x rows) are smaller than the grid of {columns} x {rows}"

@@ -23,11 +23,6 @@ def pictures_of(given: Pictures, name: Part) -> tuple[Iterator[tuple[Part, np.nd
     """Return pictures, uint8 (rows, columns, 3), each with its name in errors, and True for a single picture.
 
     Those of a folder are read one by one when the iterator reaches them.
-
-    Raises
-    ------
-    InputError
-        It is none of `Pictures`, or empty.
     """
     if isinstance(given, str | Path):
         labels, read = read_pictures(given)

@@ -27,24 +27,12 @@ class Reader:
         self._samplers: dict[tuple[int, int], GridSampler] = {}
 
     def pictures(self, given: Pictures, name: Part) -> tuple[Iterator[tuple[Part, np.ndarray]], bool]:
-        """Return frames on the grid, uint8 (rows, columns, 3), each with its name, and True for a single picture.
-
-        Raises
-        ------
-        InputError
-            They are no pictures of the sensor's camera.
-        """
+        """Return frames on the grid, uint8 (rows, columns, 3), each with its name, and True for a single picture."""
         read, single = pictures_of(given, name)
         return ((each, self._on_grid(picture, each)) for each, picture in read), single
 
     def reference(self, given: Pictures, name: Argument, largest_log2: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return 1, 2, 4 .. 2**largest_log2 pictures, as given and on the grid, uint8 (frames, rows, columns, 3).
-
-        Raises
-        ------
-        InputError
-            Their number is not accepted, their sizes differ, or they are no pictures of the sensor's camera.
-        """
+        """Return 1, 2, 4 .. 2**largest_log2 pictures, as given and on the grid, uint8 (frames, rows, columns, 3)."""
         read = list(pictures_of(given, name)[0])
         power_of_two_of(len(read), largest_log2, name)
         frames = np.stack([self._on_grid(picture, each) for each, picture in read])

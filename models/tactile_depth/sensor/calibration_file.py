@@ -59,10 +59,6 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
     ----------
     camera_size : (rows, columns), optional
         Size of the pictures; needed if the file does not hold it, and refused if it contradicts the file.
-
-    Raises
-    ------
-    InputError
     """
     if not is_file(path):
         problem = f"{path}: no such file" if path.suffix == ".npz" else f"unknown calibration {name}"

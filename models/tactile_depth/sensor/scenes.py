@@ -411,11 +411,6 @@ def dome(size: int, peak_px: float) -> np.ndarray:
     Returns
     -------
     float64 array (size, size), in grid pixels
-
-    Raises
-    ------
-    InputError
-        The depth is not above 0, or too large for the slope limit on this grid.
     """
     widest = size / 2 - 1
     deepest = widest * SLOPE_LIMIT * 2 / math.pi
