@@ -35,7 +35,6 @@ from commands.common.run_request import camera_choice
 from commands.common.tabular import Table
 from commands.common.variables import Place, Several, one, real, whole
 from commands.run.calibrate import data_folder
-from commands.study.accuracy import VERSION
 from commands.study.budget_steps import (
     BACK,
     BESIDE,
@@ -50,6 +49,7 @@ from commands.study.budget_steps import (
     products,
 )
 from commands.study.drawn_sensor import PLACES, DrawnSensor
+from commands.study.study import VERSION
 from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.calibrate.fitting import Fit, fit_presses
 from tactile_depth.calibrate.presses import AT_REST, GridPresses, PressPictures, camera_pitch_mm, gather, to_grid

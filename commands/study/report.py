@@ -7,7 +7,6 @@ reflex` and `make baselines` from build/, and runs the commands if there are non
 trade`, `make synth`, `make fpga` and `make asic`. Each figure names the command that makes it again.
 """
 
-import csv
 import json
 import os
 from collections.abc import Callable, Sequence
@@ -25,8 +24,7 @@ from commands.common.repository import ROOT
 from commands.common.tabular import Table, shown
 from commands.hardware import asic, synth
 from commands.run import reflex, reflex_tables, sim
-from commands.study import baselines, budget, extremes, sweep, trade, trade_front
-from commands.study.rows import Row
+from commands.study import baselines, budget, extremes, study, sweep, trade, trade_front
 from tactile_depth.base import files
 from tactile_depth.chip.configuration import SOLVER_WIDTHS, STORED, Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth
@@ -219,24 +217,24 @@ def error_section(runs: dict[str, Run], folder: Path) -> Section:
 
 
 def curve(
-    rows: Sequence[Row], choices: sweep.Choices, varied: str, measured: str = "rms_percent_mean"
+    rows: Sequence[sweep.Row], point: sweep.Point, varied: str, measured: str = "rms_percent_mean"
 ) -> tuple[list[int], list[float]]:
-    """Return the widths that vary and an error at each, of the rows that are otherwise `choices`."""
-    chosen = sorted(sweep.like(rows, choices, varied), key=lambda row: int(row[varied]))
-    return [int(row[varied]) for row in chosen], [float(row[measured]) for row in chosen]
+    """Return the widths that vary and an error at each, of the rows that are otherwise `point`."""
+    found = sorted((getattr(row, varied), getattr(row, measured)) for row in sweep.like(rows, point, varied))
+    return [width for width, _ in found], [error for _, error in found]
 
 
-def word_section(rows: Sequence[Row], folder: Path) -> Section:
+def word_section(rows: Sequence[sweep.Row], folder: Path) -> Section:
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4), layout="constrained", sharey=True)
     default = Configuration()
     for solver in COLUMNS:
-        look, choices = LOOKS[solver], {"solver": solver}
+        look, point = LOOKS[solver], sweep.square(solver=solver)
         for axis, varied in zip((left, right), SOLVER_WIDTHS, strict=True):
-            axis.plot(*curve(rows, choices, varied), **look, label=solver, markersize=4)
+            axis.plot(*curve(rows, point, varied), **look, label=solver, markersize=4)
             thin = look | {"marker": "", "linewidth": 0.7}
-            axis.plot(*curve(rows, choices, varied, "rms_percent_worst"), **thin)
+            axis.plot(*curve(rows, point, varied, "rms_percent_worst"), **thin)
         safe = look | {"marker": "", "linestyle": (0, (1, 1.5)), "label": f"{solver}, {sweep.SAFE_WORD}"}
-        left.plot(*curve(rows, choices | sweep.SAFE, STORED), **safe)
+        left.plot(*curve(rows, point.but(**sweep.SAFE), STORED), **safe)
     for axis, name in ((left, "bits of a stored word"), (right, "bits of a coefficient")):
         axis.axhline(RMS_PERCENT, color="black", linestyle=":")
         axis.set(yscale="log", xlabel=name)
@@ -267,9 +265,7 @@ def trade_sections() -> list[Section]:
     path = trade.DEFAULT_OUT / "trade.csv"
     if not path.exists():
         return []
-    with path.open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    front = trade_front.front_of(rows)
+    front = trade_front.front_of(study.read(path, trade_front.Row))
     text = (
         "Real presses, by calibrations that were not fitted to them. Grey: each configuration; line: the best for its "
         f"cost. Finer arithmetic than that of the knee buys nothing that can be seen. {front.sentence}."
@@ -353,7 +349,7 @@ def build(folder: Path) -> Path:
         return call(*arguments)
 
     runs = {s: step(f"{s}: {CONSECUTIVE} frames through the RTL", run_rtl, s, folder) for s in COLUMNS}
-    rows = step("sweep", sweep.sweep, sweep.plan(), sweep.DEFAULT_OUT)
+    rows = step("sweep", sweep.SWEEP.complete, sweep.plan(), sweep.DEFAULT_OUT)
     step("extremes", run_extremes, folder / "extremes")
     documents = [
         step(name, document_of, command, name) for command, name in ((reflex, "reflex"), (baselines, "baselines"))

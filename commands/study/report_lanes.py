@@ -17,7 +17,7 @@ from commands.common.repository import ROOT
 from commands.common.tabular import Table
 from commands.study import sweep
 from commands.study.report_page import Section, results, saved
-from commands.study.rows import Row
+from commands.study.sweep import Row
 from tactile_depth.chip.configuration import Configuration
 
 CELLS = ("DSP48E2", "LUT", "FF", "BRAM36", "UltraRAM")
@@ -30,14 +30,14 @@ HEAD = (
 
 def cells(row: Row, designs: Sequence[dict[str, Any]], routed: Sequence[dict[str, Any]]) -> tuple[str, ...]:
     """Return a line of the table; "-" where a flow has not run on this configuration."""
-    columns, lanes = int(row["columns"]), int(row["lanes"])
+    columns, lanes = row.columns, row.lanes
     wanted = run_request.described(Configuration(columns=columns, solver="tridiagonal", lanes=lanes))
-    whole = int(row["last_pixel_to_last_depth_cycles"])
+    whole = row.last_pixel_to_last_depth_cycles
     synthesized = [design["totals"] for design in designs if wanted.items() <= design["configuration"].items()]
     clocks = [report["fmax_mhz"] for report in routed if wanted.items() <= report.items()]
     return (
-        *(f"{columns} x {columns}", str(lanes), f"{int(row['last_pixel_to_first_depth_cycles']):,}", f"{whole:,}"),
-        *(f"{whole / CLOCK_MHZ:.1f}", row["multipliers"], f"{int(row['memory_bits']) / 1e6:.2f}"),
+        *(f"{columns} x {columns}", str(lanes), f"{row.last_pixel_to_first_depth_cycles:,}", f"{whole:,}"),
+        *(f"{whole / CLOCK_MHZ:.1f}", *sweep.area(row)),
         *(f"{synthesized[-1][name]:,g}" if synthesized else "-" for name in CELLS),
         f"{clocks[-1]:.1f}" if clocks else "-",
     )
@@ -52,14 +52,12 @@ def lanes_section(rows: Sequence[Row], folder: Path, build: Path = ROOT / "build
     for columns, colour in zip(sweep.LANE_GRIDS, ("#08306b", "#e6550d"), strict=True):
         points = sweep.with_lanes(rows, columns)
         lines += [cells(row, designs, routed) for row in points]
-        micros = [int(row["last_pixel_to_last_depth_cycles"]) / CLOCK_MHZ for row in points]
-        areas = [
-            [scale * int(row[name]) for row in points] for name, scale in (("multipliers", 1), ("memory_bits", 1e-6))
-        ]
+        micros = [row.last_pixel_to_last_depth_cycles / CLOCK_MHZ for row in points]
+        areas: tuple[list[float], ...] = [row.multipliers for row in points], [row.memory_bits / 1e6 for row in points]
         for axis, area in zip(axes, areas, strict=True):
             axis.plot(area, micros, color=colour, marker="o", label=f"{columns} x {columns}")
             for row, x, y in zip(points, area, micros, strict=True):
-                axis.annotate(row["lanes"], (x, y), textcoords="offset points", xytext=(4, 4), fontsize=8)
+                axis.annotate(str(row.lanes), (x, y), textcoords="offset points", xytext=(4, 4), fontsize=8)
     for axis, name in zip(axes, ("multipliers of 27 x 18", "memory, Mbit"), strict=True):
         axis.set(xlabel=name, yscale="log")
         axis.set_xlim(left=0)

@@ -2,64 +2,119 @@
 """`make sweep`: accuracy against latency, multipliers and memory, by the bit-accurate models, into one CSV.
 
 Takes OUT=folder and DASK_SCHEDULER=host:port. Each row is written to the disk before the next begins, so an interrupted
-sweep continues where it stopped. Exit status: 0 complete, 2 bad input, 130 interrupted.
+sweep continues where it stopped. Errors are taken against double precision and against the height map that was drawn.
+Exit status: 0 complete, 2 bad input, 130 interrupted.
 """
 
-import contextlib
-import logging
 import os
-import re
-import sys
-from collections.abc import Generator, Iterator, Sequence
-from functools import partial
-from pathlib import Path
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
-import joblib
+import numpy as np
 
-from commands.common import published, tabular, variables
+from commands.common import published
 from commands.common.repository import ROOT
-from commands.study.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
-from commands.study.rows import Row, Table, Wanted
-from tactile_depth.base.errors import InputError
+from commands.common.tabular import Table
+from commands.common.variables import Name, Place
+from commands.cost.cost import ECP5, cost
+from commands.study import study
+from commands.study.accuracy import errors
+from commands.study.certificate import deepest
+from commands.study.study import Study, built
+from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import COEFFICIENT, DEFAULT_WIDTHS, SOLVER_WIDTHS, STORED, WIDTHS, Configuration
 from tactile_depth.chip.limits import COLUMNS, most_lanes
+from tactile_depth.depth import reference
+from tactile_depth.depth.twin import Twin
+from tactile_depth.sensor.scenes import render, scene_pixel_pitch_mm
+from tactile_depth.sensor.synthetic import synthetic
 
 DEFAULT_OUT = ROOT / "build" / "sweep"
+SCENE, SEED = "bench", 1  # the scene that a sweep measures, and the seed of its noise
+SECONDS = 5e-6  # of a pixel
 GRIDS = (32, 64, 128, 256, 512)
 LANE_GRIDS = (128, 256)  # on both the tridiagonal solver can have the most lanes
-ACCEPTED = ("OUT", "DASK_SCHEDULER")
-TABLE = Table("sweep", CONFIGURATION, MEASURED, VERSION)
+WORST = "worst"  # depth range: the largest depth that any slopes can reach
+
+
+@dataclass(frozen=True)
+class Point(study.with_widths(SOLVER_WIDTHS)):  # type: ignore[misc]
+    """Configuration of a square grid."""
+
+    depth_range: str  # `default` or WORST
+
+
+@dataclass(frozen=True)
+class Row(Point):
+    """A configuration and its measurements over the contacts of the bench.
+
+    `*_percent_*` is the error against double precision in % of its peak, mean and worst over the contacts. `true_*_mm`
+    is the error against the height map that was drawn; it includes the error of the sensor.
+    """
+
+    problem: str
+    depth_range_mm: float
+    scene: str
+    seed: int
+    frames: int
+    rms_percent_mean: float
+    rms_percent_worst: float
+    max_percent_mean: float
+    max_percent_worst: float
+    true_rms_mm_mean: float
+    true_rms_mm_worst: float
+    true_max_mm_worst: float
+    saturations: int
+    first_depth_cycles: int
+    last_pixel_to_first_depth_cycles: int
+    last_pixel_to_last_depth_cycles: int
+    multipliers: int
+    multipliers_18: int
+    memory_bits: int
+    frame_store_bits: int
+    delay_line_bits: int
+    table_bits: int
+    row_buffer_bits: int
+    models: str
+
+
+_usual = Configuration()
+DEFAULT = Point(
+    *(_usual.solver, _usual.boundary, _usual.rows, _usual.columns, _usual.lanes),
+    *(*(DEFAULT_WIDTHS[name] for name in SOLVER_WIDTHS), "default"),
+)
+SAFE_WORD = "DEPTH_RANGE=worst"
+SAFE: dict[str, Any] = {"depth_range": WORST}
 WORD = WIDTHS[STORED].variable
-SAFE, SAFE_WORD = {"depth_range_px": WORST}, "DEPTH_RANGE=worst"
-CONNECT_S, WORKERS_S = 10, 60  # wait for a cluster, and for its first worker
-
-Choices = dict[str, Any]
 
 
-def plan() -> list[Choices]:
-    """Return every configuration of the sweep, as the arguments of `Configuration` that differ from the default.
+def square(columns: int = _usual.columns, **changes: Any) -> Point:
+    """Return the default configuration with another grid and with changes."""
+    point: Point = DEFAULT.but(rows=columns, columns=columns, **changes)
+    return point
+
+
+def plan() -> list[Point]:
+    """Return every configuration of the sweep.
 
     The sweep varies grid, boundary and the two widths one at a time, then both widths together, the depth range that no
     slopes exceed (DEPTH_RANGE=worst) with each data width and both boundaries, and the lanes at the grids of
     LANE_GRIDS. The widest grids come first, so that all cores finish at about the same time.
     """
-    default = Configuration()
     widths = [range(low, high + 1) for low, high in (width.accepted for width in SOLVER_WIDTHS.values())]
-    rows: list[Choices] = []
+    points: list[Point] = []
     for solver in COLUMNS:
-        for columns in sorted(GRIDS, reverse=True):
-            if columns != default.columns:
-                rows.append({"solver": solver, "columns": columns})
-        rows.append({"solver": solver, "neumann": True})
+        points += [square(columns, solver=solver) for columns in GRIDS if columns != DEFAULT.columns]
+        points.append(square(solver=solver, boundary="neumann"))
         for data in widths[0]:
-            rows += [{"solver": solver, STORED: data, COEFFICIENT: c} for c in widths[1]]
-            rows.append({"solver": solver, STORED: data} | SAFE)
-        rows.append({"solver": solver, "neumann": True} | SAFE)
+            points += [square(solver=solver, **{STORED: data, COEFFICIENT: c}) for c in widths[1]]
+            points.append(square(solver=solver, **{STORED: data}, **SAFE))
+        points.append(square(solver=solver, boundary="neumann", **SAFE))
     for columns in LANE_GRIDS:
-        grid = {"solver": "tridiagonal"} | ({"columns": columns} if columns != default.columns else {})
-        rows += [grid | {"lanes": lanes} for lanes in lane_counts(columns)[1:]]
-    return sorted(rows, key=pixels, reverse=True)
+        points += [square(columns, solver="tridiagonal", lanes=lanes) for lanes in lane_counts(columns)[1:]]
+    return sorted(points, key=lambda point: point.pixels, reverse=True)
 
 
 def lane_counts(columns: int) -> list[int]:
@@ -67,87 +122,81 @@ def lane_counts(columns: int) -> list[int]:
     return [1 << log2 for log2 in range(most_lanes(columns).bit_length())]
 
 
-def pixels(choices: Choices) -> int:
-    """Return the pixels of a frame; the time of a configuration grows with them."""
-    return int(choices.get("columns", Configuration().columns)) ** 2
+@dataclass(frozen=True)
+class _Bench:
+    frames: np.ndarray
+    height: np.ndarray
+    reference: np.ndarray
 
 
-def on_all_cores(rows: list[Choices]) -> Generator[Row]:
-    """Yield the rows in the order in which they are finished."""
-    parallel = joblib.Parallel(n_jobs=-1, return_as="generator_unordered", batch_size=1)
-    yield from parallel(joblib.delayed(measure)(row) for row in rows)
+@lru_cache(maxsize=2)
+def _bench(size: int, neumann: bool) -> _Bench:
+    scene = render(SCENE, size, seed=SEED)
+    height = scene.height - scene.height.mean(axis=(1, 2), keepdims=True) if neumann else scene.height
+    return _Bench(scene.frames, height, reference.depth(scene.frames, synthetic(), neumann))
 
 
-@contextlib.contextmanager
-def cluster(address: str) -> Iterator[Any]:
-    """Return a client of the Dask cluster at host:port, which must have workers. Raises InputError."""
-    if not re.fullmatch(r"(tcp://)?[\w.\-]+:\d{1,5}", address):
-        raise InputError(f"DASK_SCHEDULER={address}: accepted is host:port")
-    try:
-        import dask.distributed as dask  # only this function needs it
-    except ImportError as error:
-        raise InputError(f"DASK_SCHEDULER={address}: Dask is not installed: run `make setup`") from error
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # its messages repeat those of this command
-    try:
-        client = dask.Client(address, timeout=CONNECT_S)
-    except (OSError, ValueError) as error:
-        raise InputError(f"DASK_SCHEDULER={address}: no scheduler answers there: start one, or leave it out") from error
-    with client:
-        try:
-            client.wait_for_workers(1, timeout=WORKERS_S)
-        except TimeoutError as error:
-            raise InputError(f"DASK_SCHEDULER={address}: it has no workers: start some with `dask worker`") from error
-        yield client
+def measure(point: Point) -> dict[str, Any]:
+    """Return the measurements of a configuration. Raises InputError: it cannot be built."""
+    neumann = point.boundary == "neumann"
+    deep = (
+        deepest(point.rows, point.columns, neumann) * synthetic().gradient_limit if point.depth_range == WORST else None
+    )
+    same = {name: getattr(point, name) for name in ("solver", "rows", "columns", "lanes", *SOLVER_WIDTHS)}
+    config = Configuration(neumann=neumann, depth_range_px=deep, **same)
+    bench, pitch = _bench(config.columns, neumann), scene_pixel_pitch_mm(config.columns)
+    monitor = Monitor()
+    depth = Twin(synthetic(), config).depth_px(bench.frames, monitor)
+    rms, largest = (np.array(percent, float) for percent in errors(depth, bench.reference).values())
+    true = np.abs(depth - bench.height) * pitch
+    true_rms = np.sqrt((true**2).mean(axis=(1, 2)))
+    counted = cost(config)
+    return {
+        "depth_range_mm": config.deepest_px * pitch,
+        "frames": len(bench.frames),
+        "rms_percent_mean": rms.mean(),
+        "rms_percent_worst": rms.max(),
+        "max_percent_mean": largest.mean(),
+        "max_percent_worst": largest.max(),
+        "true_rms_mm_mean": true_rms.mean(),
+        "true_rms_mm_worst": true_rms.max(),
+        "true_max_mm_worst": true.max(),
+        "saturations": monitor.saturations.total(),
+        "first_depth_cycles": counted.first_depth_cycles,
+        "last_pixel_to_first_depth_cycles": counted.last_pixel_cycles,
+        "last_pixel_to_last_depth_cycles": counted.map_cycles,
+        "multipliers": counted.tiles,
+        "multipliers_18": counted.multipliers_of(ECP5),
+        "memory_bits": counted.memory_bits,
+        **{
+            f"{kind.replace(' ', '_')}_bits": counted.bits_of(f"{kind}s")
+            for kind in ("frame store", "delay line", "table", "row buffer")
+        },
+    }
 
 
-def on_cluster(client: Any, rows: list[Choices]) -> Generator[Row]:
-    """Yield the rows from the workers of a cluster, which run in clones of this commit.
-
-    Raises InputError: workers keep another version of the models; RuntimeError: the cluster failed on the way.
-    """
-    from dask.distributed import as_completed
-
-    try:
-        futures = client.map(measure, rows, pure=False)
-        for _, row in as_completed(futures, with_results=True):
-            if row["models"] != VERSION:
-                raise InputError("DASK_SCHEDULER: a worker keeps another version of the models: restart the workers")
-            yield row
-    except InputError:
-        raise
-    except Exception as error:  # a remote machine can fail in any way
-        what = " ".join(f"{type(error).__name__} {error}".split())
-        raise RuntimeError(f"DASK_SCHEDULER: the cluster failed ({what}); what it measured is kept") from error
+SWEEP = Study("sweep", Point, Row, measure, SECONDS, lambda point: {"scene": SCENE, "seed": SEED})
 
 
-def sweep(rows: list[Choices], folder: Path, scheduler: str | None = None) -> list[Row]:
-    """Measure the rows that the table in `folder` lacks; return all of them in the order of `rows`.
-
-    Raises InputError or RuntimeError; rows measured before are kept.
-    """
-    with cluster(scheduler) if scheduler else contextlib.nullcontext() as client:
-        wanted = [Wanted(configuration_cells(choices), choices, pixels(choices)) for choices in rows]
-        return TABLE.complete(wanted, folder, partial(on_cluster, client) if client else on_all_cores)
-
-
-def like(rows: Sequence[Row], choices: Choices, *varied: str) -> list[Row]:
+def like(rows: Sequence[Row], wanted: Point, *varied: str) -> list[Row]:
     """Return the rows that can be built and differ from a configuration in the columns `varied` alone."""
-    wanted = configuration_cells(choices)
-    same = [name for name in CONFIGURATION if name not in varied]
-    return [row for row in rows if not row["problem"] and all(row[name] == wanted[name] for name in same)]
+    same = {name: value for name, value in vars(wanted).items() if name not in varied}
+    return [row for row in built(rows) if same.items() <= vars(row).items()]
 
 
 def with_lanes(rows: Sequence[Row], columns: int) -> list[Row]:
     """Return the rows that differ in their lanes alone, by rising number of lanes."""
-    alike = like(rows, {"solver": "tridiagonal", "columns": columns}, "lanes")
-    return sorted(alike, key=lambda row: int(row["lanes"]))
+    return sorted(like(rows, square(columns, solver="tridiagonal"), "lanes"), key=lambda row: row.lanes)
 
 
-def cost_of_worst(rows: list[Row], solver: str) -> list[str]:
+def cost_of_worst(rows: Sequence[Row], solver: str) -> list[str]:
     """Return the loss of accuracy with a depth range that no slopes exceed, and the word length that compensates it."""
     default, worst = (
-        {int(row[STORED]): float(row["rms_percent_mean"]) for row in like(rows, {"solver": solver} | chosen, STORED)}
-        for chosen in ({}, SAFE)
+        {
+            row.data_width: row.rms_percent_mean
+            for row in like(rows, square(solver=solver, depth_range=reach), "data_width")
+        }
+        for reach in (DEFAULT.depth_range, WORST)
     )
     width = DEFAULT_WIDTHS[STORED]
     if width not in default or width not in worst:
@@ -158,42 +207,34 @@ def cost_of_worst(rows: list[Row], solver: str) -> list[str]:
 
 
 def area(row: Row) -> tuple[str, str]:
-    return row["multipliers"], f"{int(row['memory_bits']) / 1e6:.2f}"
+    return str(row.multipliers), f"{row.memory_bits / 1e6:.2f}"
 
 
-def summary(rows: list[Row]) -> str:
+def summary(rows: Sequence[Row]) -> str:
     """Return a line for each solver, boundary and number of lanes, and the narrowest sufficient words."""
     by_solver, by_lanes = [], []
-    for row in like(rows, {}, "solver", "boundary"):
-        rms = [f"{float(row[f'rms_percent_{name}']):.4f}" for name in ("mean", "worst")]
-        by_solver.append(
-            (f"{row['solver']}, {row['boundary']}", *rms, f"{int(row['first_depth_cycles']):,}", *area(row))
-        )
+    for row in like(rows, DEFAULT, "solver", "boundary"):
+        rms = f"{row.rms_percent_mean:.4f}", f"{row.rms_percent_worst:.4f}"
+        by_solver.append((f"{row.solver}, {row.boundary}", *rms, f"{row.first_depth_cycles:,}", *area(row)))
     for columns in LANE_GRIDS:
         for row in with_lanes(rows, columns):
-            cycles = [f"{int(row[f'last_pixel_to_{name}_depth_cycles']):,}" for name in ("first", "last")]
-            by_lanes.append((f"{columns} x {columns}, {row['lanes']}", *cycles, *area(row)))
+            cycles = f"{row.last_pixel_to_first_depth_cycles:,}", f"{row.last_pixel_to_last_depth_cycles:,}"
+            by_lanes.append((f"{columns} x {columns}, {row.lanes}", *cycles, *area(row)))
     costs = ("multipliers", "Mbit")
-    lines = [str(tabular.Table(("solver, boundary", "mean RMS, % of peak", "worst", "cycles", *costs), by_solver))]
+    lines = [str(Table(("solver, boundary", "mean RMS, % of peak", "worst", "cycles", *costs), by_solver))]
     for solver in COLUMNS:
-        same = like(rows, {"solver": solver}, STORED)
-        narrow = [int(row[STORED]) for row in same if float(row["rms_percent_mean"]) <= published.RMS_PERCENT]
+        same = like(rows, square(solver=solver), STORED)
+        narrow = [getattr(row, STORED) for row in same if row.rms_percent_mean <= published.RMS_PERCENT]
         if narrow:
             lines.append(f"{solver}: mean RMS at most {published.RMS_PERCENT} % from {WORD}={min(narrow)}")
         lines += cost_of_worst(rows, solver)
     if by_lanes:
-        lines.append(
-            str(tabular.Table(("lanes", "last pixel to first depth, cycles", "to last depth", *costs), by_lanes))
-        )
-    refused = sum(bool(row["problem"]) for row in rows)
+        lines.append(str(Table(("lanes", "last pixel to first depth, cycles", "to last depth", *costs), by_lanes)))
+    refused = len(rows) - len(built(rows))
     lines.append(f"{len(rows)} rows, {refused} of them of configurations that cannot be built")
     return "\n".join(lines)
 
 
-def main() -> None:
-    with variables.reported("sweep", "every row measured is kept, run it again to go on"):
-        values = variables.given(sys.argv[1:], ACCEPTED)
-        folder = Path(values.get("OUT", DEFAULT_OUT))
-        rows = sweep(plan(), folder, values.get("DASK_SCHEDULER"))
-    print(summary(rows))
-    print(f"results: {os.path.relpath(folder / 'sweep.csv')}")
+def main(out: Place = DEFAULT_OUT, dask_scheduler: Name | None = None) -> None:
+    print(summary(SWEEP.complete(plan(), out, dask_scheduler)))
+    print(f"results: {os.path.relpath(out / 'sweep.csv')}")

@@ -14,11 +14,11 @@ import itertools
 import os
 import random
 import shutil
-import sys
-from collections.abc import Generator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
+from typing import Annotated, Any
 
 import joblib
 import numpy as np
@@ -29,16 +29,15 @@ import tactile_depth as td
 from commands.common import recorded, run_request, variables
 from commands.common import simulator as simulation
 from commands.common.repository import ROOT
+from commands.common.variables import Place, Seed, real, whole
 from commands.common.zero_offset import untouched
 from commands.cost.cost import ECP5, cost
 from commands.run import sim
 from commands.run.calibrate import data_folder
-from commands.study.accuracy import VERSION
 from commands.study.presses import Measured, measured
-from commands.study.rows import Row, Table, Wanted
-from commands.study.trade_front import draw, front_of, summary, write_beaten
+from commands.study.study import VERSION, Study, built
+from commands.study.trade_front import DEFAULT, LUT, Point, Row, draw, front_of, summary, write_beaten
 from tactile_depth.base import files
-from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate.ball_press import BallPress
 from tactile_depth.calibrate.fitting import fit_folds
 from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
@@ -56,58 +55,60 @@ from tactile_depth.pictures.frames import Frames, load_frames, on_grid, read_pic
 from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
 from tactile_depth.sensor.sensor import Sensor
 
-VARIABLES = ("PRESSES", "PITCH", "OUT", "RTL", "SEED", "SIM")
 DEFAULT_OUT = ROOT / "build" / "trade"
+RESULTS = ("trade.csv", "beaten.csv", "trade.png")
 FOLDS = 5
-FORMATS = ("rgb888", "rgb565", "yuyv", "raw8")
+SECONDS = 1e-6  # of a pixel of a press, with the time to read it
+FORMATS = (DEFAULT.pixel_format, "rgb565", "yuyv", "raw8")
 
 GRIDS = ((24, 32), (48, 64), (96, 128), (192, 256))
 SQUARES = (32, 64, 128)  # of the spectral solver, the middle of the picture
 WIDE = (24, 18, 24)  # bits of a stored word, a coefficient, a gain of the flat field
 WORDS = (WIDE, (20, 16, 16), (18, 15, 16), (16, 14, 16), (15, 12, 16), (14, 11, 16), (12, 10, 16))
-MODELS = ("cubic", "quadratic", "lut")
-OPTIONS = ({"BOUNDARY": "dirichlet"}, {"LIGHT_GAINS": "0"})
-
-COMMON = ("solver", "boundary", "rows", "columns", "lanes")
-CONFIGURATION = (*COMMON, *WIDTHS, "gradient", "pixel_format", "light_gains")
-MEASURED = (
-    *("problem", "presses", "height_um", "sides_height_um", "cap_percent", "untouched_um", "centroid_um"),
-    *("area_percent", "saturations", "first_depth_cycles", "map_cycles", "contact_cycles"),
-    *("multipliers", "multipliers_18", "luts", "memory_bits", "power_mw", "command", "models"),
-)
-TABLE_COLUMNS = (*CONFIGURATION, *MEASURED)
-Choices = dict[str, str]
+# Words of 21 to 23 bits and 64 values a clock were never on the front.
+DATA_WIDTHS = (*range(12, 21), 24)
+MOST_LANES = 32
+MODELS: tuple[dict[str, Any], ...] = ({}, {"gradient": "quadratic"}, LUT)
+OPTIONS: tuple[dict[str, Any], ...] = ({"boundary": "dirichlet"}, {"light_gains": 0})
+ALWAYS = ("pixel_format", "gradient", "rows", "columns", *WIDTHS)
+NAMES = variables.VARIABLES | {"columns": "COLS", "gradient": "GRADIENT"}  # of make sim
 
 
-def plan() -> list[Choices]:
-    """Return every configuration, as variables of `make sim`.
+def plan() -> list[Point]:
+    """Return every configuration, large grids first.
 
     All word lengths at the default grid; every grid, number of depth values per clock and gradient model with WORDS;
     the same for the spectral solver; every pixel format; and the options that can be left out.
     """
-    rows = [_choices(GRIDS[2], (d, c, 16)) for d in range(12, 25) for c in range(10, 19)]
+    points = [point(GRIDS[2], (d, c, 16)) for d in DATA_WIDTHS for c in range(10, 19)]
     for grid, words, model in itertools.product(GRIDS, WORDS, MODELS):
         most = most_lanes(grid[1], zero_offset=True)
-        for lanes in sorted({1, 4, 16, most} & {1 << log2 for log2 in range(most.bit_length())}):
-            rows.append(_choices(grid, words, GRADIENT=model, **({"LANES": str(lanes)} if lanes > 1 else {})))
+        lanes = (lanes for lanes in sorted({1, 4, 16, most}) if lanes <= min(most, MOST_LANES))
+        points += [point(grid, words, lanes=each, **model) for each in lanes]
     for size, words, model in itertools.product(SQUARES, WORDS, MODELS):
-        rows.append(_choices((size, size), words, GRADIENT=model, SOLVER="spectral"))
-        rows.append(_choices((size, size), words, GRADIENT=model))
+        points += [point((size, size), words, solver=solver, **model) for solver in ("spectral", DEFAULT.solver)]
     for grid, words, pixel_format in itertools.product(GRIDS[:3], WORDS, FORMATS[1:]):
-        rows.append(_choices(grid, words, CAMERA=pixel_format))
+        points.append(point(grid, words, pixel_format=pixel_format))
     for grid, words, option in itertools.product(GRIDS[1:3], WORDS, OPTIONS):
-        rows.append(_choices(grid, words, **option))
-    return list({tuple(sorted(row.items())): row for row in rows}.values())
+        points.append(point(grid, words, **option))
+    return sorted(dict.fromkeys(points), key=lambda each: (-each.pixels, each.pixel_format))
 
 
-def _choices(grid: tuple[int, int], words: tuple[int, int, int], **others: str) -> Choices:
-    names = ("ROWS", "COLS", *run_request.WIDTH_VARIABLES.values())
-    shape = dict(zip(names, map(str, (*grid, *words)), strict=True))
-    return {"PRESET": "sensor", "CAMERA": FORMATS[0], "GRADIENT": MODELS[0], **shape, **others}
+def point(grid: tuple[int, int], words: tuple[int, int, int], **changes: Any) -> Point:
+    """Return the default configuration with a grid, words as WIDE, and changes."""
+    sizes = dict(zip(("rows", "columns", *WIDTHS), (*grid, *words), strict=True))
+    return DEFAULT.but(**sizes, **changes)
+
+
+def of_sim(of: Point) -> dict[str, str]:
+    """Return the variables of `make sim` for a configuration, without those that the preset sets."""
+    preset = vars(DEFAULT.but(light_gains=int(of.gradient != "lut")))
+    names = (*ALWAYS, *(name for name, value in vars(of).items() if name not in ALWAYS and value != preset[name]))
+    return {"PRESET": "sensor"} | {NAMES[name]: str(getattr(of, name)) for name in names}
 
 
 @dataclass(frozen=True)
-class Study:
+class Prepared:
     """A folder with the presses of each fold and their calibrations, which `prepare` writes.
 
     Attributes
@@ -129,7 +130,7 @@ class Study:
     sides: frozenset[str]
     digest: str
 
-    def sources(self, fold: int, pixel_format: str) -> Choices:
+    def sources(self, fold: int, pixel_format: str) -> dict[str, str]:
         """Return the variables of `make sim` that name frames, reference and calibration of a fold."""
         parts = {
             "FRAMES": f"presses-{fold}",
@@ -138,24 +139,26 @@ class Study:
         }
         return {name: str(self.folder / part) for name, part in parts.items()}
 
-    def request(self, choices: Choices, fold: int) -> run_request.Request:
+    def request(self, of: Point, fold: int) -> run_request.Request:
         """Return the request of `make sim` for a fold. Raises InputError."""
-        return run_request.of_values(choices | self.sources(fold, choices["CAMERA"]), run_request.WITH_CAMERA, "sensor")
+        return run_request.of_values(
+            of_sim(of) | self.sources(fold, of.pixel_format), run_request.WITH_CAMERA, "sensor"
+        )
 
-    def command(self, choices: Choices) -> str:
+    def command(self, of: Point) -> str:
         """Return the command that plays the first fold through the RTL."""
-        sources = {name: os.path.relpath(path, ROOT) for name, path in self.sources(0, choices["CAMERA"]).items()}
-        return " ".join(["make sim", *(f"{name}={value}" for name, value in (choices | sources).items())])
+        sources = {name: os.path.relpath(path, ROOT) for name, path in self.sources(0, of.pixel_format).items()}
+        return " ".join(["make sim", *(f"{name}={value}" for name, value in (of_sim(of) | sources).items())])
 
 
-def prepare(folder: Path, source: Path, pitch_mm: float | None) -> Study:
+def prepare(folder: Path, source: Path, pitch_mm: float | None) -> Prepared:
     """Write the pictures of each fold and a calibration for each pixel format, unless they are there already."""
     pictures = gather(source)
     pitch = camera_pitch_mm(pictures, pitch_mm)
     on = to_grid(pictures, pitch)
     whole = {view.press.name: view.press.is_central(on.grid) for view in on.views if view.is_whole}
     middle, sides = (frozenset(name for name, central in whole.items() if central == is_in) for is_in in (True, False))
-    study = Study(folder, source, pitch, middle, sides, _digest(pictures, pitch))
+    study = Prepared(folder, source, pitch, middle, sides, _digest(pictures, pitch))
     stamp = folder / "presses.txt"
     if stamp.exists() and stamp.read_text() == study.digest:
         return study
@@ -186,7 +189,7 @@ def _digest(pictures: PressPictures, pitch_mm: float) -> str:
     return digest.hexdigest()[:12]
 
 
-def _calibrate(study: Study, pictures: PressPictures, pixel_format: str) -> None:
+def _calibrate(study: Prepared, pictures: PressPictures, pixel_format: str) -> None:
     """Fit and write the calibration of each fold, from pictures as a camera of this format sends them."""
     presses = to_grid(pictures, study.pitch_mm, choice=CameraChoice(pixel_format))
     folds = [{press.name for press in pictures.presses[fold::FOLDS]} for fold in range(FOLDS)]
@@ -207,7 +210,7 @@ class Fold:
 
 
 @lru_cache(maxsize=2)
-def _folds(study: Study, rows: int, columns: int, pixel_format: str) -> list[Fold]:
+def _folds(study: Prepared, rows: int, columns: int, pixel_format: str) -> list[Fold]:
     choice, grid = CameraChoice(pixel_format), (rows, columns)
     pictures = gather(study.source)
     on = to_grid(pictures, study.pitch_mm, choice=choice, grid=grid)
@@ -223,27 +226,22 @@ def _folds(study: Study, rows: int, columns: int, pixel_format: str) -> list[Fol
     return folds
 
 
-def measure(study: Study, choices: Choices) -> Row:
-    """Measure a configuration on all folds; return a row of the table."""
-    row = dict.fromkeys(TABLE_COLUMNS, "") | cells(study, choices) | {"command": study.command(choices)}
-    row["models"] = study.digest
+def measure(study: Prepared, of: Point) -> dict[str, Any]:
+    """Return the measurements of a configuration on all folds. Raises InputError: it cannot be built."""
     values: list[tuple[Measured, bool, float]] = []
     monitor = Monitor()
-    try:
-        for fold, data in enumerate(_folds(study, int(choices["ROWS"]), int(choices["COLS"]), choices["CAMERA"])):
-            request = study.request(choices, fold)
-            config = run_request.configure(request, data.sensor)
-            values += _measured(study, request, config, data, monitor)
-    except InputError as error:
-        return row | {"problem": str(error)}
+    for fold, data in enumerate(_folds(study, of.rows, of.columns, of.pixel_format)):
+        request = study.request(of, fold)
+        config = run_request.configure(request, data.sensor)
+        values += _measured(study, request, config, data, monitor)
     middle = [value for value, is_in_the_middle, _ in values if is_in_the_middle]
     sides = [value for value, is_in_the_middle, _ in values if not is_in_the_middle]
     counted = cost(config)
     caps = np.array([value.cap for value in middle])
-    numbers = {
+    return {
         "presses": len(middle),
         "height_um": 1000 * np.mean([value.height_rms for value in middle]),
-        "sides_height_um": 1000 * np.mean([value.height_rms for value in sides]) if sides else "",
+        "sides_height_um": 1000 * np.mean([value.height_rms for value in sides]) if sides else None,
         "cap_percent": 100 * np.sqrt(((caps - 1) ** 2).mean()),
         "untouched_um": 1000 * np.mean([value.rest_rms for value in middle]),
         "centroid_um": 1000 * np.mean([value.centroid for value in middle]),
@@ -258,11 +256,10 @@ def measure(study: Study, choices: Choices) -> Row:
         "memory_bits": counted.memory_bits,
         "power_mw": counted.power_mw,
     }
-    return row | {name: f"{value:.6g}" if isinstance(value, float) else str(value) for name, value in numbers.items()}
 
 
 def _measured(
-    study: Study, request: run_request.Request, config: Configuration, data: Fold, monitor: Monitor
+    study: Prepared, request: run_request.Request, config: Configuration, data: Fold, monitor: Monitor
 ) -> list[tuple[Measured, bool, float]]:
     """Return what was measured of each press, if it is in the middle, and the cycles from last pixel to contact."""
     sensor, pixels = data.sensor, data.frames.pixels
@@ -286,38 +283,23 @@ def _measured(
     return values
 
 
-def cells(study: Study, choices: Choices) -> Row:
-    """Return the cells that describe a configuration."""
-    request = study.request(choices, 0)
-    return {
-        **{name: str(getattr(request, name)) for name in COMMON},
-        **{name: str(bits) for name, bits in request.widths.items()},
-        "gradient": choices["GRADIENT"],
-        "pixel_format": choices["CAMERA"],
-        "light_gains": str(int(request.light_gains is None and choices["GRADIENT"] != "lut")),
-    }
+def study_of(prepared: Prepared) -> Study[Point, Row]:
+    noted = partial(_noted, prepared)
+    seconds = SECONDS * len(prepared.middle | prepared.sides)
+    return Study("trade", Point, Row, partial(measure, prepared), seconds, noted, prepared.digest)
 
 
-def study_rows(study: Study, rows: Sequence[Choices]) -> list[Row]:
-    """Measure the rows that the table lacks; return all of them in the order of `rows`."""
-
-    def on_all_cores(left: list[Choices]) -> Generator[Row]:
-        parallel = joblib.Parallel(n_jobs=-1, return_as="generator_unordered", batch_size=4)
-        yield from parallel(joblib.delayed(measure)(study, choices) for choices in left)
-
-    table = Table("trade", CONFIGURATION, MEASURED, study.digest)
-    order = sorted(rows, key=lambda row: (-int(row["ROWS"]) * int(row["COLS"]), row["CAMERA"]))
-    wanted = [Wanted(cells(study, row), row, int(row["ROWS"]) * int(row["COLS"])) for row in order]
-    return table.complete(wanted, study.folder, on_all_cores)
+def _noted(study: Prepared, of: Point) -> dict[str, Any]:
+    return {"command": study.command(of)}
 
 
-def in_rtl(study: Study, rows: Sequence[Row], count: int, seed: int, simulator: str) -> int:
+def in_rtl(study: Prepared, rows: Sequence[Row], count: int, seed: int, simulator: str) -> int:
     """Play so many rows, drawn by chance, through the RTL; return how many differ from the model."""
-    drawn = random.Random(seed).sample([row for row in rows if not row["problem"]], count)
+    drawn = random.Random(seed).sample(built(rows), count)
     differing = 0
     for number, row in enumerate(drawn):
-        print(f"\n{number + 1} of {count}: {row['command']}")
-        words = [word for word in row["command"].split() if "=" in word]
+        print(f"\n{number + 1} of {count}: {row.command}")
+        words = [word for word in row.command.split() if "=" in word]
         request = run_request.parse([*words, f"SIM={simulator}"], run_request.WITH_CAMERA, "sensor")
         differing += sim.run(replace(request, out=study.folder / "rtl" / str(number))) != variables.EQUAL
     return differing
@@ -325,26 +307,32 @@ def in_rtl(study: Study, rows: Sequence[Row], count: int, seed: int, simulator: 
 
 def sources(arguments: Sequence[str]) -> str:
     """Return the digest of models and command, for docs/figures.json."""
-    variables.given(arguments, VARIABLES)
+    variables.read(Variables, arguments)
     return recorded.digest(sorted(Path(__file__).parent.glob("trade*.py")), VERSION)
 
 
-def main() -> None:
-    with variables.reported("trade", "every row measured is kept, run it again to go on"):
-        values = variables.given(sys.argv[1:], VARIABLES)
-        pitch = variables.number(values, "PITCH", None, *PIXEL_PITCHES_MM, float)
-        count = int(variables.number(values, "RTL", 0, 0, 1000))
-        seed = int(variables.number(values, "SEED", 1, 0, 10**9))
-        simulator = variables.choice(values, "SIM", simulation.SIMULATORS)
-        if count:
-            simulation.check(simulator)
-        source = Path(values["PRESSES"]) if "PRESSES" in values else data_folder()
-        study = prepare(Path(values.get("OUT", DEFAULT_OUT)).resolve(), source.resolve(), pitch)
-        rows = study_rows(study, plan())
-        front = front_of(rows)
-        print(summary(front))
-        recorded.record(asdict(front))
-        write_beaten(rows, study.folder)
-        draw(rows, study.folder / "trade.png")
-        print(f"results: {os.path.relpath(study.folder)}")
-        sys.exit(variables.MISMATCH if count and in_rtl(study, rows, count, seed, simulator) else variables.EQUAL)
+@dataclass(frozen=True)
+class Variables:
+    presses: Place | None = None
+    pitch: Annotated[float | None, real(*PIXEL_PITCHES_MM)] = None
+    out: Place = DEFAULT_OUT
+    rtl: Annotated[int, whole(0, 1000)] = 0
+    seed: Seed = 1
+    simulator: simulation.Simulator = simulation.SIMULATORS[0]
+
+
+def main(chosen: Variables) -> int:
+    if chosen.rtl:
+        simulation.check(chosen.simulator)
+    files.check(chosen.out, RESULTS)  # refuse bad input before minutes of work
+    source = chosen.presses or data_folder()
+    study = prepare(chosen.out.resolve(), source.resolve(), chosen.pitch)
+    rows = study_of(study).complete(plan(), study.folder)
+    front = front_of(rows)
+    print(summary(front))
+    recorded.record(asdict(front))
+    write_beaten(rows, study.folder)
+    draw(rows, study.folder / "trade.png")
+    print(f"results: {os.path.relpath(study.folder)}")
+    differing = in_rtl(study, rows, chosen.rtl, chosen.seed, chosen.simulator) if chosen.rtl else 0
+    return variables.MISMATCH if differing else variables.EQUAL

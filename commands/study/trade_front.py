@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -19,12 +20,52 @@ import numpy as np
 from commands.common.published import CLOCK_MHZ
 from commands.common.tabular import Table
 from commands.hardware.targets import TARGETS
-from commands.study.rows import Row
+from commands.study import study
+from commands.study.study import built
 from tactile_depth.base import files
 from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS, STORED, WIDTHS
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
+
+
+@dataclass(frozen=True)
+class Point(study.with_widths(WIDTHS)):  # type: ignore[misc]
+    """Configuration of a real sensor's pipeline behind a camera."""
+
+    gradient: str
+    pixel_format: str
+    light_gains: int  # 1 or 0
+
+
+DEFAULT = Point("tridiagonal", "neumann", 96, 128, 1, *DEFAULT_WIDTHS.values(), "cubic", "rgb888", 1)
+"""Configuration of td.Pipeline for a sensor of 4:3."""
+
+
+@dataclass(frozen=True)
+class Row(Point):
+    """A configuration and what was measured: means over the presses in the middle, and over those at the sides."""
+
+    problem: str
+    presses: int
+    height_um: float
+    sides_height_um: float | None  # None: the grid is square and does not show the sides
+    cap_percent: float
+    untouched_um: float
+    centroid_um: float
+    area_percent: float
+    saturations: int
+    first_depth_cycles: int
+    map_cycles: int
+    contact_cycles: float
+    multipliers: int
+    multipliers_18: int
+    luts: int
+    memory_bits: int
+    power_mw: float
+    command: str
+    models: str
+
 
 ERRORS = {  # and their resolution
     **dict.fromkeys(("height_um", "sides_height_um", "untouched_um"), 0.1),
@@ -41,16 +82,11 @@ OPTIONS = (
 NEAR = 1.1  # depth error of the knee over the smallest: what it adds is a tenth
 
 
-def built(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of configurations that can be built."""
-    return [row for row in rows if not row["problem"]]
-
-
 def axes(rows: Sequence[Row]) -> np.ndarray:
     """Return errors as they are printed, and costs, float64 (rows, axes); infinite where the sides are not seen."""
-    errors = [[np.rint(float(row[name] or "inf") / step) for name, step in ERRORS.items()] for row in rows]
-    costs = [[float(row[name]) for name in COSTS] for row in rows]
-    return np.concatenate((np.array(errors), np.array(costs)), axis=1)
+    values = np.array([[getattr(row, name) for name in (*ERRORS, *COSTS)] for row in rows], float)
+    errors = np.rint(values[:, : len(ERRORS)] / list(ERRORS.values()))
+    return np.nan_to_num(np.concatenate((errors, values[:, len(ERRORS) :]), axis=1), nan=np.inf)
 
 
 def beaten_by(rows: Sequence[Row]) -> list[int | None]:
@@ -65,18 +101,18 @@ def beaten_by(rows: Sequence[Row]) -> list[int | None]:
 
 def silicon(row: Row) -> float:
     """Return the largest of the shares of an LFE5U-85F that a configuration takes, in %."""
-    return 100 * max(TARGETS["ecp5"].shares(*(float(row[name]) for name in ("multipliers_18", "luts", "memory_bits"))))
+    return 100 * max(TARGETS["ecp5"].shares(row.multipliers_18, row.luts, row.memory_bits))
 
 
 def depth_error(row: Row) -> float:
     """Return the RMS of the depth error in the contact and on untouched gel, of presses in the middle, in um."""
-    return math.hypot(float(row["height_um"]), float(row["untouched_um"])) / math.sqrt(2)
+    return math.hypot(row.height_um, row.untouched_um) / math.sqrt(2)
 
 
 def whole_picture(rows: Sequence[Row]) -> list[Row]:
     """Return the rows of grids that cover the picture, with the boundary that a contact may cross, of one camera."""
-    same = ("boundary", "pixel_format")
-    return [row for row in rows if row["sides_height_um"] and all(row[name] == DEFAULT[name] for name in same)]
+    same = DEFAULT.boundary, DEFAULT.pixel_format
+    return [row for row in rows if row.sides_height_um and (row.boundary, row.pixel_format) == same]
 
 
 def knee(rows: Sequence[Row]) -> Row:
@@ -89,26 +125,24 @@ def knee(rows: Sequence[Row]) -> Row:
 
 def described(row: Row) -> str:
     """Return a configuration in a few words."""
-    lanes = f", {row['lanes']} values a clock" if row["lanes"] != "1" else ""
-    words = f"{'/'.join(row[name] for name in SOLVER_WIDTHS)} bits"
-    return (
-        f"{row['columns']} x {row['rows']}, {row['solver']}, {row['gradient']}, {words}{lanes}, {row['pixel_format']}"
-    )
+    lanes = f", {row.lanes} values a clock" if row.lanes > 1 else ""
+    words = f"{'/'.join(str(getattr(row, name)) for name in SOLVER_WIDTHS)} bits"
+    return f"{row.columns} x {row.rows}, {row.solver}, {row.gradient}, {words}{lanes}, {row.pixel_format}"
 
 
 def figures(row: Row) -> tuple[str, ...]:
     """Return the cells of a configuration in the table of chosen ones."""
-    sides = f" / {float(row['sides_height_um']):.1f}" if row["sides_height_um"] else ""
+    sides = f" / {row.sides_height_um:.1f}" if row.sides_height_um else ""
     return (
-        f"{float(row['height_um']):.1f}{sides}",
-        f"{float(row['untouched_um']):.1f}",
-        f"{float(row['centroid_um']):.0f}",
-        f"{float(row['area_percent']):.1f}",
-        *(f"{float(row[name]) / CLOCK_MHZ:.1f}" for name in ("first_depth_cycles", "contact_cycles", "map_cycles")),
-        row["multipliers_18"],
-        f"{int(row['luts']):,}",
-        f"{int(row['memory_bits']) / 1000:,.0f}",
-        f"{float(row['power_mw']):.0f}",
+        f"{row.height_um:.1f}{sides}",
+        f"{row.untouched_um:.1f}",
+        f"{row.centroid_um:.0f}",
+        f"{row.area_percent:.1f}",
+        *(f"{cycles / CLOCK_MHZ:.1f}" for cycles in (row.first_depth_cycles, row.contact_cycles, row.map_cycles)),
+        str(row.multipliers_18),
+        f"{row.luts:,}",
+        f"{row.memory_bits / 1000:,.0f}",
+        f"{row.power_mw:.0f}",
         f"{silicon(row):.0f} %",
     )
 
@@ -119,45 +153,37 @@ HEAD = (
 )
 
 
-def _words(data: int, coefficient: int, gain: int = 16) -> Row:
-    return {name: str(bits) for name, bits in zip(WIDTHS, (data, coefficient, gain), strict=True)}
+def _words(data: int, coefficient: int, gain: int = 16) -> Point:
+    return DEFAULT.but(**dict(zip(WIDTHS, (data, coefficient, gain), strict=True)))
 
 
-DEFAULT = {
-    **{"solver": "tridiagonal", "boundary": "neumann", "rows": "96", "columns": "128", "lanes": "1"},
-    **{name: str(bits) for name, bits in DEFAULT_WIDTHS.items()},
-    **{"gradient": "cubic", "pixel_format": "rgb888", "light_gains": "1"},
-}
-"""Configuration of td.Pipeline for a sensor of 4:3."""
-SQUARE = {"rows": "128", "columns": "128"}
-CHANGES: dict[str, Row] = {
-    "24-bit default": {},
-    **{f"{bits}-bit words": _words(bits, 18) for bits in (20, 18, 17, 16, 15, 14, 13, 12)},
+SQUARE = DEFAULT.but(rows=128, columns=128)
+LUT: dict[str, Any] = {"gradient": "lut", "light_gains": 0}
+CHANGES = {
+    "24-bit default": DEFAULT,
+    **{f"{bits}-bit words": _words(bits, 18) for bits in (20, *range(18, 11, -1))},
     **{f"{bits}-bit coefficients": _words(24, bits) for bits in (14, 10)},
-    "192 x 256": {"rows": "192", "columns": "256"},
-    "48 x 64": {"rows": "48", "columns": "64"},
-    "24 x 32": {"rows": "24", "columns": "32"},
-    "zero depth at the edge": {"boundary": "dirichlet"},
-    "no light gains": {"light_gains": "0"},
-    "`quadratic`": {"gradient": "quadratic"},
-    "`lut`": {"gradient": "lut", "light_gains": "0"},
-    "camera of `raw8`": {"pixel_format": "raw8"},
-    "camera of `yuyv`": {"pixel_format": "yuyv"},
-    "camera of `rgb565`": {"pixel_format": "rgb565"},
-    "4 values per clock": {"lanes": "4"},
-    "16 values per clock": {"lanes": "16"},
+    **{
+        f"{rows} x {columns}": DEFAULT.but(rows=rows, columns=columns)
+        for rows, columns in ((192, 256), (48, 64), (24, 32))
+    },
+    "zero depth at the edge": DEFAULT.but(boundary="dirichlet"),
+    "no light gains": DEFAULT.but(light_gains=0),
+    "`quadratic`": DEFAULT.but(gradient="quadratic"),
+    "`lut`": DEFAULT.but(**LUT),
+    **{f"camera of `{sent}`": DEFAULT.but(pixel_format=sent) for sent in ("raw8", "yuyv", "rgb565")},
+    **{f"{lanes} values per clock": DEFAULT.but(lanes=lanes) for lanes in (4, 16)},
     "middle square, 128 x 128": SQUARE,
-    "the same, spectral": {**SQUARE, "solver": "spectral"},
-    "published choices: the same, `lut`": {**SQUARE, "solver": "spectral", "gradient": "lut", "light_gains": "0"},
+    "the same, spectral": SQUARE.but(solver="spectral"),
+    "published choices: the same, `lut`": SQUARE.but(solver="spectral", **LUT),
 }
 """Changes of the default, one at a time."""
 
 
 def changed(rows: Sequence[Row]) -> dict[str, Row]:
     """Return the rows of CHANGES by their names."""
-    by_cells = {tuple(row[name] for name in DEFAULT): row for row in built(rows)}
-    wanted = {name: tuple((DEFAULT | change).values()) for name, change in CHANGES.items()}
-    return {name: by_cells[cells] for name, cells in wanted.items() if cells in by_cells}
+    by_point = {study.point_of(Point, row): row for row in built(rows)}
+    return {name: by_point[point] for name, point in CHANGES.items() if point in by_point}
 
 
 @dataclass(frozen=True)
@@ -207,15 +233,14 @@ def front_of(rows: Sequence[Row]) -> Front:
     front = [row for row, other in zip(among, beaten_by(among), strict=True) if other is None]
     options: list[tuple[str, ...]] = []
     for option in OPTIONS:
-        for value in sorted({row[option] for row in among}, key=lambda text: (len(text), text)):
-            of = [row for row in among if row[option] == value]
-            on = sum(row[option] == value for row in front)
+        for value in sorted({getattr(row, option) for row in among}, key=lambda value: (len(str(value)), str(value))):
+            of, on = ([row for row in rows if getattr(row, option) == value] for rows in (among, front))
             least = min(map(depth_error, of))
-            options.append((f"{option}={value}", str(len(of)), str(on), f"{least:.1f}"))
+            options.append((f"{option}={value}", str(len(of)), str(len(on)), f"{least:.1f}"))
     best = knee(among)
     named = {f"knee: {described(best)}": best} | changed(rows)
     changes = [(name, *figures(row)) for name, row in named.items()]
-    return Front(changes, options, len(rows), len(rows) - len(among), len(front), best["command"])
+    return Front(changes, options, len(rows), len(rows) - len(among), len(front), best.command)
 
 
 def summary(front: Front) -> str:
@@ -233,7 +258,7 @@ def write_beaten(rows: Sequence[Row], folder: Path) -> None:
             writer.writerow(("beaten", "by"))
             for row, other in zip(among, beaten_by(among), strict=True):
                 if other is not None:
-                    writer.writerow((row["command"], among[other]["command"]))
+                    writer.writerow((row.command, among[other].command))
         files.replace(work, ("beaten.csv",), folder)
 
 
@@ -253,12 +278,12 @@ def draw(rows: Sequence[Row], path: Path) -> None:
     figure, both = plt.subplots(1, 2, figsize=(11, 4.4), layout="constrained", sharey=True)
     default, *lanes, published = (found[name] for name in LABELS)
     default_label, *lanes_labels, published_label = LABELS.values()
-    knee_label = f"knee: {best['rows']} x {best['columns']}, {best[STORED]} bits, {{:.1f}} \u00b5m"
+    knee_label = f"knee: {best.rows} x {best.columns}, {getattr(best, STORED)} bits, {{:.1f}} \u00b5m"
     panels: tuple[tuple[str, Callable[[Row], float], list[tuple[Row, str]]], ...] = (
         ("fullest resource of an LFE5U-85F, %", silicon, [(best, knee_label)]),
         (
             f"delay from the last pixel to the whole map, \u00b5s at {CLOCK_MHZ:g} MHz",
-            lambda row: float(row["map_cycles"]) / CLOCK_MHZ,
+            lambda row: row.map_cycles / CLOCK_MHZ,
             list(zip(lanes, lanes_labels, strict=True)),
         ),
     )

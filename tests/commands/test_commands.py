@@ -153,7 +153,7 @@ def test_lanes_that_cannot_be_built_are_refused(refused: Any, command: str, word
     assert line == f"make {command.split()[0]}: {LANES[words]}"
 
 
-WITH_OUT = ("asic", "baselines", "certify", "extremes", "reflex", "report", "sweep", "synth", "tune")
+WITH_OUT = ("asic", "baselines", "certify", "extremes", "reflex", "report", "sweep", "synth", "trade", "tune")
 BAD_OUT = {"x" * 300: "cannot be written (File name too long): give a folder that can", "file": "is a file"}
 
 

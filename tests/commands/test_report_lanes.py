@@ -2,12 +2,14 @@
 """The section of `make report` on lanes: a line for each number of lanes, with what the hardware flows left for it."""
 
 import json
+from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 from commands.common import run_request
 from commands.cost.cost import cost
 from commands.study import report_lanes, sweep
-from commands.study.rows import Row
+from commands.study.sweep import Row
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
 
@@ -15,13 +17,15 @@ from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_
 def row(columns: int, lanes: int) -> Row:
     """Return what the section reads of a row of the sweep."""
     config = Configuration(columns=columns, solver="tridiagonal", lanes=lanes)
-    return sweep.configuration_cells({"solver": "tridiagonal", "columns": columns, "lanes": lanes}) | {
+    cells: dict[str, Any] = vars(sweep.square(columns, solver="tridiagonal", lanes=lanes)) | {
         "problem": "",
-        "last_pixel_to_first_depth_cycles": str(last_pixel_to_first_depth(config)),
-        "last_pixel_to_last_depth_cycles": str(last_pixel_to_last_depth(config)),
-        "multipliers": str(cost(config).tiles),
-        "memory_bits": str(cost(config).memory_bits),
+        "last_pixel_to_first_depth_cycles": last_pixel_to_first_depth(config),
+        "last_pixel_to_last_depth_cycles": last_pixel_to_last_depth(config),
+        "multipliers": cost(config).tiles,
+        "memory_bits": cost(config).memory_bits,
     }
+    every: dict[str, Any] = dict.fromkeys(column.name for column in fields(Row))
+    return Row(**(every | cells))
 
 
 def test_every_number_of_lanes_has_a_line(tmp_path: Path) -> None:
@@ -40,8 +44,8 @@ def test_every_number_of_lanes_has_a_line(tmp_path: Path) -> None:
     lines = html.split("<tr>")[2:]
     assert len(lines) == len(rows)
     for expected, line in zip(rows, lines, strict=True):
-        assert f"<td>{expected['columns']} x {expected['columns']}</td><td>{expected['lanes']}</td>" in line
-        assert f"<td>{int(expected['last_pixel_to_last_depth_cycles']):,}</td>" in line
-        assert ("45,678" in line) == ((expected["columns"], expected["lanes"]) == ("128", "8"))
-        assert ("98.8" in line) == ((expected["columns"], expected["lanes"]) == ("128", "4"))
+        assert f"<td>{expected.columns} x {expected.columns}</td><td>{expected.lanes}</td>" in line
+        assert f"<td>{expected.last_pixel_to_last_depth_cycles:,}</td>" in line
+        assert ("45,678" in line) == ((expected.columns, expected.lanes) == (128, 8))
+        assert ("98.8" in line) == ((expected.columns, expected.lanes) == (128, 4))
     assert (tmp_path / "lanes.png").exists()

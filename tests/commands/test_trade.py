@@ -1,21 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make trade`: its rows are what the RTL does and are measured once; which are beaten, and the knee."""
 
-import csv
 from typing import Any
 
 import pytest
 
 from commands.common import run_request
-from commands.study import trade, trade_front
-from commands.study.rows import Row
+from commands.study import study, trade, trade_front
+from commands.study.trade_front import Point, Row
 from tests import ball_presses
 
 PRESSES = 20  # drawn, so that each fold leaves enough in the middle
 
 
 @pytest.fixture(scope="module")
-def study(tmp_path_factory: pytest.TempPathFactory) -> trade.Study:
+def presses(tmp_path_factory: pytest.TempPathFactory) -> trade.Prepared:
     folder = tmp_path_factory.mktemp("trade")
     source = ball_presses.write_folder(folder / "drawn", PRESSES)
     with pytest.MonkeyPatch.context() as patched:
@@ -23,72 +22,90 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> trade.Study:
         return trade.prepare(folder / "out", source, None)
 
 
-def choices(*words: int, **others: str) -> trade.Choices:
-    return trade._choices((24, 32), words or trade.WIDE, **others)  # type: ignore[arg-type]
+def point(words: tuple[int, int, int] = trade.WIDE) -> Point:
+    return trade.point((24, 32), words)
 
 
 def test_the_plan_is_made_of_variables_of_make_sim() -> None:
     plan = trade.plan()
     assert len(plan) >= 500
-    assert len({tuple(sorted(row.items())) for row in plan}) == len(plan)
-    assert {row["CAMERA"] for row in plan} == set(trade.FORMATS)
-    for row in plan:
-        run_request.check_grid(run_request.of_values(row | {"FRAMES": "ball"}, run_request.WITH_CAMERA, "sensor"))
+    assert len(set(plan)) == len(plan)
+    assert {each.pixel_format for each in plan} == set(trade.FORMATS)
+    for each in plan:
+        values = trade.of_sim(each) | {"FRAMES": "ball"}
+        request = run_request.of_values(values, run_request.WITH_CAMERA, "sensor")
+        run_request.check_grid(request)
+        shared = vars(each).keys() & vars(request).keys() - {"light_gains"}
+        assert {name: getattr(request, name) for name in shared} == {name: getattr(each, name) for name in shared}
 
 
-def test_wider_words_err_less_and_cost_more(study: trade.Study) -> None:
-    wide, narrow = (trade.measure(study, choices(*words)) for words in (trade.WIDE, (12, 10, 16)))
-    assert wide["problem"] == narrow["problem"] == ""
-    assert float(wide["height_um"]) < float(narrow["height_um"])
-    assert int(wide["presses"]) == len(study.middle) > 4
+def test_the_plan_leaves_out_what_was_never_on_the_front() -> None:
+    plan = trade.plan()
+    assert not {each.data_width for each in plan} & {21, 22, 23}
+    assert {each.lanes for each in plan} == {1, 4, 8, 16, 32}
+
+
+def test_wider_words_err_less_and_cost_more(presses: trade.Prepared) -> None:
+    measured = trade.study_of(presses).measured
+    wide, narrow = measured(point()), measured(point((12, 10, 16)))
+    assert wide.problem == narrow.problem == ""
+    assert wide.height_um < narrow.height_um
+    assert wide.presses == len(presses.middle) > 4
     for name in ("multipliers_18", "luts", "memory_bits", "power_mw"):
-        assert float(wide[name]) > float(narrow[name])
-    assert int(wide["first_depth_cycles"]) < float(wide["contact_cycles"]) <= int(wide["map_cycles"]) + 1
-    assert "FRAMES=" in wide["command"]
+        assert getattr(wide, name) > getattr(narrow, name)
+    assert wide.first_depth_cycles < wide.contact_cycles <= wide.map_cycles + 1
+    assert "FRAMES=" in wide.command
 
 
-def test_a_square_shows_the_middle_alone(study: trade.Study) -> None:
-    row = trade.measure(study, trade._choices((32, 32), trade.WIDE, SOLVER="spectral"))
-    assert row["sides_height_um"] == ""
-    assert row["presses"] == str(len(study.middle))
+def test_a_square_shows_the_middle_alone(presses: trade.Prepared) -> None:
+    row = trade.study_of(presses).measured(trade.point((32, 32), trade.WIDE, solver="spectral"))
+    assert row.sides_height_um is None
+    assert row.presses == len(presses.middle)
 
 
-def test_what_cannot_be_built_is_a_row(study: trade.Study) -> None:
-    row = trade.measure(study, trade._choices((96, 128), trade.WIDE, CAMERA="raw8"))
-    assert "2 are needed" in row["problem"]
-    assert row["height_um"] == ""
+def test_what_cannot_be_built_is_a_row(presses: trade.Prepared) -> None:
+    row = trade.study_of(presses).measured(trade.point((96, 128), trade.WIDE, pixel_format="raw8"))
+    assert "2 are needed" in row.problem
+    assert row.height_um is None
 
 
-def test_rows_are_measured_once(study: trade.Study, monkeypatch: pytest.MonkeyPatch) -> None:
-    wanted = [choices(), choices(12, 10, 16)]
-    rows = trade.study_rows(study, wanted[:1])
-    monkeypatch.setattr(trade, "measure", None)  # of the parent process: rows that are there need none
-    assert trade.study_rows(study, wanted[:1]) == rows
-    with (study.folder / "trade.csv").open(newline="") as file:
-        assert list(csv.DictReader(file)) == rows
+def test_rows_are_measured_once(presses: trade.Prepared, monkeypatch: pytest.MonkeyPatch) -> None:
+    wanted = [point()]
+    rows = trade.study_of(presses).complete(wanted, presses.folder)
+    monkeypatch.setattr(study, "on_all_cores", lambda measure, points: map(measure, points))
+    monkeypatch.setattr(trade, "measure", None)  # rows that are there need none
+    assert trade.study_of(presses).complete(wanted, presses.folder) == rows
+    assert study.read(presses.folder / "trade.csv", Row) == rows
 
 
-def test_the_folds_are_kept(study: trade.Study, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_folds_are_kept(presses: trade.Prepared, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(trade, "FORMATS", ("rgb888", "raw8"))
     monkeypatch.setattr(trade, "_calibrate", None)
-    assert trade.prepare(study.folder, study.source, None) == study
+    assert trade.prepare(presses.folder, presses.source, None) == presses
 
 
 @pytest.mark.regress
-def test_a_row_is_what_the_rtl_does(study: trade.Study) -> None:
-    rows = [trade.measure(study, choices(15, 12, 16))]
-    assert trade.in_rtl(study, rows, 1, seed=1, simulator="icarus") == 0
+def test_a_row_is_what_the_rtl_does(presses: trade.Prepared) -> None:
+    rows = [trade.study_of(presses).measured(point((15, 12, 16)))]
+    assert trade.in_rtl(presses, rows, 1, seed=1, simulator="icarus") == 0
 
 
 def row(**changed: Any) -> Row:
     """Return a row with all axes 100 but those given."""
-    same = dict.fromkeys((*trade_front.ERRORS, *trade_front.COSTS), "100")
-    other = {name: str(value) for name, value in changed.items()}
-    return {"problem": "", "boundary": "neumann", "pixel_format": "rgb888", **same, **other}
+    same: dict[str, Any] = dict.fromkeys((*trade_front.ERRORS, *trade_front.COSTS), 100)
+    others: dict[str, Any] = {
+        "problem": "",
+        "presses": 9,
+        "cap_percent": 1.0,
+        "saturations": 0,
+        "command": "",
+        "models": "",
+    }
+    return Row(**(vars(trade_front.DEFAULT) | others | same | changed))
 
 
 def test_a_row_is_beaten_by_one_that_is_no_worse_in_anything() -> None:
-    rows = [row(), row(luts=90), row(luts=80, height_um=100.01), row(luts=80, height_um=101), row(sides_height_um="")]
+    rows = [row(), row(luts=90), row(luts=80, height_um=100.01), row(luts=80, height_um=101), row(sides_height_um=None)]
     assert trade_front.beaten_by(rows) == [1, 2, None, 2, 0]
 
 
@@ -97,6 +114,6 @@ def test_the_knee_has_the_least_silicon_of_those_that_are_near() -> None:
     rows = [row(height_um=50, untouched_um=50), row(height_um=56, **near), row(height_um=50, multipliers_18=10)]
     assert trade_front.knee(rows) == rows[1]
     rows.append(
-        row(height_um=50, untouched_um=50, multipliers_18=1, sides_height_um="")
+        row(height_um=50, untouched_um=50, multipliers_18=1, sides_height_um=None)
     )  # does not show the whole picture
     assert trade_front.knee(rows) == rows[1]
