@@ -192,11 +192,8 @@ def with_lanes(rows: Sequence[Row], columns: int) -> list[Row]:
 def cost_of_worst(rows: Sequence[Row], solver: str) -> list[str]:
     """Return the loss of accuracy with a depth range that no slopes exceed, and the word length that compensates it."""
     default, worst = (
-        {
-            row.data_width: row.rms_percent_mean
-            for row in like(rows, square(solver=solver, depth_range=reach), "data_width")
-        }
-        for reach in (DEFAULT.depth_range, WORST)
+        {getattr(row, STORED): row.rms_percent_mean for row in like(rows, square(solver=solver, **chosen), STORED)}
+        for chosen in ({}, SAFE)
     )
     width = DEFAULT_WIDTHS[STORED]
     if width not in default or width not in worst:

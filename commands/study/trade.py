@@ -66,7 +66,7 @@ SQUARES = (32, 64, 128)  # of the spectral solver, the middle of the picture
 WIDE = (24, 18, 24)  # bits of a stored word, a coefficient, a gain of the flat field
 WORDS = (WIDE, (20, 16, 16), (18, 15, 16), (16, 14, 16), (15, 12, 16), (14, 11, 16), (12, 10, 16))
 # Words of 21 to 23 bits and 64 values a clock were never on the front.
-DATA_WIDTHS = (*range(12, 21), 24)
+STORED_WIDTHS = (*range(12, 21), 24)
 MOST_LANES = 32
 MODELS: tuple[dict[str, Any], ...] = ({}, {"gradient": "quadratic"}, LUT)
 OPTIONS: tuple[dict[str, Any], ...] = ({"boundary": "dirichlet"}, {"light_gains": 0})
@@ -80,7 +80,7 @@ def plan() -> list[Point]:
     All word lengths at the default grid; every grid, number of depth values per clock and gradient model with WORDS;
     the same for the spectral solver; every pixel format; and the options that can be left out.
     """
-    points = [point(GRIDS[2], (d, c, 16)) for d in DATA_WIDTHS for c in range(10, 19)]
+    points = [point(GRIDS[2], (d, c, 16)) for d in STORED_WIDTHS for c in range(10, 19)]
     for grid, words, model in itertools.product(GRIDS, WORDS, MODELS):
         most = most_lanes(grid[1], zero_offset=True)
         lanes = (lanes for lanes in sorted({1, 4, 16, most}) if lanes <= min(most, MOST_LANES))
