@@ -24,6 +24,7 @@ from typing import Any, BinaryIO, Generic, Protocol, Self, TypeVar, get_args, ge
 import joblib
 from tqdm import tqdm
 
+from commands.common.progress import duration
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 
@@ -230,8 +231,7 @@ class Study(Generic[P, R]):
                 print(f"{len(points) - len(left)} of {len(points)} rows are there already: {there}")
             work = sum(point.pixels for point in left)
             cores = sum(client.ncores().values()) if client else joblib.cpu_count()
-            minutes = max(1, round(self.seconds * work / cores / 60))
-            print(f"{len(left)} rows to measure: about {minutes} min on {cores} cores")
+            print(f"{len(left)} rows to measure: about {duration(self.seconds * work / cores)} on {cores} cores")
             shape = "{percentage:3.0f}%|{bar}| {postfix} [{elapsed} < {remaining}]"
             bar = stack.enter_context(tqdm(total=work, bar_format=shape, leave=False, disable=None))
             fresh = on_cluster(client, self.cells, left) if client else on_all_cores(self.cells, left)
