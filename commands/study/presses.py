@@ -19,7 +19,7 @@ import tactile_depth as td
 from commands.common import simulator as simulation
 from commands.common.progress import progress_bar
 from commands.common.tabular import Table
-from commands.common.variables import EQUAL, MISMATCH, Flag, Place, real
+from commands.common.variables import EQUAL, MISMATCH, Place, one, real
 from commands.run import bench
 from commands.run.calibrate import data_folder
 from tactile_depth.base import files
@@ -182,7 +182,7 @@ def main(
     presses: Place | None = None,
     pitch: Annotated[float | None, real(*PIXEL_PITCHES_MM)] = None,
     simulator: simulation.Simulator = simulation.SIMULATORS[0],
-    rtl: Flag = True,
+    rtl: Annotated[bool, one({"1": True, "0": False})] = True,
 ) -> int:
     if rtl:
         simulation.check(simulator)

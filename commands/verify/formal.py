@@ -256,7 +256,9 @@ def listing(proofs: Sequence[Proof | Cone], others: Mapping[str, str]) -> str:
     return f"{proven}\n{unproven}" if others else proven
 
 
-def main(core: variables.Name = "", list_only: Annotated[bool, variables.flag, "LIST"] = False) -> int:
+def main(
+    core: variables.Name = "", list_only: Annotated[bool, variables.one({"0": False, "1": True}), "LIST"] = False
+) -> int:
     proofs = selected(core)
     if not list_only:
         return prove(proofs)
