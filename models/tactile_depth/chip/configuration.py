@@ -312,6 +312,11 @@ class Configuration:
         return self.gradient_model != "lut"
 
     @property
+    def has_table(self) -> bool:
+        """True if colours index a table, of slopes or of corrections."""
+        return self.gradient_model != "quadratic"
+
+    @property
     def gradient(self) -> Format:
         """Format of a slope, with the fraction bits of the row transform, so that no bits are dropped between them."""
         fraction = self.row_forward.fraction

@@ -30,7 +30,7 @@ def by_core(config: Configuration) -> list[tuple[str, str, int]]:
         * config.flat_field,
         *[("gradient_unit", "light_gains", light_gains.LATENCY)] * config.light_gains,
         *[("gradient_unit", "polynomial_gradient", polynomial_gradient.LATENCY)] * config.polynomials,
-        *[("gradient_unit", "gradient_lookup", table)] * (config.gradient_model != "quadratic"),
+        *[("gradient_unit", "gradient_lookup", table)] * config.has_table,
         ("poisson_unit", "divergence", divergence.LATENCY),
         *(("poisson_unit", *step) for step in by_solver_core(config)),
         *[("depth_unit", "zero_offset", zero), ("depth_unit", "zero_capture", 0)] * config.zero_offset,
