@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from commands.common import run_request
+from commands.common.slopes import deepest, slope_response
 from commands.run import sim
-from commands.study import certify as command
-from commands.study.certificate import certify, deepest, node_format, slope_response
+from commands.study import certify
+from commands.study.node_bounds import node_bounds, node_format
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.bounds import difference_bounds
 from tactile_depth.chip.common.td_round_saturate import Monitor
@@ -67,7 +68,7 @@ def over_slopes(words: Any, config: Configuration) -> Any:
 def test_slopes_are_the_norms_of_the_whole_map(choices: Any) -> None:
     config = Configuration(**choices)
     words, _ = whole_map(config)
-    nodes = certify(config)
+    nodes = node_bounds(config)
     assert [node.name for node in nodes] == list(words)
     for node in nodes:
         norm = over_slopes(words[node.name], config).max() * node.form.lsb
@@ -84,7 +85,7 @@ def test_depths_are_the_norms_of_the_whole_map(choices: Any) -> None:
     config = Configuration(**choices)
     words, depth = whole_map(config)
     from_depth = np.linalg.inv(depth)
-    for node in certify(config):
+    for node in node_bounds(config):
         over_depths = np.abs(from_depth @ words[node.name]).sum(axis=0) * config.depth_range_px / config.depth_lsb_px
         bound = np.minimum(over_depths, over_slopes(words[node.name], config)).max() * node.form.lsb
         assert node.depths >= bound * (1 - 1e-3), node.name
@@ -107,7 +108,7 @@ def test_the_deepest_point_is_where_it_is_looked_for(rows: int, columns: int, ne
 def test_the_bound_of_a_difference_holds_and_is_close(rows: int, neumann: bool) -> None:
     """Check the shorter bound of the configuration, with ideal coefficients and the variation of weights taken as 2."""
     config = Configuration(columns=32, rows=rows, solver="tridiagonal", neumann=neumann, coefficient_width=24)
-    bound = {node.name: node for node in certify(config)}["forward_elimination.difference"].slopes
+    bound = {node.name: node for node in node_bounds(config)}["forward_elimination.difference"].slopes
     by_slopes = difference_bounds(rows, 32, neumann)[0].max() / config.depth_limit_px
     assert bound * (1 - 1e-4) <= by_slopes <= 1.3 * bound
 
@@ -183,9 +184,9 @@ def test_depths_at_their_bounds_through_rtl(tmp_path: Any, solver: str) -> None:
     reached = np.load(tmp_path / "out" / "depth.npy") * config.depth_lsb_px
     np.testing.assert_allclose(reached, config.depth_range_px * field, rtol=1e-3)
 
-    peaks = command.Peaks({name: node_format(name, config).width for name in words}, len(field))
-    command.tactile_depth(colours.astype(np.uint8), load(str(tmp_path / "c.npz")), config, peaks)
-    nodes = {node.name: node for node in certify(config)}
+    peaks = certify.Peaks({name: node_format(name, config).width for name in words}, len(field))
+    certify.tactile_depth(colours.astype(np.uint8), load(str(tmp_path / "c.npz")), config, peaks)
+    nodes = {node.name: node for node in node_bounds(config)}
     for frame, name in enumerate(meant[:patterns_held]):
         bound = np.abs(from_depth @ words[name]).sum(axis=0).max() * config.depth_range_px / config.depth_lsb_px
         assert peaks.peaks[name][frame] == pytest.approx(bound, rel=1e-3), name
@@ -197,7 +198,7 @@ def test_a_shallow_range_holds_the_steepest_slopes_that_stay_in_it(depth_range_p
     """Combine steep slopes and a shallow range: the input of the elimination is then larger than any mode of the
     depth."""
     config = Configuration(columns=32, solver="tridiagonal", depth_range_px=depth_range_px)
-    node = {node.name: node for node in certify(config)}["row_forward.phase.re"]
+    node = {node.name: node for node in node_bounds(config)}["row_forward.phase.re"]
     slopes = np.sign(slope_response(node.response, False))
     depth = reference.solve(divergence(slopes), False)
     assert np.abs(depth).max() <= depth_range_px
@@ -236,7 +237,7 @@ def test_no_derived_format_saturates_within_the_range(
 ) -> None:
     words: dict[str, Any] = {"data_width": data_width, "coefficient_width": coefficient_width}
     config = Configuration(columns, 0, solver, neumann, **words, depth_range_px=depth_range_px)
-    assert {node.name for node in certify(config) if node.depths_headroom_bits < 0} == set()
+    assert {node.name for node in node_bounds(config) if node.depths_headroom_bits < 0} == set()
 
 
 def test_every_node_has_its_format() -> None:
@@ -254,7 +255,7 @@ def test_every_node_has_its_format() -> None:
 
 def run(tmp_path: Any, *arguments: Any, rtl: bool = True) -> Any:
     out = tmp_path / "out"
-    assert command.run(run_request.parse([*arguments, f"OUT={out}"]), rtl) == 0
+    assert certify.run(run_request.parse([*arguments, f"OUT={out}"]), rtl) == 0
     return json.loads((out / "certificate.json").read_text())
 
 
@@ -307,16 +308,16 @@ def test_the_worst_depth_range_and_its_price(tmp_path: Path, capsys: pytest.Capt
 
 def test_a_certificate_that_is_wrong_is_found_out(tmp_path: Path) -> None:
     config = Configuration(columns=16)
-    nodes = certify(config)
+    nodes = node_bounds(config)
     calibration = load("synthetic")
-    frames, attempts = command.worst_frames(nodes, calibration, config)
-    peaks = command.Peaks({node.name: node.form.width for node in nodes}, len(frames))
-    command.tactile_depth(frames, calibration, config, peaks)
-    assert command.check_model(frames, attempts, nodes, peaks) == []
+    frames, attempts = certify.worst_frames(nodes, calibration, config)
+    peaks = certify.Peaks({node.name: node.form.width for node in nodes}, len(frames))
+    certify.tactile_depth(frames, calibration, config, peaks)
+    assert certify.check_model(frames, attempts, nodes, peaks) == []
     output = next(node for node in nodes if node.name == "column_inverse.output")
     peaks.peaks["spectral_divide"] //= 2
     peaks.clips["column_forward.input"][0] = True
-    faults = command.check_model(frames, attempts, nodes, peaks)
+    faults = certify.check_model(frames, attempts, nodes, peaks)
     assert any(fault.startswith("spectral_divide reached") for fault in faults)
     assert any(fault.startswith("column_forward.input saturated") for fault in faults)
     assert output.slopes_headroom_bits < 0

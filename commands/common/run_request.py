@@ -14,8 +14,8 @@ from typing import Any
 
 from commands.common import simulator as simulation
 from commands.common import variables
+from commands.common.slopes import deepest
 from commands.common.variables import Several
-from commands.study.certificate import deepest
 from tactile_depth.base.errors import InputError
 from tactile_depth.base.npy import is_file
 from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoice, CameraConfiguration

@@ -17,9 +17,10 @@ from commands.common import repository, run_request, tabular
 from commands.common import simulator as simulation
 from commands.common.progress import progress_bar
 from commands.common.results import save, written
+from commands.common.slopes import slope_response
 from commands.common.variables import Flag
 from commands.run import sim, sim_table
-from commands.study.certificate import Node, certify, slope_response
+from commands.study.node_bounds import Node, node_bounds
 from tactile_depth.base import files
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
@@ -222,7 +223,7 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
 
     shape = "{desc} {percentage:.0f} % {bar} {remaining}"
     with progress_bar(total=1.0, desc="certifying", delay=3, bar_format=shape) as bar:
-        nodes = certify(config, bar.update)
+        nodes = node_bounds(config, bar.update)
     print(nodes_table(nodes))
     for line in summary(nodes, config, pixel_pitch_mm):
         print(line)

@@ -21,10 +21,9 @@ from commands.common.progress import progress_bar
 from commands.common.results import save, written
 from commands.common.tabular import Column
 from commands.common.variables import Flag, Several
-from commands.study import certify as certificate
-from commands.study import sensor_extremes
+from commands.study import certify, sensor_extremes
 from commands.study.accuracy import errors
-from commands.study.certificate import certify
+from commands.study.node_bounds import node_bounds
 from commands.study.transform_noise import BIAS, Compliance, compliance
 from tactile_depth.base import files
 from tactile_depth.chip.common.td_round_saturate import Monitor
@@ -132,7 +131,7 @@ def _steepest(config: Configuration) -> np.ndarray:
 
 
 def _worst(config: Configuration) -> np.ndarray:
-    return certificate.worst_frames(certify(config), load(CALIBRATION), config)[0]
+    return certify.worst_frames(node_bounds(config), load(CALIBRATION), config)[0]
 
 
 def _noise(config: Configuration) -> np.ndarray:
@@ -189,7 +188,7 @@ def measure(extreme: Extreme, solver: str, size: int, simulator: str) -> Row:
     calibration = load(CALIBRATION)
     config = run_request.configure(request, calibration)
     frames = np.ascontiguousarray(extreme.draw(config))
-    streamed = certificate.stream(request, config, calibration, frames)
+    streamed = certify.stream(request, config, calibration, frames)
     codes = streamed.codes
     exact = reference.depth(frames, calibration, config.neumann)
     want = exact / config.depth_lsb_px

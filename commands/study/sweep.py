@@ -16,12 +16,12 @@ import numpy as np
 
 from commands.common import published
 from commands.common.repository import ROOT
+from commands.common.slopes import deepest
 from commands.common.tabular import Table
 from commands.common.variables import Name, Place
 from commands.cost.cost import ECP5, cost
 from commands.study import study
 from commands.study.accuracy import errors
-from commands.study.certificate import deepest
 from commands.study.study import Study, built
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import COEFFICIENT, DEFAULT_WIDTHS, SOLVER_WIDTHS, STORED, WIDTHS, Configuration

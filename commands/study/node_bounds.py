@@ -17,10 +17,10 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import product
 
 import numpy as np
 
+from commands.common.slopes import places, steps
 from tactile_depth.chip.bounds import Responses, l1
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
@@ -34,7 +34,6 @@ from tactile_depth.chip.poisson.thomas_table import ahead_rows, thomas_table
 from tactile_depth.chip.poisson.transform.orders import makhoul
 from tactile_depth.chip.poisson.wide_elimination import wide_elimination
 from tactile_depth.chip.poisson.wide_substitution import wide_substitution
-from tactile_depth.depth import reference
 
 BLOCK_BYTES = 1 << 26  # bytes of responses held at a time
 TRIED = 1 << 32  # most products computed for a node of the inverse row transform, whose words are tried one by one
@@ -110,24 +109,6 @@ def node_format(name: str, config: Configuration) -> Format:
         return config.elimination_store
     drop = config.moment_drop if rest == "moment" else 0
     return Format(width, config.elimination.fraction - drop)
-
-
-def steps(response: np.ndarray, neumann: bool, axis: int = 0) -> np.ndarray:
-    """Return the response to slopes along an axis, from the response to the divergence.
-
-    A slope enters the divergence of its own sample with + and of the next sample with -.
-
-    Neumann: the slope of the last sample counts as 0.
-    """
-    change = -np.diff(response, axis=axis, append=0)
-    if neumann:
-        np.moveaxis(change, axis, 0)[-1] = 0
-    return change
-
-
-def slope_response(response: np.ndarray, neumann: bool) -> np.ndarray:
-    """Return the response to slopes (rows, columns, 2), from the response to the divergence (rows, columns)."""
-    return np.stack((steps(response, neumann, 1), steps(response, neumann, 0)), axis=-1)
 
 
 def _variation(response: np.ndarray, neumann: bool) -> np.ndarray:
@@ -298,14 +279,6 @@ class _Survey:
             self.progress(1 / len(self.inverse) / 2)
 
 
-def places(rows: int) -> list[int]:
-    """Return rows of which one holds the deepest point that slopes can reach: the middle (Dirichlet), an end (Neumann).
-
-    This was found by a search over all positions on small grids, which a test repeats.
-    """
-    return sorted({0, rows // 2 - 1, rows // 2, rows - 1})
-
-
 class _Spectral(_Survey):
     def columns(self) -> dict[int, np.ndarray]:
         config, neumann = self.config, self.neumann
@@ -468,17 +441,7 @@ class _Tridiagonal(_Survey):
         return [(c / scale, 1) for c in table.rows(self.config.rows - 1)] + [(last, 0)]
 
 
-def deepest(rows: int, columns: int, neumann: bool) -> float:
-    """Return the largest depth that slopes up to 1 can reach on a grid, in pixels, in exact arithmetic."""
-    most = 0.0
-    for row, column in product(places(rows), places(columns)):
-        lone = np.zeros((rows, columns))
-        lone[row, column] = 1
-        most = max(most, float(np.abs(slope_response(reference.solve(lone, neumann), neumann)).sum()))
-    return most
-
-
-def certify(config: Configuration, progress: Callable[[float], None] = lambda share: None) -> list[Node]:
+def node_bounds(config: Configuration, progress: Callable[[float], None] = lambda share: None) -> list[Node]:
     """Return every node of the configuration's solver in the order of the stream, with its largest values.
 
     Parameters
