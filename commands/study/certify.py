@@ -13,11 +13,12 @@ from typing import Annotated
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from commands.common import repository, run_request, tabular
+from commands.common import repository, run_request
 from commands.common import simulator as simulation
 from commands.common.progress import progress_bar
 from commands.common.results import save, written
 from commands.common.slopes import slope_response
+from commands.common.tabular import Column, shown
 from commands.common.variables import Flag
 from commands.run import sim, sim_table
 from commands.study.node_bounds import Node, node_bounds
@@ -124,19 +125,32 @@ def check_model(frames: np.ndarray, attempts: list[Attempt], nodes: list[Node], 
     return faults
 
 
-def nodes_table(nodes: list[Node]) -> tabular.Table:
-    """Return a row for each node."""
+@dataclass(frozen=True)
+class Record:
+    """Node of the certificate; a headroom without a limit is None, and so is the frame of a node that none moves."""
 
-    def bits(headroom: float) -> str:
-        return "-" if headroom == math.inf else f"{headroom:+.2f}"
+    node: Annotated[str, Column("node")]
+    width: Annotated[int, Column("width")]
+    fraction: Annotated[int, Column("fraction")]
+    holds: Annotated[float, Column("holds", ".5g")]
+    worst_over_slopes: Annotated[float, Column("slopes", ".5g")]
+    attained_over_slopes: float
+    slopes_headroom_bits: Annotated[float | None, Column("headroom", "+.2f")]
+    worst_over_depths: Annotated[float, Column("depths", ".5g")]
+    depths_headroom_bits: Annotated[float | None, Column("headroom", "+.2f")]
+    worst_frame: int | None
+    reached_by_frame: float | None
 
-    head = ("node", "width", "fraction", "holds", "slopes", "headroom", "depths", "headroom")
-    rows = []
-    for node in nodes:
-        form = (str(node.form.width), str(node.form.fraction), f"{node.form.limit:.5g}")
-        slopes = (f"{node.slopes:.5g}", bits(node.slopes_headroom_bits))
-        rows.append((node.name, *form, *slopes, f"{node.depths:.5g}", bits(node.depths_headroom_bits)))
-    return tabular.Table(head, rows)
+
+def record(node: Node, attempts: list[Attempt]) -> Record:
+    own = next((attempt for attempt in attempts if attempt.node is node), None)
+    slopes, depths = (
+        None if bits == math.inf else bits for bits in (node.slopes_headroom_bits, node.depths_headroom_bits)
+    )
+    form = node.form
+    frame, reached = (None, None) if own is None else (own.frame, own.expected * form.lsb)
+    over = (node.slopes, node.reached, slopes, node.depths, depths)
+    return Record(node.name, form.width, form.fraction, form.limit, *over, frame, reached)
 
 
 def summary(nodes: list[Node], config: Configuration, pixel_pitch_mm: float) -> list[str]:
@@ -224,13 +238,14 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
     shape = "{desc} {percentage:.0f} % {bar} {remaining}"
     with progress_bar(total=1.0, desc="certifying", delay=3, bar_format=shape) as bar:
         nodes = node_bounds(config, bar.update)
-    print(nodes_table(nodes))
+    frames, attempts = worst_frames(nodes, calibration, config)
+    records = [record(node, attempts) for node in nodes]
+    print(shown(Record, records))
     for line in summary(nodes, config, pixel_pitch_mm):
         print(line)
     if request.deepest_mm == math.inf:
         print(cost_of_worst(config, pixel_pitch_mm))
 
-    frames, attempts = worst_frames(nodes, calibration, config)
     peaks = Peaks({node.name: node.form.width for node in nodes}, len(frames))
     for first in progress_bar(range(0, len(frames), BATCH), desc="model", delay=3):
         peaks.first = first
@@ -252,7 +267,7 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
         "gradient_limit": config.gradient_limit,
         "depth_lsb_mm": config.depth_lsb_px * pixel_pitch_mm,
         "calibration": calibration.name,
-        "nodes": [_record(node, attempts) for node in nodes],
+        "nodes": [vars(each) for each in records],
         "saturated": clipping,
         "rtl": rtl,
         "faults": faults,
@@ -263,27 +278,6 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
         for fault in faults:
             print(fault)
     return 1 if faults else 0
-
-
-def _record(node: Node, attempts: list[Attempt]) -> dict:
-    own = next((attempt for attempt in attempts if attempt.node is node), None)
-
-    def finite(headroom: float) -> float | None:
-        return None if headroom == math.inf else headroom
-
-    return {
-        "node": node.name,
-        "width": node.form.width,
-        "fraction": node.form.fraction,
-        "holds": node.form.limit,
-        "worst_over_slopes": node.slopes,
-        "attained_over_slopes": node.reached,
-        "slopes_headroom_bits": finite(node.slopes_headroom_bits),
-        "worst_over_depths": node.depths,
-        "depths_headroom_bits": finite(node.depths_headroom_bits),
-        "worst_frame": None if own is None else own.frame,
-        "reached_by_frame": None if own is None else own.expected * node.form.lsb,
-    }
 
 
 main = run

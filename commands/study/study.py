@@ -22,9 +22,8 @@ from pathlib import Path
 from typing import Any, BinaryIO, Generic, Protocol, Self, TypeVar, get_args, get_type_hints
 
 import joblib
-from tqdm import tqdm
 
-from commands.common.progress import duration
+from commands.common.progress import duration, progress_bar
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 
@@ -233,7 +232,7 @@ class Study(Generic[P, R]):
             cores = sum(client.ncores().values()) if client else joblib.cpu_count()
             print(f"{len(left)} rows to measure: about {duration(self.seconds * work / cores)} on {cores} cores")
             shape = "{percentage:3.0f}%|{bar}| {postfix} [{elapsed} < {remaining}]"
-            bar = stack.enter_context(tqdm(total=work, bar_format=shape, leave=False, disable=None))
+            bar = stack.enter_context(progress_bar(total=work, bar_format=shape))
             fresh = on_cluster(client, self.cells, left) if client else on_all_cores(self.cells, left)
             for count, cells in enumerate(stack.enter_context(contextlib.closing(fresh)), start=1):
                 _append(file, cells)

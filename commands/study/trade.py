@@ -23,11 +23,11 @@ from typing import Annotated, Any
 import joblib
 import numpy as np
 from PIL import Image
-from tqdm import tqdm
 
 import tactile_depth as td
 from commands.common import recorded, run_request, variables
 from commands.common import simulator as simulation
+from commands.common.progress import progress_bar
 from commands.common.repository import ROOT
 from commands.common.variables import Place, Seed, real, whole
 from commands.common.zero_offset import untouched
@@ -172,7 +172,7 @@ def prepare(folder: Path, source: Path, pitch_mm: float | None) -> Prepared:
         Image.fromarray(_pixels(press)).save(folder / f"presses-{index % FOLDS}" / f"{index:03}.png")
     jobs = [joblib.delayed(_calibrate)(study, pictures, pixel_format) for pixel_format in FORMATS]
     fitted = joblib.Parallel(n_jobs=-1, return_as="generator_unordered")(jobs)
-    for _ in tqdm(fitted, "calibrations", len(jobs), unit=" pixel formats", leave=False, disable=None):
+    for _ in progress_bar(fitted, "calibrations", len(jobs), unit=" pixel formats"):
         pass
     stamp.write_text(study.digest)
     return study
