@@ -29,6 +29,7 @@ from commands.common import recorded, run_request, variables
 from commands.common import simulator as simulation
 from commands.common.progress import progress_bar
 from commands.common.repository import ROOT
+from commands.common.results import written
 from commands.common.variables import Place, Seed, real, whole
 from commands.common.zero_offset import untouched
 from commands.cost.cost import ECP5, cost
@@ -56,7 +57,7 @@ from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
 from tactile_depth.sensor.sensor import Sensor
 
 DEFAULT_OUT = ROOT / "build" / "trade"
-RESULTS = ("trade.csv", "beaten.csv", "trade.png")
+RESULTS = ("beaten.csv", "trade.png")
 FOLDS = 5
 SECONDS = 1e-6  # of a pixel of a press, with the time to read it
 FORMATS = (DEFAULT.pixel_format, "rgb565", "yuyv", "raw8")
@@ -331,8 +332,8 @@ def main(chosen: Variables) -> int:
     front = front_of(rows)
     print(summary(front))
     recorded.record(asdict(front))
-    write_beaten(rows, study.folder)
-    draw(rows, study.folder / "trade.png")
-    print(f"results: {os.path.relpath(study.folder)}")
+    with written(study.folder, RESULTS) as work:
+        write_beaten(rows, work / "beaten.csv")
+        draw(rows, work / "trade.png")
     differing = in_rtl(study, rows, chosen.rtl, chosen.seed, chosen.simulator) if chosen.rtl else 0
     return variables.MISMATCH if differing else variables.EQUAL

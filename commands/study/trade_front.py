@@ -7,7 +7,6 @@ largest of the shares of multipliers, LUTs and block memory that it takes of an 
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -22,7 +21,6 @@ from commands.common.tabular import Table
 from commands.hardware.targets import TARGETS
 from commands.study import study
 from commands.study.study import built
-from tactile_depth.base import files
 from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS, STORED, WIDTHS
 
 matplotlib.use("Agg")
@@ -249,17 +247,12 @@ def summary(front: Front) -> str:
     return "\n\n".join([*map(str, tables), f"{front.sentence} (beaten.csv)", f"the knee: {front.knee}"])
 
 
-def write_beaten(rows: Sequence[Row], folder: Path) -> None:
-    """Write the configurations that another one beats, and which one, to beaten.csv."""
+def write_beaten(rows: Sequence[Row], path: Path) -> None:
+    """Write the configurations that another one beats, and which one."""
     among = built(rows)
-    with files.workspace(folder, ("beaten.csv",)) as work:
-        with (work / "beaten.csv").open("w", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(("beaten", "by"))
-            for row, other in zip(among, beaten_by(among), strict=True):
-                if other is not None:
-                    writer.writerow((row.command, among[other].command))
-        files.replace(work, ("beaten.csv",), folder)
+    by = zip(among, beaten_by(among), strict=True)
+    pairs = [(row.command, among[other].command) for row, other in by if other is not None]
+    path.write_bytes(b"".join(map(study.line, [("beaten", "by"), *pairs])))
 
 
 LABELS = {  # of the marked configurations; {} is the depth error
