@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, is_dataclass
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
@@ -19,23 +19,12 @@ from commands.common import signals
 from tactile_depth.base import interruption
 from tactile_depth.base.errors import Argument, InputError, InputWarning, one_of
 from tactile_depth.base.files import cause
-from tactile_depth.chip.configuration import CHOICES
 
 EQUAL, MISMATCH, BAD_INPUT, FAILURE = 0, 1, 2, 3  # exit status; 128 + the number of a signal
 
-# Arguments of the package, and the variables that a user of make gave.
+# Arguments of the package that are called as the variables of make.
 SAME = ("reference", "calibration", "bits", "camera_size", "exposure_us", "window", "presses")
-VARIABLES = (
-    {choice.argument: choice.variable for choice in CHOICES.values()}
-    | {name: name.upper() for name in SAME}
-    | {
-        "folder": "OUT",
-        "models": "GRADIENT",
-        "phase": "BAYER",
-        "pitch_mm": "PITCH",
-        "pixel_format": "CAMERA",
-    }
-)
+OTHERS = {"folder": "OUT", "models": "GRADIENT", "phase": "BAYER", "pitch_mm": "PITCH", "pixel_format": "CAMERA"}
 
 PLAIN = {int: r"[+-]?[0-9]+", float: r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"}
 PRINTABLE = re.compile("[!-^`-~]*")  # ASCII without space and _
@@ -205,9 +194,18 @@ def usable(text: str) -> bool:
         return False
 
 
+@cache
+def variables_of_arguments() -> dict[str, str]:
+    """Return the variables that a user of make gave, by the names of arguments of the package."""
+    from tactile_depth.chip.configuration import CHOICES  # imports numpy, which a signal may interrupt from `main` on
+
+    chosen = {choice.argument: choice.variable for choice in CHOICES.values()}
+    return chosen | {name: name.upper() for name in SAME} | OTHERS
+
+
 def named(argument: Argument) -> str:
     """Return an argument of the package as the variable that a user of make typed."""
-    name = VARIABLES.get(argument.name)
+    name = variables_of_arguments().get(argument.name)
     return str(argument if name is None else Argument(name, argument.typed))
 
 

@@ -72,7 +72,7 @@ MOST_LANES = 32
 MODELS: tuple[dict[str, Any], ...] = ({}, {"gradient": "quadratic"}, LUT)
 OPTIONS: tuple[dict[str, Any], ...] = ({"boundary": "dirichlet"}, {"light_gains": 0})
 ALWAYS = ("pixel_format", "gradient", "rows", "columns", *WIDTHS)
-NAMES = variables.VARIABLES | {"columns": "COLS", "gradient": "GRADIENT"}  # of make sim
+NAMES = variables.variables_of_arguments() | {"columns": "COLS", "gradient": "GRADIENT"}  # of make sim
 
 
 def plan() -> list[Point]:
