@@ -37,10 +37,7 @@ def main() -> None:
     with signals.guarded(), variables.reported(command, INTERRUPTED.get(command, "")):  # imports take seconds
         sys.argv = sys.argv[1:]
         module = importlib.import_module(f"commands.{COMMANDS[command]}.{command.replace('-', '_')}")
-        if command == "calibrate":
-            module.main()
-        else:
-            sys.exit(variables.read(module.main, sys.argv[1:]))
+        sys.exit(variables.read(module.main, sys.argv[1:]))
 
 
 if __name__ == "__main__":

@@ -19,8 +19,9 @@ from PIL import Image
 
 import tactile_depth as td
 from tactile_depth.base.interruption import SIGNALS
+from tactile_depth.cli.drawing import DARK, OUTSIDE, Scale, round_number
 from tactile_depth.cli.main import main
-from tactile_depth.cli.overview import DARK, OUTSIDE, colours, draw_overview, round_number
+from tactile_depth.cli.overview import draw_overview
 from tactile_depth.cli.ply import triangles
 from tests.drawn_light import as_picture, no_contact, pressed
 from tests.real_data import FOLDER, needs_real_data
@@ -411,7 +412,7 @@ def test_triangles_face_up() -> None:
 
 
 def test_colours_run_from_dark_blue_to_yellow() -> None:
-    np.testing.assert_array_equal(colours(np.array([-1.0, 0.0, 2.0, 3.0]), 0, 2)[[0, 1, 2, 3], 0], [68, 68, 253, 253])
+    np.testing.assert_array_equal(Scale(0, 2).colours(np.array([-1.0, 0.0, 2.0, 3.0]))[:, 0], [68, 68, 253, 253])
     for limit, step in ((0.99, 0.5), (1.0, 1.0), (4.9, 2.0), (70, 50), (0.021, 0.02)):
         assert round_number(limit) == pytest.approx(step)
 

@@ -13,7 +13,7 @@ import pytest
 import tactile_depth as td
 from commands.common.repository import ROOT
 from commands.common.run_request import ACCEPTED, CAMERA
-from commands.common.variables import variables_of_arguments
+from commands.common.variables import _parameters, variables_of_arguments
 from commands.run import calibrate
 from tactile_depth.base.errors import LONGEST, Argument, InputError
 from tactile_depth.cli.main import OPTIONS, _parser, named
@@ -82,7 +82,8 @@ def test_front_ends_name_every_argument_of_an_error() -> None:
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Argument" and path.name != "errors.py":
                 used |= {name.value for name in node.args[:1] if isinstance(name, ast.Constant)}
     assert used == (used & {*variables_of_arguments(), *OPTIONS}) | PYTHON
-    assert set(variables_of_arguments().values()) <= {*ACCEPTED, *CAMERA, *calibrate.VARIABLES}
+    own = {name for each in _parameters(calibrate.main).values() for name in each.names}
+    assert set(variables_of_arguments().values()) <= {*ACCEPTED, *CAMERA, *own}
     (commands,) = (action for action in _parser()._actions if isinstance(action, argparse._SubParsersAction))
     options = {word for command in commands.choices.values() for word in command._option_string_actions}
     assert {option.split()[0] for option in OPTIONS.values() if option.startswith("--")} <= options

@@ -10,6 +10,13 @@ import numpy as np
 from tactile_depth.chip.configuration import SOLVER_WIDTHS, WORDS, Configuration
 
 WARNED_RMS_PERCENT = 1.0  # mean RMS error to double precision, of the peak; the default widths stay below 0.001
+TOO_DARK = (
+    "pixels are dark in REFERENCE, and take the colour of their neighbour: light the gel evenly, or expose longer"
+)
+TOO_STEEP = (
+    "slopes are steeper than any in the fit of the calibration: depth there is an extrapolation; press less deep, or "
+    "calibrate with smaller balls"
+)
 OF_COLOURS = ("flat_field", "polynomial_gradient")  # nodes before the solver, which no depth range widens
 
 
@@ -72,3 +79,9 @@ def warnings(config: Configuration, rms_percent: Sequence[float | None], saturat
     else:
         change = f"give a larger {DATA.variable} or {COEFFICIENT.variable}"
     return [f"the mean RMS error is {mean:.2f} % of peak, above {WARNED_RMS_PERCENT:g} %: {change}"]
+
+
+def doubts(dark: np.ndarray, outside: np.ndarray) -> list[str]:
+    """Return a line on dark pixels and one on slopes outside the calibrated range, if there are any."""
+    masks = ((dark, TOO_DARK), (outside, TOO_STEEP))
+    return [f"{100 * mask.mean():.1f} % of the {what}" for mask, what in masks if mask.any()]

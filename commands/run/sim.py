@@ -4,6 +4,7 @@
 Takes the variables of docs/make-sim.md as KEY=VALUE arguments. Exit status: docs/exit-status.md.
 """
 
+import math
 import os
 import shutil
 import sys
@@ -21,16 +22,17 @@ from commands.common.results import save
 from commands.common.run_request import WITH_CAMERA, Request, announce, check_grid, chosen, configure, load_sensor
 from commands.common.zero_offset import untouched
 from commands.run import bench
-from commands.run.compare import compare, warnings
+from commands.run.compare import compare, doubts, warnings
 from commands.run.draw import draw_depth
-from commands.run.flags import flags
 from commands.run.sim_table import check_registers, coefficient_words, latencies, table
 from commands.study.accuracy import errors
 from tactile_depth.base import files
 from tactile_depth.chip import latency
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.flat_field import reference_gains, require_light
 from tactile_depth.chip.registers.axil_registers import GAINS
+from tactile_depth.depth.result import steeper
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, load_frames, on_grid
 from tactile_depth.sensor.sensor import Sensor
@@ -98,7 +100,11 @@ def run(request: Request, frames: Frames | None = None) -> int:
     twin = Twin(calibration, config, untouched(request, frames))
     codes, light, clips = twin.played(frames.pixels, request.repeat)
     light_once = None if light is None else light[0]
-    flagged = flags(frames.pixels, calibration, config, request.reference, light_once)
+    if config.flat_field:
+        require_light(reference_gains(calibration, config), config, f"REFERENCE={request.reference}")
+    dark = twin.dark(frames.pixels)
+    slopes = twin.exact_slopes(frames.pixels, light_once) / (calibration.pixel_aspect, 1)
+    outside = steeper(slopes, calibration.fitted_slope.get(config.gradient_model, math.inf), dark)
     out = request.out or default_folder(request, config)
     with files.workspace(out, RESULTS) as work:
         played = simulate(request, config, frames, calibration, work, twin.zero, light)
@@ -119,12 +125,13 @@ def run(request: Request, frames: Frames | None = None) -> int:
             "saturations": clips,
             "registers": played.registers,
             "waves": dumps,
-            **flagged.report(request.repeat),
+            "dark_pixels": dark.sum(axis=(1, 2)).tolist() * request.repeat,
+            "slopes_outside_calibration": outside.sum(axis=(1, 2)).tolist() * request.repeat,
         }
         differences = check_registers(played, report["frames"], clips, not request.stalls and frames.camera is None)
         report["registers_agree"] = not differences
         report["warnings"] = [] if difference.count else warnings(config, report["rms_percent_of_peak"], clips)
-        report["warnings"] += flagged.warnings()
+        report["warnings"] += doubts(dark, outside)
         np.save(result / "depth.npy", rtl_codes.reshape(-1, *grid).astype(np.int32))
         save(result / "report.json", report)
         pitch = calibration.pixel_pitch_mm
@@ -137,7 +144,8 @@ def run(request: Request, frames: Frames | None = None) -> int:
             f"{request.solver}, {request.boundary}, {config.rows}x{config.columns}, {config.depth.width}-bit words, "
             f"{calibration.name}",
             np.asarray(difference.differing.reshape(rtl_codes.shape).any(axis=0)),
-            flagged,
+            outside,
+            dark,
         )
         files.replace(result, (*RESULTS, *dumps), out, earlier_dumps(out))
 

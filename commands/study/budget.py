@@ -29,12 +29,12 @@ from scipy.ndimage import distance_transform_edt
 
 import tactile_depth as td
 from commands.common import recorded, repository, variables
+from commands.common.press_data import data_folder
 from commands.common.progress import progress_bar
 from commands.common.results import save, written
 from commands.common.run_request import camera_choice
 from commands.common.tabular import Table
 from commands.common.variables import Place, Several, one, real, whole
-from commands.run.calibrate import data_folder
 from commands.study.budget_steps import (
     BACK,
     BESIDE,
@@ -48,7 +48,7 @@ from commands.study.budget_steps import (
     parts_of,
     products,
 )
-from commands.study.drawn_sensor import PLACES, DrawnSensor
+from commands.study.drawn_sensor import PLACES, DrawnSensor, heights
 from commands.study.study import VERSION
 from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.calibrate.fitting import Fit, fit_presses
@@ -136,7 +136,7 @@ def drawn_contacts(request: BudgetRun) -> Iterator[tuple[str, dict[str, np.ndarr
         slopes = drawn.slopes(height)
         steady = drawn.levels(slopes)
         levels = steady * drawn.light(chance)
-        true = drawn.at(height, presses.grid, scale * drawn.pitch_mm, (-0.5, -0.5)) / pitch
+        true = heights(height, presses.grid, scale * drawn.pitch_mm, (-0.5, -0.5)) / pitch
         top, edge = true > CAP_TOP * true.max(), (true > 0) & (true < CAP_EDGE * true.max())
         seen = Seen(
             place,

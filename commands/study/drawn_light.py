@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of a sensor whose colours follow the polynomials of a calibration exactly, drawn on the grid."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from PIL import Image
 
+from commands.study.drawn_sensor import Height, heights
 from tactile_depth.depth.reference import polynomials_at_pixels
-from tactile_depth.sensor.scenes import BENCH, NOISE
+from tactile_depth.sensor.scenes import BENCH, NOISE, differences, taken
 from tactile_depth.sensor.sensor import Sensor
 
 LEVEL = 90.0  # mean grey level of the untouched gel
-Height = Callable[[np.ndarray, np.ndarray], np.ndarray]
-"""Height in mm at positions x (1, n) and y (m, 1) in mm from the middle of the picture: (m, n)."""
 
 
 def exact(sensor: Sensor) -> Sensor:
@@ -51,19 +50,17 @@ class DrawnLight:
 
     def heights(self, height: Height) -> np.ndarray:
         """Return heights in mm of the pixels and of one row and column beyond them, float64 (rows + 1, columns + 1)."""
-        y, x = ((np.arange(length + 1) - (length - 1) / 2) * self.pitch_mm for length in self.grid)
-        return height(x[None, :], y[:, None])
+        rows, columns = self.grid
+        return heights(height, (rows + 1, columns + 1), self.pitch_mm, (0.5, 0.5))
 
     def levels(self, height: Height) -> np.ndarray:
         """Return grey levels, float64 (rows, columns, 3); the solve of their slopes is the height."""
-        drawn = self.heights(height)
-        slopes = np.stack((np.diff(drawn, axis=1)[:-1], np.diff(drawn, axis=0)[:, :-1]), axis=-1) / self.pitch_mm
+        slopes = differences(self.heights(height)) / self.pitch_mm
         return self.untouched * (1 + (self._colours_by_slope @ slopes[..., None])[..., 0])
 
     def pictures(self, levels: np.ndarray, lights: Sequence[Sequence[float]], seed: int) -> np.ndarray:
         """Return pictures in lights (n, 3) relative to that of `levels`, with the camera's noise: uint8 (n, ..)."""
-        noise = np.random.default_rng(seed).normal(scale=NOISE / self.scale, size=(len(lights), *levels.shape))
-        return np.rint(levels * np.array(lights)[:, None, None] + noise).clip(0, 255).astype(np.uint8)
+        return taken(levels * np.array(lights)[:, None, None], np.random.default_rng(seed), NOISE / self.scale)
 
     @property
     def width_mm(self) -> float:

@@ -18,7 +18,7 @@ import numpy as np
 
 from tactile_depth.calibrate.ball_press import BallPress
 from tactile_depth.calibrate.presses import PressPictures
-from tactile_depth.sensor.scenes import BENCH, LIGHTS, NOISE, SENSOR_WIDTH_MM, SLOPE_LIMIT, Body
+from tactile_depth.sensor.scenes import BENCH, LIGHTS, NOISE, SENSOR_WIDTH_MM, SLOPE_LIMIT, Body, taken
 
 LIGHTS_MM, LIGHTS_ABOVE_MM = 30.0, 43.0  # from the middle of the gel: 0.7 of I / ref per unit of slope there
 LEVEL = 110.0  # grey level of the flat gel in the middle
@@ -33,6 +33,14 @@ Height = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 def flat(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.zeros(np.broadcast_shapes(x.shape, y.shape))
+
+
+def heights(
+    height: Height, count: tuple[int, int], step_mm: float, shift: tuple[float, float] = (0.0, 0.0)
+) -> np.ndarray:
+    """Return heights in mm on a grid around the middle, shifted by (rows, columns) of its pixels, float64."""
+    y, x = ((np.arange(length) - (length - 1) / 2 + off) * step_mm for length, off in zip(count, shift, strict=True))
+    return height(x[None, :], y[:, None])
 
 
 @dataclass(frozen=True)
@@ -58,18 +66,11 @@ class DrawnSensor:
         """Millimetres per camera pixel."""
         return SENSOR_WIDTH_MM / self.camera[0]
 
-    def at(self, height: Height, count: tuple[int, int], step_mm: float, shift: tuple[float, float]) -> np.ndarray:
-        """Return heights in mm on a grid around the middle, shifted by (rows, columns) of its pixels, float64."""
-        y, x = (
-            (np.arange(length) - (length - 1) / 2 + off) * step_mm for length, off in zip(count, shift, strict=True)
-        )
-        return height(x[None, :], y[:, None])
-
     def slopes(self, height: Height) -> np.ndarray:
         """Return the mean slopes across each camera pixel, float64 (rows, columns, 2)."""
         rows, columns = self.camera
-        across = np.diff(self.at(height, (rows, columns + 1), self.pitch_mm, (0, 0)), axis=1)
-        down = np.diff(self.at(height, (rows + 1, columns), self.pitch_mm, (0, 0)), axis=0)
+        across = np.diff(heights(height, (rows, columns + 1), self.pitch_mm), axis=1)
+        down = np.diff(heights(height, (rows + 1, columns), self.pitch_mm), axis=0)
         return np.stack((across, down), axis=-1) / self.pitch_mm
 
     def levels(self, slopes: np.ndarray) -> np.ndarray:
@@ -88,8 +89,7 @@ class DrawnSensor:
 
     def picture(self, levels: np.ndarray, chance: np.random.Generator) -> np.ndarray:
         """Return what the camera makes of grey levels, uint8."""
-        noisy = levels + chance.normal(scale=self.noise, size=levels.shape)
-        return np.rint(noisy).clip(0, 255).astype(np.uint8)
+        return taken(levels, chance, self.noise)
 
     def presses(self, count: int, chance: np.random.Generator) -> PressPictures:
         """Return drawn presses of the balls, some of them cut by the edge, and the picture without contact."""

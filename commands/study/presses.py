@@ -17,11 +17,11 @@ import numpy as np
 
 import tactile_depth as td
 from commands.common import simulator as simulation
+from commands.common.press_data import data_folder
 from commands.common.progress import progress_bar
 from commands.common.tabular import Table
 from commands.common.variables import EQUAL, MISMATCH, Place, one, real
 from commands.run import bench
-from commands.run.calibrate import data_folder
 from tactile_depth.base import files
 from tactile_depth.calibrate.fitting import DRAWN_OUT, errors_by_number, fit_presses
 from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid

@@ -15,10 +15,9 @@ from commands.common import run_request, tabular
 from commands.common.progress import progress_bar
 from commands.common.results import save, written
 from commands.run import sim, sim_table
-from commands.run.flags import flags
 from commands.study import long_state
-from commands.study.drawn_light import DrawnLight, Height, exact
-from commands.study.drawn_sensor import flat
+from commands.study.drawn_light import DrawnLight, exact
+from commands.study.drawn_sensor import Height, flat
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError, InputWarning
 from tactile_depth.chip.configuration import STORED, WIDTHS, WORDS, Configuration
@@ -275,8 +274,8 @@ def measure(case: Case, request: run_request.Request, drawn: DrawnLight, rtl: bo
         differences = sim_table.check_registers(played, len(frames), clipped, not request.stalls)
         status = played.registers["status"]
     assert light is not None
-    dark = flags(frames, sensor, config, "", light[0]).dark.any()
-    expected = tuple(bit for bit, is_set in zip(STATUS_BITS, (bool(clipped), dark), strict=True) if is_set)
+    is_set = (bool(clipped), twin.dark(frames).any())
+    expected = tuple(bit for bit, is_one in zip(STATUS_BITS, is_set, strict=True) if is_one)
     shown = tuple(bit for bit in STATUS_BITS if status & REGISTERS["STATUS"].field(bit).mask) if rtl else expected
     depth_mm = codes[0] * config.depth_lsb_px * drawn.pitch_mm
     ideal_mm = twin.exact_px(frames, light[0]) * drawn.pitch_mm

@@ -27,6 +27,7 @@ from PIL import Image
 import tactile_depth as td
 from commands.common import recorded, run_request, variables
 from commands.common import simulator as simulation
+from commands.common.press_data import data_folder
 from commands.common.progress import progress_bar
 from commands.common.repository import ROOT
 from commands.common.results import written
@@ -34,7 +35,6 @@ from commands.common.variables import Place, Seed, real, whole
 from commands.common.zero_offset import untouched
 from commands.cost.cost import ECP5, cost
 from commands.run import sim
-from commands.run.calibrate import data_folder
 from commands.study.presses import Measured, measured
 from commands.study.study import VERSION, Study, built
 from commands.study.trade_front import DEFAULT, LUT, Point, Row, draw, front_of, summary, write_beaten

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 import pytest
 
 from commands import __main__ as entry
-from commands.run import draw
 
 
 class Ended(NamedTuple):
@@ -16,12 +15,6 @@ class Ended(NamedTuple):
     status: int
     output: str
     errors: list[str]
-
-
-@pytest.fixture(autouse=True)
-def few_frames_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draw one frame: a frame takes as long as its simulation."""
-    monkeypatch.setattr(draw, "FRAMES_DRAWN", 1)
 
 
 @pytest.fixture

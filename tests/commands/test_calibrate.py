@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""make calibrate: its files, its output, and errors for bad variables. test_fitting.py tests the fit."""
+"""make calibrate: its variables, files and errors; tests/device/test_calibrate.py tests the command that it runs."""
 
 import errno
 import os
@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from commands.run import draw
-from commands.run.calibrate import parse, run
 from tactile_depth.calibrate.fitting import fit_presses
+from tactile_depth.calibrate.presses import gather, to_grid
+from tactile_depth.chip.camera_configuration import CameraChoice
+from tactile_depth.cli import calibrate
 from tactile_depth.pictures.frames import read_picture
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import FOLDER
-from tests.ball_presses import CAMERA, PITCH, read, real_folder, table_rows, write_folder, write_table
+from tests.ball_presses import CAMERA, PITCH, real_folder, table_rows, write_folder, write_table
 
 
 @pytest.fixture(scope="module")
@@ -25,53 +26,49 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return write_folder(tmp_path_factory.mktemp("ball") / "presses")
 
 
-@pytest.fixture
-def folder(made: Any, tmp_path: Path) -> Any:
-    return Path(shutil.copytree(made, tmp_path / "presses"))
-
-
-def test_the_command_writes_a_calibration_a_picture_and_a_table(
-    made: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    out = tmp_path / "new" / "mine.npz"
-    assert run(parse([f"PRESSES={made}", f"OUT={out}", "EXPOSURE_US=8000"])) == 0
-    report = capsys.readouterr()
-    assert not report.err
-    sensor, fit = load(str(out)), fit_presses(read(made))
-    np.testing.assert_array_equal(sensor.coefficients, fit.sensor.coefficients)
-    np.testing.assert_array_equal(sensor.gradient, fit.sensor.gradient)
-    assert sensor.height_errors == fit.sensor.height_errors
-    assert (sensor.camera.rows, sensor.camera.columns, sensor.camera.exposure_us) == (*CAMERA, 8000)  # type: ignore[union-attr]
+def test_the_variables_reach_the_fit(made: Any, tmp_path: Path, run_command: Any) -> None:
+    folder, out = shutil.copytree(made, tmp_path / "presses"), tmp_path / "new" / "mine.npz"
+    (folder / "03.png").unlink()
+    words = [
+        f"PRESSES={folder}",
+        f"OUT={out}",
+        f"PITCH={PITCH}",
+        "EXPOSURE_US=8000",
+        "BITS=3",
+        "CAMERA=raw8",
+        "BAYER=grbg",
+    ]
+    status, output, (line,) = run_command("calibrate", *words)
+    assert status == 0
+    assert re.fullmatch(r"make calibrate: warning: \S+03\.png: no such file.*: left out", line)
+    presses = to_grid(gather(folder), PITCH, choice=CameraChoice("raw8", "grbg"))
+    sensor, fit = load(str(out)), fit_presses(presses, bits=3)
+    for name in ("table", "coefficients", "gradient", "height_errors"):
+        np.testing.assert_array_equal(getattr(sensor, name), getattr(fit.sensor, name))
+    camera = sensor.camera
+    assert camera is not None
+    assert (camera.rows, camera.columns, camera.exposure_us, camera.pixel_format) == (*CAMERA, 8000, "raw8")
     assert read_picture(out.with_suffix(".png")).shape[1] > 1000
-    assert str(fit.evaluation) in report.out
-    for words in ("24 presses fitted", "circles found in 24 pictures", "the best model is cubic"):
-        assert words in report.out
+    for printed in (
+        fit.evaluation.summary,
+        "23 presses",
+        "circles found in 23 pictures",
+        f"the best model is {sensor.model}",
+    ):
+        assert printed in output
     assert sorted(path.name for path in out.parent.iterdir()) == ["mine.npz", "mine.png"]
 
 
-@pytest.mark.parametrize("model", ["lut", pytest.param("quadratic", marks=pytest.mark.regress)])
-def test_one_model_alone_is_written_alone(made: Any, tmp_path: Path, model: Any) -> None:
-    out = tmp_path / "one.npz"
-    assert run(parse([f"PRESSES={made}", f"OUT={out}", f"GRADIENT={model}", "BITS=3"])) == 0
-    sensor = load(str(out))
-    assert sensor.models == (model,)
-    assert tuple(sensor.height_errors) == tuple(sensor.fitted_slope) == (model,)
-    if model == "lut":
-        assert sensor.bits_per_channel == 3
-
-
-def test_a_table_of_frames_and_diameters_alone_serves(folder: Path, tmp_path: Path) -> None:
+def test_found_circles_replace_those_of_the_table(made: Any, tmp_path: Path, run_command: Any) -> None:
+    folder, words = shutil.copytree(made, tmp_path / "presses"), [f"PITCH={PITCH}", "GRADIENT=quadratic"]
+    assert run_command("calibrate", f"PRESSES={made}", *words, "CIRCLES=found", f"OUT={tmp_path / 'a.npz'}").status == 0
     rows = [{**row, "ball_diameter_mm": row["diameter_mm"]} for row in table_rows()]
     write_table(folder, rows, ["frame", "ball_diameter_mm"])
-    out = tmp_path / "found.npz"
-    assert run(parse([f"PRESSES={folder}", f"PITCH={PITCH}", "GRADIENT=quadratic", f"OUT={out}"])) == 0
-    assert load(str(out)).height_errors["quadratic"].mean == pytest.approx(1, abs=0.06)
-
-
-def test_what_is_left_out_is_printed(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (folder / "03.png").unlink()
-    assert run(parse([f"PRESSES={folder}", "GRADIENT=quadratic", f"OUT={tmp_path / 'mine.npz'}"])) == 0
-    assert re.fullmatch(r"make calibrate: \S+03\.png: no such file.*: left out\n", capsys.readouterr().err)
+    assert run_command("calibrate", f"PRESSES={folder}", *words, f"OUT={tmp_path / 'b.npz'}").status == 0
+    found, without = load(str(tmp_path / "a.npz")), load(str(tmp_path / "b.npz"))
+    assert found.models == ("quadratic",)
+    np.testing.assert_array_equal(found.coefficients, without.coefficients)
+    assert found.height_errors["quadratic"].mean == pytest.approx(1, abs=0.06)
 
 
 def test_a_folder_that_is_missing_says_how_to_get_one(
@@ -115,7 +112,7 @@ def test_a_full_disk_leaves_earlier_results(
     def full(*_: Any) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "mine.png")
 
-    monkeypatch.setattr(draw, "draw_presses", full)
+    monkeypatch.setattr(calibrate, "draw_presses", full)
     words = [f"PRESSES={made}", "GRADIENT=quadratic", f"OUT={tmp_path / 'mine.npz'}"]
     status, _, (line,) = run_command("calibrate", *words)
     assert status == 3
@@ -125,9 +122,9 @@ def test_a_full_disk_leaves_earlier_results(
 
 
 @pytest.mark.regress  # tests/test_fitting.py compares the fit itself
-def test_the_shipped_calibration_is_what_the_command_makes(tmp_path: Path) -> None:
+def test_the_shipped_calibration_is_what_the_command_makes(tmp_path: Path, run_command: Any) -> None:
     out = tmp_path / "gelsight-mini.npz"
-    assert run(parse([f"PRESSES={real_folder()}", f"OUT={out}"])) == 0
+    assert run_command("calibrate", f"PRESSES={real_folder()}", f"OUT={out}").status == 0
     with np.load(out) as made, np.load(FOLDER / "gelsight-mini.npz") as shipped:
         assert sorted(made.files) == sorted(shipped.files)
         np.testing.assert_array_equal(made["gradient"], shipped["gradient"])

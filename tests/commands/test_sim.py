@@ -13,13 +13,12 @@ from skimage import io  # type: ignore[attr-defined]
 
 from commands.common import published, run_request
 from commands.run import sim
-from commands.run.draw import painted
-from commands.run.flags import Flags
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.depth.zero_capture import captured_zero
 from tactile_depth.chip.depth.zero_offset import zero_offset
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth
 from tactile_depth.chip.limits import COLUMNS
+from tactile_depth.cli.drawing import DARK, OUTSIDE, painted
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.samples import sample
@@ -304,9 +303,9 @@ def test_slopes_outside_the_calibrated_range_are_reported_and_warned_of(
 
 def test_flagged_pixels_are_painted() -> None:
     frame = np.full((2, 3, 3), 50, np.uint8)
-    dark, outside = np.zeros((1, 2, 3), bool), np.zeros((1, 2, 3), bool)
-    dark[0, 0, 0] = outside[0, 1, 2] = True
-    picture = painted(frame, Flags(dark, outside), 0)
+    dark, outside = np.zeros((2, 3), bool), np.zeros((2, 3), bool)
+    dark[0, 0] = outside[1, 2] = True
+    picture = painted(frame, [(outside, OUTSIDE), (dark, DARK)])
     assert picture[0, 0].tolist() == [255, 0, 255]
     assert picture[1, 2].tolist() == [255, 165, 0]
     assert (np.delete(picture.reshape(6, 3), (0, 5), axis=0) == 50).all()

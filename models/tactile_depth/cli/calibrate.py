@@ -9,6 +9,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
 from tactile_depth.calibrate.fitting import DEFAULT_BITS, Fit, check_arguments, fit_presses, pixel_size
@@ -23,15 +25,18 @@ from tactile_depth.calibrate.presses import (
     gather,
     to_grid,
 )
+from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoice
 from tactile_depth.chip.limits import MODELS
 from tactile_depth.cli.measure import DEVICE, address_of, grid_of, measure
 from tactile_depth.cli.options import add_build_arguments, add_light_and_zero_arguments, build_choices, size
+from tactile_depth.cli.overview import draw_presses
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.pictures.frames import read_pictures
 
 NAME = "calibrate"
 HELP = "Fit a calibration to ball presses; load it into a device and measure it there, if one is named."
 ALL = "all"
+CIRCLE = ("x", "y", "radius")
 
 
 def pitch(text: str) -> tuple[float, ...]:
@@ -74,8 +79,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--bits", type=int, default=DEFAULT_BITS, metavar="N", help=f"of each colour, for lut (default {DEFAULT_BITS})"
     )
     parser.add_argument("--find-circles", action="store_true", help=f"find all circles, also those that {TABLE} gives")
+    parser.add_argument(
+        "--compare-circles",
+        action="store_true",
+        help=f"print how circles that are found differ from those of {TABLE}",
+    )
+    parser.add_argument(
+        "--camera", metavar="FORMAT", help=f"convert the pictures to what a camera sends: {', '.join(FORMATS)}"
+    )
+    parser.add_argument(
+        "--bayer", default=PHASES[0], metavar="PHASE", help=f"of its Bayer pattern: {', '.join(PHASES)} (default first)"
+    )
     parser.add_argument("--exposure-us", type=float, metavar="US", help="exposure time of the camera, to be kept")
     parser.add_argument("--out", type=Path, metavar="FILE.npz", help="default: <name of PRESSES>.npz")
+    parser.add_argument("--picture", action="store_true", help="draw three of the presses beside FILE.npz, as FILE.png")
     add_light_and_zero_arguments(parser)
     add_build_arguments(parser)
     parser.set_defaults(run=run)
@@ -100,9 +117,10 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
             raise InputError(Argument("grid", options.grid), ": the device has another grid", remedy=remedy)
         options.grid = grid
     out: Path = options.out or Path(f"{Path(options.presses).resolve().name}.npz")
-    if out.suffix != ".npz":
-        raise InputError(f"--out {out}: give the name of an .npz file")
-    with files.workspace(out.parent, (out.name,), str(out)) as work:  # refused before the fit, which takes some seconds
+    require_npz(out)
+    drawn = (out.with_suffix(".png"),) if options.picture else ()
+    names = [path.name for path in (out, *drawn)]
+    with files.workspace(out.parent, names, str(out)) as work:  # refused before the fit, which takes some seconds
         pictures = press_pictures(options)
         presses = on_grid(options, pictures)
         fit = fitted(options, presses, out.stem)
@@ -110,8 +128,16 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
             pipeline = Pipeline(fit.sensor, pictures.background, grid=presses.grid, **build_choices(options))
             measure(address, pipeline, presses, pictures)
         fit.sensor.save(work / out.name)
-        files.replace(work, (out.name,), out.parent)
-    print(f"results: {out}")
+        for path in drawn:
+            draw_presses(fit, presses).save(work / path.name)
+        files.replace(work, names, out.parent)
+    print("results:", ", ".join(map(str, (out, *drawn))))
+
+
+def require_npz(out: Path) -> None:
+    """Raise InputError if that is no name of a calibration file."""
+    if out.suffix != ".npz":
+        raise InputError(Argument("folder", out), ": give the name of an .npz file")
 
 
 def press_pictures(options: argparse.Namespace) -> PressPictures:
@@ -134,7 +160,13 @@ def on_grid(options: argparse.Namespace, pictures: PressPictures) -> GridPresses
         raise InputError(Argument("grid", options.grid), accepted=f"{SMALLEST_GRID} columns and rows or more")
     height, aspect = pixel_size(pitch_mm)
     presses = to_grid(
-        pictures, camera_pitch_mm(pictures, height), options.find_circles, aspect=aspect, grid=options.grid
+        pictures,
+        camera_pitch_mm(pictures, height),
+        options.find_circles,
+        options.compare_circles,
+        None if options.camera is None else CameraChoice(options.camera, options.bayer),
+        aspect,
+        options.grid,
     )
     for note in presses.notes:
         warn(InputWarning(note))
@@ -150,6 +182,12 @@ def fitted(options: argparse.Namespace, presses: GridPresses, name: str) -> Fit:
     """Fit to the presses, and print the error on each whole press by a fit to the others."""
     rows, columns = presses.grid
     print(f"{len(presses.views)} presses, grid of {columns} x {rows}", presses.field_of_view, sep="\n", flush=True)
+    if len(presses.agreement):
+        middle = np.median(presses.agreement, axis=0)
+        spread = np.median(np.abs(presses.agreement - middle), axis=0)
+        off = (f"{name} {value:+.1f} ({by:.1f})" for name, value, by in zip(CIRCLE, middle, spread, strict=True))
+        what = f"circles found in {len(presses.agreement)} pictures minus those of {TABLE}"
+        print(f"{what}: {', '.join(off)} pixels, median (and median deviation)")
     fit = fit_presses(presses, chosen(options), options.bits, name, options.exposure_us, _progress)
     evaluation = replace(fit.evaluation, notes=())  # they are warnings
     print("every whole press, by a fit to the others; cap height: recovered / true", evaluation, sep="\n")

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from tactile_depth.base.errors import InputError
+from tactile_depth.cli.drawing import Scale
 from tactile_depth.cli.failure import Failure
-from tactile_depth.cli.overview import colours
 from tactile_depth.cli.ply import triangles, vertices_mm
 from tactile_depth.cli.source import INSTALL
 from tactile_depth.depth.result import Result
@@ -128,7 +128,7 @@ class Display(AbstractContextManager["Display"]):
             rerun.Mesh3D.from_fields(
                 vertex_positions=vertices_mm(height, result.pixel_pitch_mm, result.pixel_aspect, origin_mm),
                 vertex_normals=_normals(_slopes(result)),
-                vertex_colors=colours(height, *heights).reshape(-1, 3),
+                vertex_colors=Scale(0.0, self._highest_mm).colours(height).reshape(-1, 3),
             ),
         )
         row, column = contact.centroid_mm or (math.nan, math.nan)

@@ -37,7 +37,7 @@ SAME = (
 OPTIONS = (
     {choice.argument: choice.option for choice in CHOICES.values()}
     | {name: Choice().of(name).option for name in SAME}
-    | {"address": "device:{}", "folder": "--out {}"}
+    | {"address": "device:{}", "folder": "--out {}", "phase": "--bayer {}", "pixel_format": "--camera {}"}
 )
 
 

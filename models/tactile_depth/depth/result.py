@@ -19,6 +19,11 @@ from tactile_depth.chip.contact.contact_events import ContactEvents, Record, Set
 from tactile_depth.sensor.sensor import HeightError
 
 
+def steeper(slopes: np.ndarray, fitted_slope: float, dark: np.ndarray) -> npt.NDArray[np.bool_]:
+    """Return the pixels that are not dark, and whose slope (.., 2) is steeper than the fit of a calibration saw."""
+    return ~dark & (np.hypot(slopes[..., 0], slopes[..., 1]) > fitted_slope)
+
+
 @dataclass(frozen=True, eq=False)
 class Contact(ByValue):
     """Contact of one frame, as the hardware records it.
@@ -296,7 +301,7 @@ class Result(ByValue):
     @cached_property
     def outside(self) -> npt.NDArray[np.bool_]:
         """Pixels whose slope exceeds `fitted_slope`, bool, as `codes`."""
-        return ~self.dark & (np.hypot(self.slopes[..., 0], self.slopes[..., 1]) > self.fitted_slope)
+        return steeper(self.slopes, self.fitted_slope, self.dark)
 
     @property
     def contact(self) -> Contact:

@@ -109,7 +109,7 @@ def render(name: str, rows: int, columns: int = 0, seed: int = 1, press: Press =
     depth = None if press.depth_mm is None else press.depth_mm / SENSOR_WIDTH_MM
     x, y = (shift / SENSOR_WIDTH_MM for shift in press.at_mm)
     drawn = np.stack([size * _draw(body, size, depth, x, y) for body in bodies.values()])
-    steepest = float(np.abs(_slopes(drawn)).max())
+    steepest = float(np.abs(differences(drawn)).max())
     if steepest > SLOPE_LIMIT + 1e-9:
         raise InputError(
             f"the scene {name} pressed {press.depth_mm:g} mm deep has slopes of {steepest:.2f}, and the sensor sees "
@@ -117,19 +117,23 @@ def render(name: str, rows: int, columns: int = 0, seed: int = 1, press: Press =
         )
     top, left = (rows - size) // 2, (columns - size) // 2
     margins = ((0, 0), (top, rows - size - top), (left, columns - size - left))
-    slopes = np.pad(_slopes(drawn), (*margins, (0, 0)))
+    slopes = np.pad(differences(drawn), (*margins, (0, 0)))
     height = np.pad(drawn[:, :-1, :-1], margins)
-    return Scene(_photograph(slopes, seed, press.noise), height, name, tuple(bodies))
+    return Scene(taken(_levels(slopes), np.random.default_rng(seed), press.noise), height, name, tuple(bodies))
 
 
 def photograph(height: np.ndarray, seed: int = 1) -> np.ndarray:
     """Return pictures of height maps (..., N, N) in grid pixels by the synthetic sensor: uint8 (..., N, N, 3)."""
-    return _photograph(slopes_of(height), seed, NOISE)
+    return taken(_levels(slopes_of(height)), np.random.default_rng(seed))
 
 
-def _photograph(slopes: np.ndarray, seed: int, noise: float) -> np.ndarray:
-    grain = np.random.default_rng(seed).normal(scale=noise, size=(*slopes.shape[:-1], 3))
-    return np.clip(np.rint(REST + GAIN * slopes @ LIGHTS.T + grain), 0, 255).astype(np.uint8)
+def _levels(slopes: np.ndarray) -> np.ndarray:
+    return REST + GAIN * slopes @ LIGHTS.T
+
+
+def taken(levels: np.ndarray, chance: np.random.Generator, noise: float = NOISE) -> np.ndarray:
+    """Return what a camera makes of grey levels: with noise, rounded to uint8."""
+    return np.rint(levels + chance.normal(scale=noise, size=levels.shape)).clip(0, 255).astype(np.uint8)
 
 
 def slopes_of(height: np.ndarray) -> np.ndarray:
@@ -137,7 +141,7 @@ def slopes_of(height: np.ndarray) -> np.ndarray:
     return np.stack((np.diff(height, axis=-1, append=0), np.diff(height, axis=-2, append=0)), axis=-1)
 
 
-def _slopes(drawn: np.ndarray) -> np.ndarray:
+def differences(drawn: np.ndarray) -> np.ndarray:
     """Return forward differences of a drawing with an extra row and column: (..., N + 1, N + 1) to (..., N, N, 2)."""
     return np.stack((np.diff(drawn, axis=-1)[..., :-1, :], np.diff(drawn, axis=-2)[..., :-1]), axis=-1)
 
