@@ -15,7 +15,7 @@ from PIL import Image
 from skimage import io  # type: ignore[attr-defined]
 
 from tactile_depth.base.errors import InputError
-from tactile_depth.base.resampling import resampling
+from tactile_depth.chip.resampling import resampling
 from tactile_depth.pictures.frames import EXIF_ORIENTATION, LARGEST_CAMERA, load_frames, read_picture
 from tactile_depth.sensor.scenes import SCENES, render, scene_pixel_pitch_mm
 from tactile_depth.sensor.synthetic import synthetic

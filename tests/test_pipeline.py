@@ -11,9 +11,9 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
-from tactile_depth.base.resampling import resampling
 from tactile_depth.chip.c_header import FILE, c_header
 from tactile_depth.chip.contact.contact_events import ContactEvents, Settings
+from tactile_depth.chip.resampling import resampling
 from tactile_depth.chip.rom_files import write_words
 from tactile_depth.chip.tactile_depth import hdl_parameters, light_of, slope_tables, tactile_depth, top_parameters
 from tactile_depth.chip.tactile_depth import write_roms as write_tables

@@ -24,9 +24,9 @@ from PIL import Image
 import tactile_depth as td
 from commands.common.repository import ROOT
 from commands.run import bench
-from tactile_depth.base.resampling import resampling
 from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.registers.axil_registers import GAINS
+from tactile_depth.chip.resampling import resampling
 from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters
 from tactile_depth.pictures.frames import read_picture
 from tests import real_data

@@ -11,13 +11,13 @@ import numpy as np
 from scipy.fft import dstn, idstn
 
 import tactile_depth as td
-from tactile_depth.base.resampling import resampling
 from tactile_depth.calibrate.presses import GridPress, GridPresses
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.depth.zero_offset import exact_zero
 from tactile_depth.chip.gradient.light_gains import Light, settled
 from tactile_depth.chip.limits import RATIO
 from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.resampling import resampling
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler
 

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import Proof
-from tactile_depth.base.resampling import resampling
 from tactile_depth.chip.camera.area_average import area_average
+from tactile_depth.chip.resampling import resampling
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 

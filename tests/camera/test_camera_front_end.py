@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from commands.common import repository, simulator
-from tactile_depth.base.resampling import resampling
 from tactile_depth.chip.camera.camera_front_end import camera_front_end, camera_front_end_parameters
 from tactile_depth.chip.camera.pixel_format import photograph
 from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraConfiguration
+from tactile_depth.chip.resampling import resampling
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.rtl import test_rtl as test_rtl
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Base of every room: errors, files, interruption, arrays."""
+"""Base of every room: errors, files, interruption, comparison by value."""

@@ -9,11 +9,11 @@ from importlib.abc import MetaPathFinder
 from types import ModuleType
 
 ROOMS = {
-    "base": "by_value errors files interruption npy resampling",
+    "base": "by_value errors files interruption npy",
     "pictures": "frames grid_sampler pictures reader",
     "sensor": "built_in calibration_file presets samples scenes sensor",
     "chip": "bounds c_header camera camera_configuration common configuration contact depth fixed_point gradient "
-    "hardware_files latency link poisson registers rom_files table_entries tactile_depth video",
+    "hardware_files latency link poisson registers resampling rom_files table_entries tactile_depth video",
     "chip.poisson": "cores fast",
     "depth": "pipeline reference result stream",
     "calibrate": "ball_press circles evaluation fitting press_folder presses",

@@ -1,32 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Objects that numpy takes as arrays, and checks of a file before it is read."""
+"""Checks of a file before it is read."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, BinaryIO, Protocol
+from typing import BinaryIO
 
 import numpy as np
 
 from tactile_depth.base.errors import InputError
-
-
-class HasArray(Protocol):
-    """Object that numpy takes as an array."""
-
-    def __array__(self) -> Any: ...
-
-
-class HasInterface(Protocol):
-    """Object that numpy takes as an array, such as a PIL image."""
-
-    @property
-    def __array_interface__(self) -> dict[str, Any]: ...
-
-
-def is_array(value: object) -> bool:
-    """Return True if numpy takes an object as an array."""
-    return hasattr(value, "__array__") or hasattr(value, "__array_interface__")
 
 
 def is_file(path: Path) -> bool:

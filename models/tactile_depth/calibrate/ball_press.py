@@ -11,7 +11,7 @@ import numpy as np
 
 from tactile_depth.base.by_value import ByValue
 from tactile_depth.base.errors import Argument, InputError
-from tactile_depth.base.npy import is_array
+from tactile_depth.pictures.pictures import is_array
 
 LARGEST_NUMBER = 1e6  # millimetres or pixels
 

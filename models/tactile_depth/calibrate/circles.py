@@ -11,8 +11,8 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from tactile_depth.base.errors import InputError
-from tactile_depth.base.resampling import resampling
 from tactile_depth.calibrate.ball_press import Circle
+from tactile_depth.chip.resampling import resampling
 
 MOST_COLUMNS = 320  # of a picture that is searched
 SMALLEST_CIRCLE_PX = 8

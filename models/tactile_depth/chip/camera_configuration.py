@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from tactile_depth.base.errors import Argument, InputError, former_names, one_of
-from tactile_depth.base.resampling import crop_origin, ratio
 from tactile_depth.chip.camera.block_weights import pixels_of
 from tactile_depth.chip.fixed_point import Format
+from tactile_depth.chip.resampling import crop_origin, ratio
 
 LARGEST_PICTURE = 4096  # rows and columns
 GAIN = Format(16, 12)  # unsigned

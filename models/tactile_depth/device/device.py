@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
-from tactile_depth.base.npy import is_array
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gains, require_light
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
@@ -33,7 +32,7 @@ from tactile_depth.pictures.blocks import Rest
 from tactile_depth.pictures.doubts import UnusablePicture
 from tactile_depth.pictures.frames import GREY
 from tactile_depth.pictures.picture_check import check_picture
-from tactile_depth.pictures.pictures import Picture, Pictures
+from tactile_depth.pictures.pictures import Picture, Pictures, is_array
 from tactile_depth.pictures.reader import Reader, power_of_two_of
 from tactile_depth.pictures.reference_check import check_reference
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactile_depth.base.errors import InputError, Part
-from tactile_depth.base.resampling import Resampling, resampling
 from tactile_depth.chip.camera.camera_front_end import camera_front_end
 from tactile_depth.chip.camera.pixel_format import photograph
 from tactile_depth.chip.camera_configuration import CameraChoice, CameraConfiguration
+from tactile_depth.chip.resampling import Resampling, resampling
 
 LARGEST_COLUMNS = 128  # of a grid that is chosen for pictures
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError
-from tactile_depth.base.npy import HasArray, HasInterface, is_array
 from tactile_depth.pictures.exchanges import exchange_of
+from tactile_depth.pictures.pictures import HasArray, HasInterface, is_array
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import BUILT_IN
 from tactile_depth.sensor.sensor import LIGHTING_AGREES, Sensor

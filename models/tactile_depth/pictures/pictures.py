@@ -5,14 +5,32 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import Any, Protocol
 
 import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, Part
-from tactile_depth.base.npy import HasArray, HasInterface, is_array
 from tactile_depth.pictures.frames import read_pictures
 
 SHAPES = "uint8 (rows, columns, 3), RGB, or (frames, rows, columns, 3)"
+
+
+class HasArray(Protocol):
+    """Object that numpy takes as an array."""
+
+    def __array__(self) -> Any: ...
+
+
+class HasInterface(Protocol):
+    """Object that numpy takes as an array, such as a PIL image."""
+
+    @property
+    def __array_interface__(self) -> dict[str, Any]: ...
+
+
+def is_array(value: object) -> bool:
+    """Return True if numpy takes an object as an array."""
+    return hasattr(value, "__array__") or hasattr(value, "__array_interface__")
 
 
 Picture = np.ndarray | HasArray | HasInterface | str | Path
