@@ -14,7 +14,7 @@ table 6; OV5640 product specification, version 2.03, 2011, section 7.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -53,8 +53,9 @@ class Camera:
     entries: Sequence[Entry]
 
 
-def write(address: int, data: int) -> Entry:
-    return Entry(Kind.WRITE, address, data)
+def writes(registers: Mapping[int, int]) -> list[Entry]:
+    """Return writes of data to addresses, in their order."""
+    return [Entry(Kind.WRITE, *register) for register in registers.items()]
 
 
 def pins(power_down: bool, reset_n: bool, milliseconds: int) -> Entry:
@@ -76,54 +77,54 @@ def _power_up(product: Sequence[tuple[int, int]], reset: tuple[int, int]) -> lis
 def ov7670(exposure_lines: int = 256) -> Camera:
     """Return the OV7670: VGA, 30 frames/s. Exposure in lines, of 510 in a frame."""
     within(Argument("exposure_lines", exposure_lines), 1, 510)
-    registers = [
-        write(0x3A, 0x0D),  # TSLB: the window follows the resolution
-        write(0x12, 0x01),  # COM7: VGA, raw Bayer
-        write(0x11, 0x80),  # CLKRC: input clock / 1
-        write(0x6B, 0x0A),  # DBLV: PLL bypassed
-        write(0x0C, 0x00),  # COM3: no scaling
-        write(0x3E, 0x00),  # COM14: pixel clock not divided
-        write(0x15, 0x00),  # COM10: PCLK runs between rows; HREF, VSYNC high; data at the rising edge
-        write(0x13, 0x00),  # COM8: AGC, AWB, AEC and banding filter off
-        write(0x3B, 0x00),  # COM11: no night mode
-        write(0x3D, 0x18),  # COM13: gamma off, no adjustment of saturation
-        write(0x41, 0x00),  # COM16: gains of white balance, automatic edges and denoising off
-        write(0x3F, 0x00),  # EDGE: no edge enhancement
-        write(0x4C, 0x00),  # DNSTH: no denoising
-        write(0x66, 0x00),  # LCC5: lens correction off
-        write(0x00, 0x00),  # GAIN: 1
-        write(0x03, 0x03),  # VREF: the upper bits of the gain 0; the window's lowest as after a reset
-        write(0x07, exposure_lines >> 10),  # AECHH
-        write(0x10, exposure_lines >> 2 & 0xFF),  # AECH
-        write(0x04, exposure_lines & 3),  # COM1: the lowest two
-    ]
-    entries = [*_power_up([(0x0A, 0x76), (0x0B, 0x73)], (0x12, 0x80)), *registers]
+    registers = {
+        0x3A: 0x0D,  # TSLB: the window follows the resolution
+        0x12: 0x01,  # COM7: VGA, raw Bayer
+        0x11: 0x80,  # CLKRC: input clock / 1
+        0x6B: 0x0A,  # DBLV: PLL bypassed
+        0x0C: 0x00,  # COM3: no scaling
+        0x3E: 0x00,  # COM14: pixel clock not divided
+        0x15: 0x00,  # COM10: PCLK runs between rows; HREF, VSYNC high; data at the rising edge
+        0x13: 0x00,  # COM8: AGC, AWB, AEC and banding filter off
+        0x3B: 0x00,  # COM11: no night mode
+        0x3D: 0x18,  # COM13: gamma off, no adjustment of saturation
+        0x41: 0x00,  # COM16: gains of white balance, automatic edges and denoising off
+        0x3F: 0x00,  # EDGE: no edge enhancement
+        0x4C: 0x00,  # DNSTH: no denoising
+        0x66: 0x00,  # LCC5: lens correction off
+        0x00: 0x00,  # GAIN: 1
+        0x03: 0x03,  # VREF: the upper bits of the gain 0; the window's lowest as after a reset
+        0x07: exposure_lines >> 10,  # AECHH
+        0x10: exposure_lines >> 2 & 0xFF,  # AECH
+        0x04: exposure_lines & 3,  # COM1: the lowest two
+    }
+    entries = [*_power_up([(0x0A, 0x76), (0x0B, 0x73)], (0x12, 0x80)), *writes(registers)]
     return Camera("ov7670", 1, 0x42, (480, 640), "bggr", 30.0, entries)
 
 
 def ov7725(exposure_lines: int = 256) -> Camera:
     """Return the OV7725: VGA, 60 frames/s. Exposure in lines, of 510 in a frame."""
     within(Argument("exposure_lines", exposure_lines), 1, 510)
-    registers = [
-        write(0x0D, 0x41),  # COM4: PLL x 4
-        write(0x11, 0x81),  # CLKRC: / (2 (1 + 1)), so 24 MHz from 24 MHz
-        write(0x12, 0x13),  # COM7: VGA, raw of the sensor
-        write(0x67, 0x02),  # DSP_Ctrl4: 8 bits raw
-        write(0x0C, 0x00),  # COM3: not mirrored, nothing exchanged
-        write(0x15, 0x00),  # COM10: PCLK runs between rows; HREF, VSYNC high; data at the rising edge
-        write(0x13, 0x00),  # COM8: AGC, AWB, AEC and banding filter off
-        write(0x0E, 0x01),  # COM5: the frame rate stays
-        write(0x63, 0x00),  # AWB_Ctrl0: gains of white balance off
-        write(0x64, 0x00),  # DSP_Ctrl1: gamma, matrix, interpolation, defect correction off
-        write(0xAC, 0x00),  # DSPAuto: no automatic thresholds
-        write(0x8E, 0x00),  # DNSTh: no denoising
-        write(0x8F, 0x00),  # EDGE0: no edge enhancement
-        write(0x46, 0x00),  # LC_CTR: lens correction off
-        write(0x00, 0x00),  # GAIN: 1
-        write(0x08, exposure_lines >> 8),  # AECH
-        write(0x10, exposure_lines & 0xFF),  # AEC
-    ]
-    entries = [*_power_up([(0x0A, 0x77), (0x0B, 0x21)], (0x12, 0x80)), *registers]
+    registers = {
+        0x0D: 0x41,  # COM4: PLL x 4
+        0x11: 0x81,  # CLKRC: / (2 (1 + 1)), so 24 MHz from 24 MHz
+        0x12: 0x13,  # COM7: VGA, raw of the sensor
+        0x67: 0x02,  # DSP_Ctrl4: 8 bits raw
+        0x0C: 0x00,  # COM3: not mirrored, nothing exchanged
+        0x15: 0x00,  # COM10: PCLK runs between rows; HREF, VSYNC high; data at the rising edge
+        0x13: 0x00,  # COM8: AGC, AWB, AEC and banding filter off
+        0x0E: 0x01,  # COM5: the frame rate stays
+        0x63: 0x00,  # AWB_Ctrl0: gains of white balance off
+        0x64: 0x00,  # DSP_Ctrl1: gamma, matrix, interpolation, defect correction off
+        0xAC: 0x00,  # DSPAuto: no automatic thresholds
+        0x8E: 0x00,  # DNSTh: no denoising
+        0x8F: 0x00,  # EDGE0: no edge enhancement
+        0x46: 0x00,  # LC_CTR: lens correction off
+        0x00: 0x00,  # GAIN: 1
+        0x08: exposure_lines >> 8,  # AECH
+        0x10: exposure_lines & 0xFF,  # AEC
+    }
+    entries = [*_power_up([(0x0A, 0x77), (0x0B, 0x21)], (0x12, 0x80)), *writes(registers)]
     return Camera("ov7725", 1, 0x42, (480, 640), "bggr", 60.0, entries)
 
 
@@ -150,36 +151,33 @@ def ov5640(exposure_lines: int = 480) -> Camera:
         0x3501: 16 * exposure_lines & 0xFFFF,  # in 1/16 lines
         0x350A: 0x010,  # gain: 1
     }
-    registers = [
-        write(0x3103, 0x03),  # system clock from the PLL
-        write(0x3017, 0x7F),  # VSYNC, HREF, PCLK, D[9:6] are outputs
-        write(0x3018, 0xFC),  # D[5:0]
-        write(0x300E, 0x58),  # MIPI off
-        write(0x3034, 0x18),  # PLL: bits 8, so / 2
-        write(0x3035, 0x31),  # / 3
-        write(0x3036, 0x54),  # x 84
-        write(0x3037, 0x03),  # / 3 in front, / 1 behind
-        write(0x3108, 0x11),  # PCLK and SCLK / 2: 56 MHz from 24 MHz
-        *(write(address + byte, word >> 8 * (1 - byte) & 0xFF) for address, word in words.items() for byte in (0, 1)),
-        write(0x3814, 0x31),  # every second column
-        write(0x3815, 0x31),  # every second row
-        write(0x3820, 0x41),  # not flipped, rows binned
-        write(0x3821, 0x01),  # not mirrored, columns binned
-        write(0x3503, 0x07),  # exposure, gain and length of a frame by hand
-        write(0x3500, 16 * exposure_lines >> 16),
-        write(0x3406, 0x01),  # white balance by hand
-        write(0x5000, 0x00),  # lens correction, gamma, defect correction, interpolation off
-        write(0x5001, 0x00),  # special effects, scaling, matrix, white balance off
-        write(0x501F, 0x03),  # raw
-        write(0x4300, 0x00),  # raw, rows of B G and G R in turn
-        write(0x4740, 0x22),  # HREF high, data at the rising edge of PCLK, which runs between rows
-        write(0x3008, 0x02),  # awake
-    ]
-    entries = [
-        *_power_up([(0x300A, 0x56), (0x300B, 0x40)], (0x3008, 0x82)),
-        write(0x3008, 0x42),  # asleep while registers are written
-        *registers,
-    ]
+    registers = {
+        0x3103: 0x03,  # system clock from the PLL
+        0x3017: 0x7F,  # VSYNC, HREF, PCLK, D[9:6] are outputs
+        0x3018: 0xFC,  # D[5:0]
+        0x300E: 0x58,  # MIPI off
+        0x3034: 0x18,  # PLL: bits 8, so / 2
+        0x3035: 0x31,  # / 3
+        0x3036: 0x54,  # x 84
+        0x3037: 0x03,  # / 3 in front, / 1 behind
+        0x3108: 0x11,  # PCLK and SCLK / 2: 56 MHz from 24 MHz
+        **{address + byte: word >> 8 * (1 - byte) & 0xFF for address, word in words.items() for byte in (0, 1)},
+        0x3814: 0x31,  # every second column
+        0x3815: 0x31,  # every second row
+        0x3820: 0x41,  # not flipped, rows binned
+        0x3821: 0x01,  # not mirrored, columns binned
+        0x3503: 0x07,  # exposure, gain and length of a frame by hand
+        0x3500: 16 * exposure_lines >> 16,
+        0x3406: 0x01,  # white balance by hand
+        0x5000: 0x00,  # lens correction, gamma, defect correction, interpolation off
+        0x5001: 0x00,  # special effects, scaling, matrix, white balance off
+        0x501F: 0x03,  # raw
+        0x4300: 0x00,  # raw, rows of B G and G R in turn
+        0x4740: 0x22,  # HREF high, data at the rising edge of PCLK, which runs between rows
+        0x3008: 0x02,  # awake
+    }
+    asleep = {0x3008: 0x42}  # while registers are written
+    entries = [*_power_up([(0x300A, 0x56), (0x300B, 0x40)], (0x3008, 0x82)), *writes(asleep), *writes(registers)]
     return Camera("ov5640", 2, 0x78, (960, 1280), "bggr", 30.0, entries)
 
 
