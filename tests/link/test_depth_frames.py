@@ -6,7 +6,7 @@ from __future__ import annotations
 import tracemalloc
 import zlib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -180,7 +180,7 @@ def test_a_status_that_waited_for_the_trailer_is_no_reset(frame_packets: list[by
     device = device_of(BUILD)
     device.offer(extreme_codes(BUILD, np.random.default_rng(7)), Record(0, 1, 0))
     *_, trailer = lines(device)
-    old = replace(device.status(), sending=True)
+    old = device.status()._replace(sending=True)
     host = DepthFrames()
     host.feed(b"".join([*frame_packets[:-2], trailer, to_line(old.pack()), frame_packets[-1]]))
     assert (host.delivered, host.lost, host.resets) == (1, 0, 0)
@@ -217,14 +217,14 @@ def trailer_of(frame_packets: list[bytes]) -> link.Trailer:
     ids=lambda changed: next(iter(changed)),
 )
 def test_a_trailer_that_does_not_match_delivers_nothing(frame_packets: list[bytes], changed: dict) -> None:
-    trailer = replace(trailer_of(frame_packets), **changed)
+    trailer = trailer_of(frame_packets)._replace(**changed)
     host = DepthFrames()
     assert host.feed(b"".join(frame_packets[:-2]) + to_line(trailer.pack())) == []
     assert (host.delivered, host.lost) == (0, trailer.number)
 
 
 def test_a_trailer_alone_delivers_nothing(frame_packets: list[bytes]) -> None:
-    empty = replace(trailer_of(frame_packets), depth_format=DepthFormat.NONE, crc=0)
+    empty = trailer_of(frame_packets)._replace(depth_format=DepthFormat.NONE, crc=0)
     host = DepthFrames()
     assert host.feed(frame_packets[0] + to_line(empty.pack())) == []
     assert host.lost == 1
@@ -275,15 +275,15 @@ def test_a_frame_that_ends_early_is_lost(frame_packets: list[bytes]) -> None:
     """Close a frame after its first packet, with the CRC of that."""
     (depth,) = link.PacketReader().feed(frame_packets[2])
     assert isinstance(depth, link.Depth)
-    trailer = replace(trailer_of(frame_packets), crc=zlib.crc32(depth.values))
+    trailer = trailer_of(frame_packets)._replace(crc=zlib.crc32(depth.values))
     host = DepthFrames()
     assert host.feed(b"".join(frame_packets[:3]) + to_line(trailer.pack())) == []
     assert host.lost == 1
 
 
 def test_a_status_of_another_grid_drops_the_frame_that_was_begun(frame_packets: list[bytes]) -> None:
-    status = replace(device_of(Build(48, 32, 24, bottom_first=True)).status(), sent=1, sending=True)
-    trailer = replace(trailer_of(frame_packets), rows=48, columns=32)
+    status = device_of(Build(48, 32, 24, bottom_first=True)).status()._replace(sent=1, sending=True)
+    trailer = trailer_of(frame_packets)._replace(rows=48, columns=32)
     host = DepthFrames()
     end = to_line(status.pack()) + to_line(trailer.pack())
     assert host.feed(b"".join(frame_packets[:-2]) + end) == []

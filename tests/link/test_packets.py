@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Packets of the link: framing, each kind as bytes, and what a reader does with a damaged line."""
 
-import dataclasses
 import zlib
 
 import numpy as np
@@ -187,9 +186,9 @@ def test_a_packet_of_a_wrong_length_is_bad(packet: link.Packet) -> None:
     [
         bytes((link.Kind.SELECT, 4, 0)),
         bytes((link.Kind.SELECT, 1, 17)),
-        dataclasses.replace(STATUS, rows=0).pack(),
-        dataclasses.replace(STATUS, columns=4097).pack(),
-        dataclasses.replace(STATUS, data_width=33).pack(),
+        STATUS._replace(rows=0).pack(),
+        STATUS._replace(columns=4097).pack(),
+        STATUS._replace(data_width=33).pack(),
         link.Trailer(1, 0, DepthFormat.SHORT, 17, 8, 8, False, 0, RECORD).pack(),
     ],
 )

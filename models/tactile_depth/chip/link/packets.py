@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Packets of the link: kind and fields of each as bytes, and the packets on a line. docs/link.md has the tables.
 
-Numbers are little-endian. A packet is a frozen dataclass; `pack` gives its kind and fields, `to_line` its bytes on a
+Numbers are little-endian. A packet is a named tuple; `pack` gives its kind and fields, `to_line` its bytes on a
 line, and `PacketReader` the packets of a line.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
 from enum import IntEnum
-from struct import Struct
-from typing import Final, TypeAlias
+from struct import Struct, error
+from typing import Final, NamedTuple, TypeAlias
 
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.contact.contact_events import WORD_BITS, WORDS, Record, record
@@ -44,6 +43,7 @@ TO_DEVICE: Final = (Kind.ASK, Kind.SELECT, Kind.READ, Kind.WRITE, Kind.PICTURE)
 SELECT: Final = Struct("<BBB")  # kind, format, shift
 REQUEST: Final = Struct("<BB")  # kind, number of the request
 ADDRESS: Final = Struct("<H")
+VALUE: Final = Struct("<I")
 ADDRESS_VALUE: Final = Struct("<HI")
 REPLY: Final = Struct("<BBB")  # kind, request, accesses done
 PICTURE_HEADER: Final = Struct("<BIHH")  # kind, number, row, first column
@@ -56,8 +56,7 @@ MOST_PIXELS: Final = 256  # in a packet
 BOTTOM_FIRST, SENDING = 1, 2  # bits of flags
 
 
-@dataclass(frozen=True)
-class Ask:
+class Ask(NamedTuple):
     """Request of a status; the device forgets the number of the last request."""
 
     def pack(self) -> bytes:
@@ -65,8 +64,7 @@ class Ask:
         return bytes((Kind.ASK,))
 
 
-@dataclass(frozen=True)
-class Select:
+class Select(NamedTuple):
     """Choice of the depth format from the next frame on; the reply is a status.
 
     Attributes
@@ -81,11 +79,10 @@ class Select:
 
     def pack(self) -> bytes:
         """Return kind and fields."""
-        return SELECT.pack(Kind.SELECT, self.depth_format, self.shift)
+        return SELECT.pack(Kind.SELECT, *self)
 
 
-@dataclass(frozen=True)
-class Read:
+class Read(NamedTuple):
     """Register reads, in order.
 
     Attributes
@@ -105,8 +102,7 @@ class Read:
         return REQUEST.pack(Kind.READ, self.request) + b"".join(map(ADDRESS.pack, self.addresses))
 
 
-@dataclass(frozen=True)
-class Write:
+class Write(NamedTuple):
     """Register writes, in order.
 
     Attributes
@@ -126,8 +122,7 @@ class Write:
         return REQUEST.pack(Kind.WRITE, self.request) + b"".join(ADDRESS_VALUE.pack(*pair) for pair in self.pairs)
 
 
-@dataclass(frozen=True)
-class Picture:
+class Picture(NamedTuple):
     """Pixels of a picture, in raster order from a position on.
 
     Attributes
@@ -147,11 +142,10 @@ class Picture:
 
     def pack(self) -> bytes:
         """Return kind and fields."""
-        return PICTURE_HEADER.pack(Kind.PICTURE, self.number, self.row, self.column) + self.pixels
+        return PICTURE_HEADER.pack(Kind.PICTURE, *self[:3]) + self.pixels
 
 
-@dataclass(frozen=True)
-class Status:
+class Status(NamedTuple):
     """State of the device.
 
     Attributes
@@ -197,14 +191,10 @@ class Status:
     def pack(self) -> bytes:
         """Return kind and fields."""
         flags = BOTTOM_FIRST * self.bottom_first | SENDING * self.sending
-        return STATUS.pack(
-            *(Kind.STATUS, VERSION, self.resets, self.rows, self.columns, self.data_width, flags),
-            *(self.depth_format, self.shift, self.sent, self.skipped, self.bad_packets),
-        )
+        return STATUS.pack(Kind.STATUS, VERSION, *self[:4], flags, *self[6:])
 
 
-@dataclass(frozen=True)
-class ReadReply:
+class ReadReply(NamedTuple):
     """Values of register reads; fewer than requested if one was refused, which ended the request."""
 
     request: int
@@ -212,12 +202,10 @@ class ReadReply:
 
     def pack(self) -> bytes:
         """Return kind and fields."""
-        values = b"".join(value.to_bytes(4, "little") for value in self.values)
-        return REPLY.pack(Kind.READ_REPLY, self.request, len(self.values)) + values
+        return REPLY.pack(Kind.READ_REPLY, self.request, len(self.values)) + b"".join(map(VALUE.pack, self.values))
 
 
-@dataclass(frozen=True)
-class WriteReply:
+class WriteReply(NamedTuple):
     """Number of register writes done; fewer than requested if one was refused, which ended the request."""
 
     request: int
@@ -225,11 +213,10 @@ class WriteReply:
 
     def pack(self) -> bytes:
         """Return kind and fields."""
-        return REPLY.pack(Kind.WRITE_REPLY, self.request, self.done)
+        return REPLY.pack(Kind.WRITE_REPLY, *self)
 
 
-@dataclass(frozen=True)
-class Depth:
+class Depth(NamedTuple):
     """Depth values of a frame, from a position on, in the order in which they leave.
 
     Attributes
@@ -251,11 +238,10 @@ class Depth:
 
     def pack(self) -> bytes:
         """Return kind and fields."""
-        return DEPTH_HEADER.pack(Kind.DEPTH + self.depth_format, self.number, self.row, self.column) + self.values
+        return DEPTH_HEADER.pack(Kind.DEPTH + self.depth_format, *self[1:4]) + self.values
 
 
-@dataclass(frozen=True)
-class Trailer:
+class Trailer(NamedTuple):
     """End of a depth frame.
 
     Attributes
@@ -288,14 +274,10 @@ class Trailer:
 
     def pack(self) -> bytes:
         """Return kind and fields."""
-        return TRAILER.pack(
-            *(Kind.TRAILER, self.number, self.resets, self.depth_format, self.shift, self.rows, self.columns),
-            *(BOTTOM_FIRST * self.bottom_first, self.crc, *self.record.words),
-        )
+        return TRAILER.pack(*(Kind.TRAILER, *self[:6], BOTTOM_FIRST * self.bottom_first, self.crc), *self.record.words)
 
 
-@dataclass(frozen=True)
-class RecordPacket:
+class RecordPacket(NamedTuple):
     """The contact record of a frame, whether its depth is sent or not."""
 
     record: Record
@@ -316,87 +298,85 @@ def _check_count(count: int) -> None:
         raise InputError(f"{count} register accesses in a packet", accepted=range(1, MOST_ACCESSES + 1), remedy=remedy)
 
 
-def _ask(body: bytes) -> Packet | None:
-    return Ask() if len(body) == 1 else None
+# Decoders raise ValueError or struct.error for a length or a field that is wrong.
 
 
-def _select(body: bytes) -> Packet | None:
-    if len(body) != SELECT.size:
-        return None
+def _require(is_right: bool) -> None:
+    if not is_right:
+        raise ValueError
+
+
+def _require_accesses(body: bytes, size: int) -> None:
+    _require(1 <= (len(body) - REQUEST.size) / size <= MOST_ACCESSES)
+
+
+def _ask(body: bytes) -> Packet:
+    _require(len(body) == 1)
+    return Ask()
+
+
+def _select(body: bytes) -> Packet:
     _, depth_format, shift = SELECT.unpack(body)
-    return Select(DepthFormat(depth_format), shift) if shift <= LARGEST_SHIFT else None
+    _require(shift <= LARGEST_SHIFT)
+    return Select(DepthFormat(depth_format), shift)
 
 
-def _accesses(body: bytes, size: int) -> bool:
-    count, rest = divmod(len(body) - REQUEST.size, size)
-    return not rest and 1 <= count <= MOST_ACCESSES
-
-
-def _read(body: bytes) -> Packet | None:
-    if not _accesses(body, ADDRESS.size):
-        return None
+def _read(body: bytes) -> Packet:
+    _require_accesses(body, ADDRESS.size)
     return Read(body[1], tuple(address for (address,) in ADDRESS.iter_unpack(body[REQUEST.size :])))
 
 
-def _write(body: bytes) -> Packet | None:
-    return Write(body[1], tuple(ADDRESS_VALUE.iter_unpack(body[REQUEST.size :]))) if _accesses(body, 6) else None
+def _write(body: bytes) -> Packet:
+    _require_accesses(body, ADDRESS_VALUE.size)
+    return Write(body[1], tuple(ADDRESS_VALUE.iter_unpack(body[REQUEST.size :])))
 
 
-def _picture(body: bytes) -> Packet | None:
+def _picture(body: bytes) -> Packet:
     pixels, rest = divmod(len(body) - PICTURE_HEADER.size, PIXEL_BYTES)
-    if rest or not 1 <= pixels <= MOST_PIXELS:
-        return None
-    _, number, row, column = PICTURE_HEADER.unpack_from(body)
-    return Picture(number, row, column, body[PICTURE_HEADER.size :])
+    _require(not rest and 1 <= pixels <= MOST_PIXELS)
+    return Picture(*PICTURE_HEADER.unpack_from(body)[1:], body[PICTURE_HEADER.size :])
 
 
-def _status(body: bytes) -> Packet | None:
+def _status(body: bytes) -> Packet:
     version = body[1] if len(body) > 1 else VERSION
     if version != VERSION:
         remedy = "install a version of tactile-depth that knows it, or update the device"
         raise InputError(f"the device speaks version {version} of the link", accepted=str(VERSION), remedy=remedy)
-    if len(body) != STATUS.size:
-        return None
     _, _, resets, rows, columns, width, flags, depth_format, *others = STATUS.unpack(body)
-    if not (1 <= rows <= LARGEST_GRID and 1 <= columns <= LARGEST_GRID and 1 <= width <= WORD_BITS):
-        return None
+    _require(1 <= rows <= LARGEST_GRID and 1 <= columns <= LARGEST_GRID and 1 <= width <= WORD_BITS)
     signs = bool(flags & BOTTOM_FIRST), bool(flags & SENDING)
     return Status(resets, rows, columns, width, *signs, DepthFormat(depth_format), *others)
 
 
-def _read_reply(body: bytes) -> Packet | None:
-    if len(body) < REPLY.size or len(body) != REPLY.size + 4 * body[2]:
-        return None
-    values = (int.from_bytes(body[first : first + 4], "little") for first in range(REPLY.size, len(body), 4))
-    return ReadReply(body[1], tuple(values))
+def _read_reply(body: bytes) -> Packet:
+    _, request, count = REPLY.unpack_from(body)
+    values = tuple(value for (value,) in VALUE.iter_unpack(body[REPLY.size :]))
+    _require(len(values) == count)
+    return ReadReply(request, values)
 
 
-def _write_reply(body: bytes) -> Packet | None:
-    return WriteReply(body[1], body[2]) if len(body) == REPLY.size else None
+def _write_reply(body: bytes) -> Packet:
+    return WriteReply(*REPLY.unpack(body)[1:])
 
 
-def _depth(body: bytes) -> Packet | None:
-    if len(body) <= DEPTH_HEADER.size:
-        return None
-    kind, number, row, column = DEPTH_HEADER.unpack_from(body)
-    return Depth(DepthFormat(kind - Kind.DEPTH), number, row, column, body[DEPTH_HEADER.size :])
+def _depth(body: bytes) -> Packet:
+    kind, *position = DEPTH_HEADER.unpack_from(body)
+    _require(len(body) > DEPTH_HEADER.size)
+    return Depth(DepthFormat(kind - Kind.DEPTH), *position, body[DEPTH_HEADER.size :])
 
 
-def _trailer(body: bytes) -> Packet | None:
-    if len(body) != TRAILER.size:
-        return None
+def _trailer(body: bytes) -> Packet:
     _, number, resets, depth_format, shift, rows, columns, flags, crc, *words = TRAILER.unpack(body)
-    if shift > LARGEST_SHIFT:
-        return None
+    _require(shift <= LARGEST_SHIFT)
     bottom_first = bool(flags & BOTTOM_FIRST)
     return Trailer(number, resets, DepthFormat(depth_format), shift, rows, columns, bottom_first, crc, record(words))
 
 
-def _record(body: bytes) -> Packet | None:
-    return RecordPacket(record(RECORD.unpack(body)[1:])) if len(body) == RECORD.size else None
+def _record(body: bytes) -> Packet:
+    return RecordPacket(record(RECORD.unpack(body)[1:]))
 
 
-_DECODERS: Final[dict[int, Callable[[bytes], Packet | None]]] = {
+_DECODERS: Final[dict[int, Callable[[bytes], Packet]]] = {
     Kind.ASK: _ask,
     Kind.SELECT: _select,
     Kind.READ: _read,
@@ -421,7 +401,7 @@ def unpack(body: bytes) -> Packet | None:
         return decode(body)
     except InputError:
         raise
-    except ValueError:  # a format that no DepthFormat has
+    except (ValueError, error):
         return None
 
 
