@@ -8,7 +8,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -185,7 +185,7 @@ def test_what_fails_is_said(client: Client, plug: Callable[..., Cable], tmp_path
     resets = itertools.count()
     newer, restless = plug(None), plug(None)
     newer.answer(lambda _: to_line(bytes((link.Kind.STATUS, link.VERSION + 1))))
-    restless.answer(lambda asked: to_line(replace(STATUS, resets=next(resets)).pack()) if asked else b"")
+    restless.answer(lambda asked: to_line(STATUS._replace(resets=next(resets)).pack()) if asked else b"")
     for port, text in {
         str(plug(other_grid).path): "the device has another grid than the tables",
         str(plug(other_build).path): "the device is another build",

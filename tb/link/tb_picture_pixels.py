@@ -3,7 +3,6 @@
 
 import os
 import random
-from dataclasses import replace
 from typing import Any
 
 import cocotb
@@ -86,7 +85,7 @@ FIELDS = (("number", 32), ("row", 16), ("column", 16))  # of the header, with th
 def with_a_bit_changed(packet: Picture, field: str, bit: int) -> Picture:
     """Return the packet with one bit of its number, row or column changed."""
     changed: dict[str, Any] = {field: getattr(packet, field) ^ 1 << bit}
-    return replace(packet, **changed)
+    return packet._replace(**changed)
 
 
 @on_bench(Bench, milliseconds=0.6)
@@ -139,7 +138,7 @@ async def a_byte_counts_while_it_is_valid(bench: Bench) -> None:
     drive, ready, edge = Driver(bench.dut), unsigned(bench.dut.picture_ready), RisingEdge(bench.dut.clk)
     for number in range(8):
         other = bench.packet(number << 4 * number, 0, 2)
-        behind = [replace(other, column=256), replace(other, row=bench.rows)]
+        behind = [other._replace(column=256), other._replace(row=bench.rows)]
         for packet in [*bench.picture(number << 4 * number, 3), *behind]:
             bench.device.receive(to_line(packet.pack()))
             body = packet.pack()[1:]
@@ -163,7 +162,7 @@ async def what_is_behind_the_end_is_dropped(bench: Bench) -> None:
         for first in range(0, bench.size, step):
             await bench.send(bench.packet(number, first, step + number if first + step >= bench.size else step))
         for row, column in ((bench.rows, 0), (0, bench.size), (bench.rows - 1, bench.columns), (0, 1)):
-            await bench.send(replace(bench.packet(number, 0, 2), row=row, column=column))
+            await bench.send(bench.packet(number, 0, 2)._replace(row=row, column=column))
     await bench.check()
     assert len(bench.monitor.words) == 3 * bench.size
 

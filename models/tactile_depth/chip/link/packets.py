@@ -334,7 +334,8 @@ def _write(body: bytes) -> Packet:
 def _picture(body: bytes) -> Packet:
     pixels, rest = divmod(len(body) - PICTURE_HEADER.size, PIXEL_BYTES)
     _require(not rest and 1 <= pixels <= MOST_PIXELS)
-    return Picture(*PICTURE_HEADER.unpack_from(body)[1:], body[PICTURE_HEADER.size :])
+    _, number, row, column = PICTURE_HEADER.unpack_from(body)
+    return Picture(number, row, column, body[PICTURE_HEADER.size :])
 
 
 def _status(body: bytes) -> Packet:
@@ -360,9 +361,9 @@ def _write_reply(body: bytes) -> Packet:
 
 
 def _depth(body: bytes) -> Packet:
-    kind, *position = DEPTH_HEADER.unpack_from(body)
+    kind, number, row, column = DEPTH_HEADER.unpack_from(body)
     _require(len(body) > DEPTH_HEADER.size)
-    return Depth(DepthFormat(kind - Kind.DEPTH), *position, body[DEPTH_HEADER.size :])
+    return Depth(DepthFormat(kind - Kind.DEPTH), number, row, column, body[DEPTH_HEADER.size :])
 
 
 def _trailer(body: bytes) -> Packet:

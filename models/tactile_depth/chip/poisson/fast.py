@@ -97,69 +97,45 @@ def _graph(size: int, inverse: bool, factor_width: int) -> Graph:
 
 
 @compiled
-def _forward(
+def _transform(
     x: np.ndarray,
+    inverse: bool,
     alternate: bool,
-    input_drop: int,
-    graph: Graph,
-    phase: np.ndarray,
-    output_drop: int,
+    drops: tuple[int, int],
     formats: tuple[int, int, int],
+    graph: Graph,
+    phase: Graph,
     y: np.ndarray,
     counts: np.ndarray,
 ) -> None:
-    """Transform bursts (.., N), as `dst_forward`; `counts`: input, the stages, phase."""
-    (bursts, size), (width, drop, output_width) = x.shape, formats
+    """Transform bursts (.., N), as `dst_forward` or `dst_inverse`; `counts`: first step, the stages, last step."""
+    (bursts, size), (first, last), (width, drop, output_width), (factors, partners) = x.shape, drops, formats, phase
     for start in range(0, bursts, BURSTS):
         there = min(BURSTS, bursts - start)
         re, im = np.empty((size, there), np.int64), np.zeros((size, there), np.int64)
         for p in range(size):
-            for i in range(there):
-                re[p, i] = -x[start + i, p] if alternate and p >= size // 2 else x[start + i, p]
-            counts[0, 0] += _clip_all(re[p], input_drop, width)
-        _fft(re, im, False, width, drop, graph, counts[1:])
+            c, s = factors[p]
+            a, b, q = re[p], im[p], partners[p]
+            if inverse:
+                for i in range(there):
+                    mode = x[start + i, p]
+                    other = x[start + i, q] if p else 0
+                    a[i], b[i] = other * c - mode * s, other * s + mode * c
+                counts[0, 1] += _clip_all(b, first, width)
+            else:
+                for i in range(there):
+                    a[i] = -x[start + i, p] if alternate and p >= size // 2 else x[start + i, p]
+            counts[0, 0] += _clip_all(a, first, width)
+        _fft(re, im, inverse, width, drop, graph, counts[1:])
         for p in range(size):
-            c, s = phase[p]
+            c, s = factors[p]
             a, b = re[p], im[p]
-            for i in range(len(a)):
-                a[i] = a[i] * c - b[i] * s
-            counts[-1, 0] += _clip_all(a, output_drop, output_width)
-            y[start : start + there, p] = a
-
-
-@compiled
-def _inverse(
-    x: np.ndarray,
-    alternate: bool,
-    input_drop: int,
-    graph: Graph,
-    phase: Graph,
-    output_drop: int,
-    formats: tuple[int, int, int],
-    y: np.ndarray,
-    counts: np.ndarray,
-) -> None:
-    """Transform bursts (.., N), as `dst_inverse`; `counts`: phase, the stages, output."""
-    (bursts, size), (width, drop, output_width) = x.shape, formats
-    for start in range(0, bursts, BURSTS):
-        there = min(BURSTS, bursts - start)
-        re, im = np.empty((size, there), np.int64), np.empty((size, there), np.int64)
-        for p in range(size):
-            c, s = phase[0][p]
-            a, b, q = re[p], im[p], phase[1][p]
             for i in range(there):
-                mode = x[start + i, p]
-                other = x[start + i, q] if p else 0
-                a[i], b[i] = other * c - mode * s, other * s + mode * c
-            counts[0, 0] += _clip_all(a, input_drop, width)
-            counts[0, 1] += _clip_all(b, input_drop, width)
-        _fft(re, im, True, width, drop, graph, counts[1:])
-        for p in range(size):
-            a = re[p]
-            if alternate and p >= size // 2:
-                for i in range(len(a)):
+                if not inverse:
+                    a[i] = a[i] * c - b[i] * s
+                elif alternate and p >= size // 2:
                     a[i] = -a[i]
-            counts[-1, 0] += _clip_all(a, output_drop, output_width)
+            counts[-1, 0] += _clip_all(a, last, output_width)
             y[start : start + there, p] = a
 
 
@@ -238,51 +214,35 @@ def _settle(ratios: np.ndarray, lsb: np.float32, limit: float, rounds: int, enou
 # The models.
 
 
-def _bursts(x: np.ndarray) -> np.ndarray:
-    return np.ascontiguousarray(x).reshape(-1, x.shape[-1])
-
-
-def _give(monitor: Monitor | None, names: list[str], counts: np.ndarray) -> None:
-    """Give a monitor the clip counts (nodes, 2) of real and imaginary parts."""
-    for name, parts in zip(names, counts.tolist(), strict=True):
-        for part, count in zip((".re", ".im"), parts, strict=True):
-            if monitor is not None:
-                monitor.clipped(name if name.endswith("put") else name + part, count)
-
-
-def _nodes(node: str, first: str, last: str, graph: Graph) -> list[str]:
-    return [f"{node}.{first}", *(f"{node}.fft.stage{index}" for index in range(len(graph[0]))), f"{node}.{last}"]
+def _dst(x: np.ndarray, formats: Transform, inverse: bool, monitor: Monitor | None, node: str) -> np.ndarray:
+    size, drop, factor_width = x.shape[-1], formats.factor_drop, formats.factor_width
+    graph, phase = _graph(size, inverse, factor_width), (phase_factors(size, inverse, factor_width), mirror(size))
+    steps, drops = ["input", "phase"], (formats.input_drop, drop + formats.output_drop)
+    if inverse:
+        steps, drops = ["phase", "output"], (drop + formats.input_drop, formats.output_drop)
+    steps[1:1] = [f"fft.stage{index}" for index in range(len(graph[0]))]
+    bursts, counts = np.ascontiguousarray(x).reshape(-1, size), np.zeros((len(steps), 2), np.int64)
+    y, widths = np.empty(bursts.shape, np.int64), (formats.width, drop, formats.output_width)
+    _transform(bursts, inverse, formats.alternate, drops, widths, graph, phase, y, counts)
+    if monitor is not None:
+        for step, parts in zip(steps, counts.tolist(), strict=True):
+            for part, count in zip((".re", ".im"), parts, strict=True):
+                monitor.clipped(f"{node}.{step}{'' if step.endswith('put') else part}", count)
+    return y.reshape(x.shape)
 
 
 def dst_forward(
     x: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_forward"
 ) -> np.ndarray:
     """Model poisson/transform/dst_forward.py."""
-    size, drop = x.shape[-1], formats.factor_drop
-    graph = _graph(size, False, formats.factor_width)
-    phase, nodes = phase_factors(size, False, formats.factor_width), _nodes(node, "input", "phase", graph)
-    y, counts = np.empty(x.shape, np.int64), np.zeros((len(nodes), 2), np.int64)
-    last, widths = drop + formats.output_drop, (formats.width, drop, formats.output_width)
-    _forward(_bursts(x), formats.alternate, formats.input_drop, graph, phase, last, widths, y.reshape(-1, size), counts)
-    _give(monitor, nodes, counts)
-    return y
+    return _dst(x, formats, False, monitor, node)
 
 
 def dst_inverse(
     modes: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_inverse"
 ) -> np.ndarray:
     """Model poisson/transform/dst_inverse.py."""
-    size, drop = modes.shape[-1], formats.factor_drop
-    graph = _graph(size, True, formats.factor_width)
-    phase = phase_factors(size, True, formats.factor_width), mirror(size)
-    nodes = _nodes(node, "phase", "output", graph)
-    y, counts = np.empty(modes.shape, np.int64), np.zeros((len(nodes), 2), np.int64)
-    first, widths = drop + formats.input_drop, (formats.width, drop, formats.output_width)
-    _inverse(
-        _bursts(modes), formats.alternate, first, graph, phase, formats.output_drop, widths, y.reshape(-1, size), counts
-    )
-    _give(monitor, nodes, counts)
-    return y
+    return _dst(modes, formats, True, monitor, node)
 
 
 def forward_elimination(
