@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests of tridiagonal_solver and wide_solver against their models: codes, latency of each row, throughput, clips."""
+"""Tests of the solvers against their models: codes, latency of each row, throughput, clips."""
 
 from typing import Any
 
@@ -40,7 +40,7 @@ async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrup
     latency = sum(cycles for _, cycles in by_solver_core(config))
 
     async def send(count: int) -> None:
-        await send_apart(bench, driver, words[:count], gap, pixels)
+        await send_apart(bench, driver, (words * (count // len(words) + 1))[:count], gap, pixels)
 
     await interrupt(bench, send, interrupts, (source, sink), quiet=latency + pixels)
     await send_apart(bench, driver, words[:strays], gap, pixels)
@@ -49,6 +49,7 @@ async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrup
 
     source.forget_but(len(words))
     sink.forget_but(len(words) // config.columns)
+    np.testing.assert_array_equal(source.words, words, "the driver sent other words than the test gave it")
     monitor = Monitor()
     z = solve(np.array(source.words).reshape(f.shape), config, monitor)
     check_maps(sink.words, z)
@@ -60,7 +61,7 @@ async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrup
     rows_apart = np.diff(np.array(sink.starts).reshape(-1, config.rows), axis=1)
     assert np.all(rows_apart == config.columns // config.lanes), "a frame leaves with a pause between two rows"
     if not gap:
-        assert set(np.diff(first_depths)) == {pixels}
+        assert set(np.diff(first_depths)) <= {pixels}
     return monitor.saturations
 
 
