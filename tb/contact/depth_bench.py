@@ -4,7 +4,7 @@ cases."""
 
 import os
 import random
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import cocotb
@@ -142,3 +142,45 @@ class DepthBench:
     def random_level(self, rng: np.random.Generator, depth: np.ndarray) -> int:
         """Return a random threshold near the values of the map, within the range of a depth code."""
         return int(np.clip(self.random_thresholds(rng, depth)[0], self.low, self.high))
+
+
+class MeasureBench(DepthBench):
+    """DepthBench of a core that measures each frame; its measure comes some cycles after the frame's last depth."""
+
+    def __init__(self, dut: Any, gap: float, latency: Callable[[int], int]) -> None:
+        super().__init__(dut, gap)
+        self.latency = latency(self.lanes)
+        self.received: list[Any] = []
+        self.due: dict[int, Any] = {}  # by the cycle of the frame's last depth
+
+    async def reset(self) -> None:
+        self.dut.rst.value = 1
+        await self.edge(False, [0] * self.lanes, (0, 0, 0))
+        self.dut.rst.value = 0
+        self.due.clear()
+        self.received.clear()
+
+    async def settle(self) -> None:
+        await self.idle(self.latency + 1)
+
+    async def interrupt_frames(self, broken: Any, whole: Any) -> None:
+        """Begin frames inside others; `broken` and `whole` are the settings of those cut short and of the others."""
+        rng = np.random.default_rng(cocotb.RANDOM_SEED)
+        for words in [*range(1, self.beats), *rng.integers(1, self.beats, 20)]:
+            await self.frame(self.random_map(rng), broken, words=int(words))
+            if words % 3 == 0:
+                await self.frame(self.random_map(rng), whole)
+                await self.settle()
+        assert len(self.received) > self.beats // 3 - 1
+
+    async def reset_in_every_cycle(self, broken: Any, whole: Any) -> None:
+        """Reset in any cycle of a frame and after it; `broken` and `whole` are the settings of a frame and the next."""
+        rng = np.random.default_rng(cocotb.RANDOM_SEED)
+        for clocks in range(1, self.beats + self.latency + 2):
+            await self.frame(self.random_map(rng), broken, words=clocks)
+            await self.idle(max(0, clocks - self.beats))
+            await self.reset()
+            await self.idle(int(rng.integers(0, self.latency + 2)))
+            await self.frame(self.random_map(rng), whole)
+            await self.settle()
+            assert len(self.received) == 1

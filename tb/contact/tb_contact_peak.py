@@ -7,9 +7,9 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.chip.contact.contact_peak import CYCLES_TO_COUNT, ContactPeak, Peak, cycles_to_peak
+from tactile_depth.chip.contact.contact_peak import CYCLES_TO_COUNT, ContactPeak, cycles_to_peak
 from tb.cases import on_bench
-from tb.contact.depth_bench import WORD_LOW, DepthBench
+from tb.contact.depth_bench import WORD_LOW, MeasureBench
 from tb.stream import REGRESS, parametrize
 
 FRAMES = 1000 if REGRESS else 200
@@ -22,18 +22,15 @@ class Thresholds(NamedTuple):
     off: int
 
 
-class Bench(DepthBench):
+class Bench(MeasureBench):
     """Driver of one cycle at a time; `touching` changes in the cycle of count_valid, the earliest allowed."""
 
     def __init__(self, dut: Any, gap: float = 0.0) -> None:
-        super().__init__(dut, gap)
+        super().__init__(dut, gap, cycles_to_peak)
         self.model = ContactPeak(self.rows, self.columns, bool(self.bottom_first))
-        self.cycles_to_peak = cycles_to_peak(self.lanes)
         self.thresholds = Thresholds(0, 0)
         self.each_beat = False  # beats of a frame have their own thresholds
         self.touching = False  # of the frame that enters
-        self.received: list[Peak] = []
-        self.due: dict[int, Peak] = {}  # by the cycle of the frame's last depth
         self.changes: dict[int, bool] = {}  # values of `touching` by cycle
 
     async def edge(
@@ -64,23 +61,13 @@ class Bench(DepthBench):
         assert bool(dut.count_valid.value) == (count_of is not None), "count_valid"
         if count_of is not None:
             assert int(dut.count.value) == count_of.above, "count"
-        peak = self.due.pop(self.now - self.cycles_to_peak, None)
+        peak = self.due.pop(self.now - self.latency, None)
         assert bool(dut.peak_valid.value) == (peak is not None), "peak_valid"
         if peak is not None:
             assert bool(dut.any_above.value) == bool(peak.above), "any_above"
             position = int(dut.peak_row.value), int(dut.peak_column.value)
             assert (dut.peak.value.to_signed(), position) == peak[1:], f"expected {peak}"
             self.received.append(peak)
-
-    async def reset(self) -> None:
-        self.dut.rst.value = 1
-        await self.edge(False, [0] * self.lanes, (0, 0, 0))
-        self.dut.rst.value = 0
-        self.due.clear()
-        self.received.clear()
-
-    async def settle(self) -> None:
-        await self.idle(self.cycles_to_peak + 1)
 
 
 @on_bench(Bench, milliseconds=100)
@@ -125,24 +112,10 @@ async def thresholds_change_inside_a_frame(bench: Bench) -> None:
 @on_bench(Bench, milliseconds=10)
 async def interrupted_frames(bench: Bench) -> None:
     """Begin a frame inside another one: it is measured alone, with its own thresholds."""
-    rng = np.random.default_rng(cocotb.RANDOM_SEED)
-    for words in [*range(1, bench.beats), *rng.integers(1, bench.beats, 20)]:
-        await bench.frame(bench.random_map(rng), Thresholds(-3, 5), words=int(words))
-        if words % 3 == 0:
-            await bench.frame(bench.random_map(rng), Thresholds(0, 0))
-            await bench.settle()
-    assert len(bench.received) > bench.beats // 3 - 1
+    await bench.interrupt_frames(Thresholds(-3, 5), Thresholds(0, 0))
 
 
 @on_bench(Bench, milliseconds=20)
 async def resets(bench: Bench) -> None:
     """Reset in any cycle of a frame and after it: nothing of it remains."""
-    rng = np.random.default_rng(cocotb.RANDOM_SEED)
-    for clocks in range(1, bench.beats + bench.cycles_to_peak + 2):
-        await bench.frame(bench.random_map(rng), Thresholds(0, -1), words=clocks)
-        await bench.idle(max(0, clocks - bench.beats))
-        await bench.reset()
-        await bench.idle(int(rng.integers(0, bench.cycles_to_peak + 2)))
-        await bench.frame(bench.random_map(rng), Thresholds(0, 0))
-        await bench.settle()
-        assert len(bench.received) == 1
+    await bench.reset_in_every_cycle(Thresholds(0, -1), Thresholds(0, 0))

@@ -7,9 +7,9 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.chip.contact.contact_sums import ContactSums, Sums, cycles_to_sums
+from tactile_depth.chip.contact.contact_sums import ContactSums, cycles_to_sums
 from tb.cases import on_bench
-from tb.contact.depth_bench import DepthBench
+from tb.contact.depth_bench import MeasureBench
 from tb.stream import REGRESS, parametrize
 
 FRAMES = 1000 if REGRESS else 200
@@ -18,15 +18,12 @@ FRAMES = 1000 if REGRESS else 200
 FIELDS = ((16, 16), (0, 16), (48, 16), (32, 16), (64, 64), (128, 64), (192, 64), (256, 32))
 
 
-class Bench(DepthBench):
+class Bench(MeasureBench):
     """Driver of one cycle at a time."""
 
     def __init__(self, dut: Any, gap: float = 0.0) -> None:
-        super().__init__(dut, gap)
+        super().__init__(dut, gap, cycles_to_sums)
         self.model = ContactSums(self.rows, self.columns, bool(self.bottom_first))
-        self.cycles_to_sums = cycles_to_sums(self.lanes)
-        self.received: list[Sums] = []
-        self.due: dict[int, Sums] = {}  # by the cycle of the frame's last depth
 
     async def edge(
         self, valid: bool, depths: list[int], position: tuple[Any, Any, Any], settings: Any = None, time: Any = None
@@ -47,7 +44,7 @@ class Bench(DepthBench):
 
     def check(self) -> None:
         dut = self.dut
-        sums = self.due.pop(self.now - self.cycles_to_sums, None)
+        sums = self.due.pop(self.now - self.latency, None)
         assert bool(dut.sums_valid.value) == (sums is not None), "sums_valid"
         if sums is not None:
             value = int(dut.sums.value)
@@ -56,16 +53,6 @@ class Bench(DepthBench):
             assert seen[4:] == [sums.column_moment, sums.row_moment, sums.weight, sums.area], f"expected {sums}"
             assert not sums.area or limits == (sums.least, sums.greatest), f"limits {limits}, expected {sums}"
             self.received.append(sums)
-
-    async def reset(self) -> None:
-        self.dut.rst.value = 1
-        await self.edge(False, [0] * self.lanes, (0, 0, 0))
-        self.dut.rst.value = 0
-        self.due.clear()
-        self.received.clear()
-
-    async def settle(self) -> None:
-        await self.idle(self.cycles_to_sums + 1)
 
 
 @on_bench(Bench, milliseconds=100)
@@ -97,24 +84,10 @@ async def ties_and_edges(bench: Bench) -> None:
 @on_bench(Bench, milliseconds=10)
 async def interrupted_frames(bench: Bench) -> None:
     """Begin a frame inside another one: it is measured alone, with its own threshold."""
-    rng = np.random.default_rng(cocotb.RANDOM_SEED)
-    for words in [*range(1, bench.beats), *rng.integers(1, bench.beats, 20)]:
-        await bench.frame(bench.random_map(rng), -3, words=int(words))
-        if words % 3 == 0:
-            await bench.frame(bench.random_map(rng), 0)
-            await bench.settle()
-    assert len(bench.received) > bench.beats // 3 - 1
+    await bench.interrupt_frames(-3, 0)
 
 
 @on_bench(Bench, milliseconds=20)
 async def resets(bench: Bench) -> None:
     """Reset in any cycle of a frame and after it: nothing of it remains."""
-    rng = np.random.default_rng(cocotb.RANDOM_SEED)
-    for clocks in range(1, bench.beats + bench.cycles_to_sums + 2):
-        await bench.frame(bench.random_map(rng), -1, words=clocks)
-        await bench.idle(max(0, clocks - bench.beats))
-        await bench.reset()
-        await bench.idle(int(rng.integers(0, bench.cycles_to_sums + 2)))
-        await bench.frame(bench.random_map(rng), 0)
-        await bench.settle()
-        assert len(bench.received) == 1
+    await bench.reset_in_every_cycle(-1, 0)

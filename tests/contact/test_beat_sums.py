@@ -7,21 +7,11 @@ from hypothesis import strategies as st
 
 from formal.entries import Proof
 from tactile_depth.chip.contact.beat_sums import beat_sums
-from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
+from tests.contact.test_beat_peak import STRUCTURES as STRUCTURES
+from tests.contact.test_beat_peak import refused
 from tests.rtl import test_rtl as test_rtl
 
-built = of_parameters("Width Lanes")
-STRUCTURES = (
-    built(24, 8, on=VERILATOR),
-    built(6, 4, on=ICARUS, mutants=True),
-    built(6, 2, on=ICARUS),
-    built(32, 32),
-    built(12, 16),
-)
-REFUSED = {
-    "Lanes=1": Refused("Lanes_must_be_a_power_of_two_at_least_2", {"verilator": "can't find definition of 'first'"}),
-    "Lanes=12": "Lanes_must_be_a_power_of_two_at_least_2",
-}
+REFUSED = refused("first")
 PROOFS = (Proof("sums and limits of an arbitrary beat, 2 clocks later", "sums are exact at any width"),)
 
 
