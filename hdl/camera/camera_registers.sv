@@ -5,10 +5,11 @@
 //   read <-- sticky bits and counters <- faults, frames_lost
 //        <-> camera_setup: restart, and its state
 //
-// The map is docs/generated/camera-registers.md; its offsets continue those of axil_registers. A write takes effect in its
-// cycle, and shows in the next; a read shows the registers as they were before the write of the same cycle. read_data
-// is the word at read_offset, 0 where there is none. An event counts for each cycle in which it is high, and reaches
-// status and counters one cycle later. Model, and parameters: models/tactile_depth/chip/camera/camera_registers.py.
+// The map is docs/generated/camera-registers.md; its offsets continue those of axil_registers. A write takes effect in
+// its cycle, and shows in the next; a read shows the registers as they were before the write of the same cycle.
+// read_data is the word at read_offset, 0 where there is none. An event counts for each cycle in which it is high, and
+// reaches status and counters one cycle later. Model, and parameters:
+// models/tactile_depth/chip/camera/camera_registers.py.
 
 `default_nettype none
 

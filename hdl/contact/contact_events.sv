@@ -12,9 +12,10 @@
 // Stream in: depth codes as they leave (valid and ready together), Lanes of them in a beat, raster order or,
 // BottomFirst, bottom row first; they are never held back, and gaps change nothing. A frame that begins inside another
 // begins afresh. Settings and in_time are taken with a frame's first beat. From the last beat of a frame to that of the
-// next lie at least Latency cycles. Stream out: the record of each frame, docs/generated/registers.md, as a packet. Latency:
-// the record is in its register, until the next, Latency = 2 log2(larger side) + 2 log2(Lanes) + 22 cycles after the
-// last beat, touching 3 cycles after it. Bit-accurate model: models/tactile_depth/chip/contact/contact_events.py.
+// next lie at least Latency cycles. Stream out: the record of each frame, docs/generated/registers.md, as a packet.
+// Latency: the record is in its register, until the next, Latency = 2 log2(larger side) + 2 log2(Lanes) + 22 cycles
+// after the last beat, touching 3 cycles after it. Bit-accurate model:
+// models/tactile_depth/chip/contact/contact_events.py.
 
 `default_nettype none
 

@@ -8,8 +8,8 @@
 //
 // The map is docs/generated/registers.md. A write takes effect, unless it is refused, in the cycle in which axil_port
 // raises `write`; a read shows the registers as they were before the write of the same cycle. An event counts for each
-// cycle in which it is high, and reaches status and counters one cycle later. Word n of the record of contact is in bits
-// 32 n + 31 to 32 n, and is read as it stands.
+// cycle in which it is high, and reaches status and counters one cycle later. Word n of the record of contact is in
+// bits 32 n + 31 to 32 n, and is read as it stands.
 // Model: models/tactile_depth/chip/registers/axil_registers.py.
 
 `default_nettype none
