@@ -10,7 +10,7 @@ from PIL import Image
 
 from commands.study.drawn_sensor import Height, heights
 from tactile_depth.depth.reference import polynomials_at_pixels
-from tactile_depth.sensor.scenes import BENCH, NOISE, differences, taken
+from tactile_depth.sensor.scenes import BENCH, NOISE, Places, differences, taken
 from tactile_depth.sensor.sensor import Sensor
 
 LEVEL = 90.0  # mean grey level of the untouched gel
@@ -70,4 +70,4 @@ class DrawnLight:
     def body(self, name: str, depth_mm: float, x_mm: float = 0.0) -> Height:
         """Return the height of a body of the bench."""
         width = self.width_mm
-        return lambda x, y: width * BENCH[name].body((x - x_mm) / width, y / width, depth_mm / width)
+        return lambda x, y: width * BENCH[name].body(Places((x - x_mm) / width, y / width), depth_mm / width)

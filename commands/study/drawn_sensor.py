@@ -18,7 +18,7 @@ import numpy as np
 
 from tactile_depth.calibrate.ball_press import BallPress
 from tactile_depth.calibrate.presses import PressPictures
-from tactile_depth.sensor.scenes import BENCH, LIGHTS, NOISE, SENSOR_WIDTH_MM, SLOPE_LIMIT, Body, taken
+from tactile_depth.sensor.scenes import BENCH, LIGHTS, NOISE, SENSOR_WIDTH_MM, SLOPE_LIMIT, Body, Places, taken
 
 LIGHTS_MM, LIGHTS_ABOVE_MM = 30.0, 43.0  # from the middle of the gel: 0.7 of I / ref per unit of slope there
 LEVEL = 110.0  # grey level of the flat gel in the middle
@@ -123,7 +123,7 @@ class DrawnSensor:
         at = np.linspace(-0.5, 0.5, self.camera[0])
         for number, contact in enumerate(list(BENCH.values())[:bodies]):
             depth = contact.depth * min(1, steepest / SLOPE_LIMIT)
-            touched = contact.body(at[None, :], at[:, None], depth) > 0
+            touched = contact.body(Places(at[None, :], at[:, None]), depth) > 0
             (left, right), (top, bottom) = (at[touched.any(axis=axis)][[0, -1]] for axis in (0, 1))
             x, y = chance.uniform(-0.5 - left, 0.5 - right), chance.uniform(-0.5 - top, 0.5 - bottom)
             beyond = chance.uniform(*CUT)
@@ -138,7 +138,7 @@ class DrawnSensor:
 def _placed(body: Body, depth: float, shift: tuple[float, float], mirror: int) -> Height:
     """Return the height of a body of the bench in mm; `mirror` -1: left and right exchanged."""
     width, (x, y) = SENSOR_WIDTH_MM, shift
-    return lambda across, down: width * body(mirror * across / width - x, down / width - y, depth)
+    return lambda across, down: width * body(Places(mirror * across / width - x, down / width - y), depth)
 
 
 def ball_press(x_mm: float, y_mm: float, contact_mm: float, radius_mm: float) -> Height:

@@ -18,6 +18,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -150,18 +151,29 @@ def differences(drawn: np.ndarray) -> np.ndarray:
 # of the frame.
 
 
-def _circle(x: np.ndarray, y: np.ndarray, radius: float) -> np.ndarray:
-    return np.abs(np.hypot(x, y) - radius)
+class Places(NamedTuple):
+    """Places that are drawn, from a middle: x along the columns, y down the rows."""
 
+    x: np.ndarray
+    y: np.ndarray
 
-def _strokes(x: np.ndarray, y: np.ndarray, corners: list[tuple[float, float]]) -> np.ndarray:
-    """Return the distance from the line that joins the corners (x, y)."""
-    distance = np.full(np.broadcast_shapes(x.shape, y.shape), np.inf)
-    for (x0, y0), (x1, y1) in pairwise(corners):
-        dx, dy = x1 - x0, y1 - y0
-        along = np.clip(((x - x0) * dx + (y - y0) * dy) / (dx * dx + dy * dy), 0, 1)
-        distance = np.minimum(distance, np.hypot(x - x0 - along * dx, y - y0 - along * dy))
-    return distance
+    def about(self, x: float, y: float) -> Places:
+        """Return the places from another middle."""
+        return Places(self.x - x, self.y - y)
+
+    @property
+    def radius(self) -> np.ndarray:
+        """Distance from the middle."""
+        return np.hypot(self.x, self.y)
+
+    def strokes(self, corners: list[tuple[float, float]]) -> np.ndarray:
+        """Return the distance from the line that joins the corners (x, y)."""
+        distance = np.full(np.broadcast_shapes(self.x.shape, self.y.shape), np.inf)
+        for (x0, y0), (x1, y1) in pairwise(corners):
+            dx, dy, start = x1 - x0, y1 - y0, self.about(x0, y0)
+            along = np.clip((start.x * dx + start.y * dy) / (dx * dx + dy * dy), 0, 1)
+            distance = np.minimum(distance, np.hypot(start.x - along * dx, start.y - along * dy))
+        return distance
 
 
 def _star(radius: float, waist: float) -> list[tuple[float, float]]:
@@ -213,53 +225,54 @@ def _facet(distance: np.ndarray, depth: float, slope: float) -> np.ndarray:
 FACET_ROUNDING = 0.02
 
 
-# The contacts of a tactile bench: functions from coordinates about the body's middle and press depth to height. Each
+# The contacts of a tactile bench: functions from places about the body's middle and press depth to height. Each
 # docstring names the effects that the drawing leaves out, besides those of the sensor.
 
-Body = Callable[[np.ndarray, np.ndarray, float], np.ndarray]
-Strokes = Callable[[np.ndarray, np.ndarray], np.ndarray]  # the distance from lines
+Body = Callable[[Places, float], np.ndarray]
+Strokes = Callable[[Places], np.ndarray]  # the distance from lines
 
 
-def ball(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+def ball(at: Places, depth: float) -> np.ndarray:
     """Draw a ball with the gel rising smoothly around it, without the bulge of displaced gel."""
-    return _cap(np.hypot(x, y), depth, _cap_radius(0.09, 0.85))
+    return _cap(at.radius, depth, _cap_radius(0.09, 0.85))
 
 
-def cylinder(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+def cylinder(at: Places, depth: float) -> np.ndarray:
     """Draw a cylinder on its side with rounded ends, without the sharp rims of a cut cylinder."""
-    return _cap(_strokes(x, y, [(-0.16, 0.1), (0.16, -0.1)]), depth, _cap_radius(0.08, 0.85))
+    return _cap(at.strokes([(-0.16, 0.1), (0.16, -0.1)]), depth, _cap_radius(0.08, 0.85))
 
 
-def cone(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+def cone(at: Places, depth: float) -> np.ndarray:
     """Draw a blunt cone, point down, without the gap between the gel and a sharp tip."""
-    return _facet(np.hypot(x, y), depth, 0.6)
+    return _facet(at.radius, depth, 0.6)
 
 
-def punch(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+def punch(at: Places, depth: float) -> np.ndarray:
     """Draw a flat punch without the pressure peak at its rim: the gel falls off as half a cosine."""
-    return _ridge(np.maximum(np.hypot(x, y) - 0.2, 0), depth, 0.1)
+    return _ridge(np.maximum(at.radius - 0.2, 0), depth, 0.1)
 
 
-def ring(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+def ring(at: Places, depth: float) -> np.ndarray:
     """Draw a ring of round wire; the gel inside the ring is not pressed in, unlike real gel."""
-    return _cap(_circle(x, y, 0.26), depth, _cap_radius(0.05, 0.8))
+    return _cap(np.abs(at.radius - 0.26), depth, _cap_radius(0.05, 0.8))
 
 
-def edge(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+def edge(at: Places, depth: float) -> np.ndarray:
     """Draw the straight edge of a wedge, of finite length, without its corners."""
-    return _facet(_strokes(x, y, [(-0.22, -0.12), (0.22, 0.12)]), depth, 0.7)
+    return _facet(at.strokes([(-0.22, -0.12), (0.22, 0.12)]), depth, 0.7)
 
 
-def two_balls(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+def two_balls(at: Places, depth: float) -> np.ndarray:
     """Draw two balls side by side, without the stretch of the gel between them."""
     radius = _cap_radius(0.06, 0.85)
-    return np.maximum(*(_cap(np.hypot(x - at, y - at / 3), depth, radius) for at in (-0.17, 0.17)))
+    return np.maximum(*(_cap(at.about(x, x / 3).radius, depth, radius) for x in (-0.17, 0.17)))
 
 
-def pyramid(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+def pyramid(at: Places, depth: float) -> np.ndarray:
     """Draw a square pyramid, point down, rotated by 30 degrees, without the rounding of its four edges."""
     turn = math.radians(30)
-    along, across = x * math.cos(turn) + y * math.sin(turn), y * math.cos(turn) - x * math.sin(turn)
+    along = at.x * math.cos(turn) + at.y * math.sin(turn)
+    across = at.y * math.cos(turn) - at.x * math.sin(turn)
     return _facet(np.maximum(np.abs(along), np.abs(across)), depth, 0.6)
 
 
@@ -269,41 +282,41 @@ def pyramid(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
 
 def _relief(strokes: Strokes) -> Body:
     """Return a body with raised strokes."""
-    return lambda x, y, depth: _ridge(strokes(x, y), depth, 0.055)
+    return lambda at, depth: _ridge(strokes(at), depth, 0.055)
 
 
 def _intaglio(strokes: Strokes) -> Body:
     """Return a disc with strokes cut into it."""
 
-    def body(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
-        disc = _ridge(np.maximum(np.hypot(x, y) - 0.34, 0), depth, 0.08)
-        return disc - _ridge(strokes(x, y), 0.7 * depth, 0.055)
+    def body(at: Places, depth: float) -> np.ndarray:
+        disc = _ridge(np.maximum(at.radius - 0.34, 0), depth, 0.08)
+        return disc - _ridge(strokes(at), 0.7 * depth, 0.055)
 
     return body
 
 
-def _outline(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+def _outline(at: Places) -> np.ndarray:
     """Return the distance from the outline of a star."""
-    return _strokes(x, y, _star(0.23, 0.105))
+    return at.strokes(_star(0.23, 0.105))
 
 
-def _cross(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+def _cross(at: Places) -> np.ndarray:
     """Return the distance from the two bars of a cross."""
     bars = ([(-0.2, -0.05), (0.2, 0.05)], [(0.05, -0.22), (-0.05, 0.22)])
-    return np.minimum(*(_strokes(x, y, bar) for bar in bars))
+    return np.minimum(*(at.strokes(bar) for bar in bars))
 
 
-def _letters(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+def _letters(at: Places) -> np.ndarray:
     """Return the distance from the strokes of the letters T and D."""
-    t = _strokes(x, y, [(-0.23, -0.13), (-0.05, -0.13), (-0.14, -0.13), (-0.14, 0.15)])
-    d = _strokes(x, y, [(0.06, 0.14), (0.06, -0.13), (0.14, -0.12), (0.2, 0.0), (0.14, 0.13), (0.06, 0.14)])
+    t = at.strokes([(-0.23, -0.13), (-0.05, -0.13), (-0.14, -0.13), (-0.14, 0.15)])
+    d = at.strokes([(0.06, 0.14), (0.06, -0.13), (0.14, -0.12), (0.2, 0.0), (0.14, 0.13), (0.06, 0.14)])
     return np.minimum(t, d)
 
 
-def seal(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+def seal(at: Places, depth: float) -> np.ndarray:
     """Draw a raised border around a slightly lower star."""
-    border = _ridge(_circle(x, y, 0.34), depth, 0.055)
-    return np.maximum(border, _ridge(_strokes(x, y, _star(0.25, 0.115)), 11 / 13 * depth, 0.048))
+    border = _ridge(np.abs(at.radius - 0.34), depth, 0.055)
+    return np.maximum(border, _ridge(at.strokes(_star(0.25, 0.115)), 11 / 13 * depth, 0.048))
 
 
 @dataclass(frozen=True)
@@ -336,40 +349,40 @@ BENCH = {
 """The 15 contacts of the bench by name: machined indenters, then seals."""
 
 
-# Scenes that are not a single body: functions from coordinates about the frame's middle to height, in frame widths.
+# Scenes that are not a single body: functions from places about the frame's middle to height, in frame widths.
 
 
-def flat(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+def flat(at: Places, depth: float) -> np.ndarray:
     """Draw no contact, without drift and dirt; only the camera adds noise."""
-    return np.zeros(np.broadcast_shapes(x.shape, y.shape))
+    return np.zeros_like(at.radius)
 
 
-def deep(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+def deep(at: Places, depth: float) -> np.ndarray:
     """Draw one dome as deep as the default depth range, a quarter of the grid; no real body has this shape."""
-    tip = (x[0, 1] - x[0, 0]) / 2  # puts the tip on a sample
-    return _ridge(np.hypot(x - tip, y - tip), depth, math.pi / 2 * depth / SLOPE_LIMIT)
+    tip = (at.x[0, 1] - at.x[0, 0]) / 2  # puts the tip on a sample
+    return _ridge(at.about(tip, tip).radius, depth, math.pi / 2 * depth / SLOPE_LIMIT)
 
 
 def _round(places: Sequence[tuple[float, float]], depth: float, edge_slope: float) -> Contact:
     """Return balls at places (x, y) whose contacts end with a slope at this depth."""
 
-    def body(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    def body(at: Places, depth: float) -> np.ndarray:
         radius = _cap_radius(depth, edge_slope)
-        return np.maximum.reduce([_cap(np.hypot(x - at, y - down), depth, radius) for at, down in places])
+        return np.maximum.reduce([_cap(at.about(*place).radius, depth, radius) for place in places])
 
     return Contact(body, depth)
 
 
-def large_letters(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+def large_letters(at: Places, depth: float) -> np.ndarray:
     """Draw the raised letters T and D."""
-    t = _strokes(x, y, [(-0.27, -0.16), (-0.05, -0.16), (-0.16, -0.16), (-0.16, 0.18)])
-    d = _strokes(x, y, [(0.07, 0.17), (0.07, -0.16), (0.16, -0.14), (0.23, 0.0), (0.16, 0.15), (0.07, 0.17)])
+    t = at.strokes([(-0.27, -0.16), (-0.05, -0.16), (-0.16, -0.16), (-0.16, 0.18)])
+    d = at.strokes([(0.07, 0.17), (0.07, -0.16), (0.16, -0.14), (0.23, 0.0), (0.16, 0.15), (0.07, 0.17)])
     return _ridge(np.minimum(t, d), depth, 0.058)
 
 
-def peg(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+def peg(at: Places, depth: float) -> np.ndarray:
     """Draw a peg on its side."""
-    return _cap(_strokes(x, y, [(-0.16, 0.1), (0.14, -0.12)]), depth, _cap_radius(depth, 0.9))
+    return _cap(at.strokes([(-0.16, 0.1), (0.14, -0.12)]), depth, _cap_radius(depth, 0.9))
 
 
 CONTACTS = {
@@ -397,9 +410,9 @@ SCENES: dict[str, dict[str, Contact]] = {
 
 def _draw(contact: Contact, size: int, depth: float | None, x: float, y: float) -> np.ndarray:
     """Return the height of a contact in frame widths, float64 (size + 1, size + 1)."""
-    at = (np.arange(size + 1) + 0.5) / size - 0.5
-    columns, rows = (at - contact.x - x)[None, :], (at - contact.y - y)[:, None]
-    return contact.body(columns, rows, contact.depth if depth is None else depth)
+    side = (np.arange(size + 1) + 0.5) / size - 0.5
+    at = Places(side[None, :], side[:, None]).about(contact.x, contact.y).about(x, y)
+    return contact.body(at, contact.depth if depth is None else depth)
 
 
 def dome(size: int, peak_px: float) -> np.ndarray:
