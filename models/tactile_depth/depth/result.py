@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from tactile_depth.base.by_value import ByValue
+from tactile_depth.base.npy import Codes, Flags, Floats
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.centroid import FRACTION
 from tactile_depth.chip.contact.contact_debounce import TOUCHING
@@ -19,7 +19,7 @@ from tactile_depth.chip.contact.contact_events import ContactEvents, Record, Set
 from tactile_depth.sensor.sensor import HeightError
 
 
-def steeper(slopes: np.ndarray, fitted_slope: float, dark: np.ndarray) -> npt.NDArray[np.bool_]:
+def steeper(slopes: np.ndarray, fitted_slope: float, dark: np.ndarray) -> Flags:
     """Return the pixels that are not dark, and whose slope (.., 2) is steeper than the fit of a calibration saw."""
     return ~dark & (np.hypot(slopes[..., 0], slopes[..., 1]) > fitted_slope)
 
@@ -46,7 +46,7 @@ class Contact(ByValue):
     """
 
     record: Record
-    mask: npt.NDArray[np.bool_]
+    mask: Flags
     untouched_mm: float
     depth_lsb_mm: float
     pixel_pitch_mm: float
@@ -209,11 +209,11 @@ class Result(ByValue):
         Width of a grid pixel over its height, `pixel_pitch_mm`.
     """
 
-    codes: npt.NDArray[np.int32]
-    depth_mm: npt.NDArray[np.float64]
-    slopes: npt.NDArray[np.float64]
-    dark: npt.NDArray[np.bool_]
-    light_gains: npt.NDArray[np.float64] | None
+    codes: Codes
+    depth_mm: Floats
+    slopes: Floats
+    dark: Flags
+    light_gains: Floats | None
     saturations: dict[str, int]
     recorder: Recorder
     depth_lsb_mm: float
@@ -280,12 +280,12 @@ class Result(ByValue):
         return self.threshold * self.depth_lsb_mm
 
     @cached_property
-    def mask(self) -> npt.NDArray[np.bool_]:
+    def mask(self) -> Flags:
         """Pixels whose depth is above the threshold, bool, as `codes`."""
         return self.codes > self.threshold
 
     @cached_property
-    def untouched_mm(self) -> npt.NDArray[np.float64]:
+    def untouched_mm(self) -> Floats:
         """Mean of the depths that are not above the threshold, of each frame, in mm; NaN without such a pixel."""
         untouched = ~self.mask
         count = untouched.sum(axis=(-2, -1))
@@ -294,12 +294,12 @@ class Result(ByValue):
         return np.where(count, total / np.maximum(count, 1), np.nan)
 
     @cached_property
-    def height_mm(self) -> npt.NDArray[np.float64]:
+    def height_mm(self) -> Floats:
         """Depth above the untouched surface: `depth_mm` minus `untouched_mm`."""
         return self.depth_mm - self.untouched_mm[..., None, None]
 
     @cached_property
-    def outside(self) -> npt.NDArray[np.bool_]:
+    def outside(self) -> Flags:
         """Pixels whose slope exceeds `fitted_slope`, bool, as `codes`."""
         return steeper(self.slopes, self.fitted_slope, self.dark)
 

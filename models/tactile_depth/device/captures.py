@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext, suppress
 
 import numpy as np
-import numpy.typing as npt
 
+from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.flat_field import pixel_gains
 from tactile_depth.chip.limits import LIGHT_GAIN
@@ -49,7 +49,7 @@ def held_light(line: Channel) -> Iterator[None]:
             write_words(line, [(LIGHT.name, light)])
 
 
-def gains_of(frames: npt.NDArray[np.uint8], reference: npt.NDArray[np.int64], config: Configuration) -> list[list[int]]:
+def gains_of(frames: Bytes, reference: np.ndarray, config: Configuration) -> list[list[int]]:
     """Return the light gains of pictures that stand for themselves, (pictures, 3).
 
     Parameters
@@ -64,9 +64,7 @@ def gains_of(frames: npt.NDArray[np.uint8], reference: npt.NDArray[np.int64], co
     return gains.tolist()
 
 
-def capture_of_pictures(
-    line: Channel, table: str, frames: npt.NDArray[np.uint8], gains: Sequence[Sequence[int]] | None = None
-) -> None:
+def capture_of_pictures(line: Channel, table: str, frames: Bytes, gains: Sequence[Sequence[int]] | None = None) -> None:
     """Capture a table from pictures that are sent, and wait until it is in use.
 
     Parameters
@@ -91,7 +89,7 @@ def _capture(
     line: Channel,
     exchange: Exchange,
     table: str,
-    frames: npt.NDArray[np.uint8],
+    frames: Bytes,
     gains: Sequence[Sequence[int]] | None,
 ) -> None:
     def untouched() -> None:
@@ -108,9 +106,7 @@ def _capture(
     wait_in_use(line, untouched)
 
 
-def _all_sent(
-    line: Channel, exchange: Exchange, frames: npt.NDArray[np.uint8], gains: Sequence[Sequence[int]] | None
-) -> bool:
+def _all_sent(line: Channel, exchange: Exchange, frames: Bytes, gains: Sequence[Sequence[int]] | None) -> bool:
     """Send the pictures of a capture; return False as soon as one gets lost."""
     for index, frame in enumerate(frames):
         if gains is not None:

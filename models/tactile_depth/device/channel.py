@@ -6,9 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
-import numpy as np
-import numpy.typing as npt
-
+from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.link.depth_frames import DepthFrame
 from tactile_depth.chip.link.packets import Status
 
@@ -77,7 +75,7 @@ class Channel(Protocol):
     def write(self, pairs: Sequence[tuple[int, int]]) -> int:
         """Write pairs of byte address and word, and return the number of those done: fewer if one was refused."""
 
-    def send(self, pixels: npt.NDArray[np.uint8]) -> None:
+    def send(self, pixels: Bytes) -> None:
         """Send a picture of the grid, uint8 (rows, columns, 3)."""
 
     def collect(self, on: bool) -> None:

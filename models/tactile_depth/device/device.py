@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import cast
 
 import numpy as np
-import numpy.typing as npt
 
 from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
+from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gains, require_light
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
@@ -95,7 +95,7 @@ class Device(AbstractContextManager["Device"]):
         self.registers: MutableMapping[str, int] = Registers(self._open_line)
         self._reader = Reader(pipeline.sensor, pipeline.grid)
         self._codes = {name: self._code(mm) for name, mm in _thresholds_of(pipeline).items()}
-        self._reference_gains: npt.NDArray[np.int64] | None = None  # of the device, if they are known
+        self._reference_gains: np.ndarray | None = None  # of the device, if they are known
         self._is_closed = False
         self._line: Channel | None = self._connect()
 
@@ -332,16 +332,14 @@ class Device(AbstractContextManager["Device"]):
     # Pictures.
 
     @property
-    def _untouched(self) -> npt.NDArray[np.uint8]:
+    def _untouched(self) -> Bytes:
         """Picture of the untouched sensor on the grid, uint8 (rows, columns, 3); grey for a pipeline without one."""
         reference = self.pipeline.sensor.reference
         if reference is None:
             return np.full((*self.pipeline.grid, 3), GREY, np.uint8)
         return reference.reshape(-1, *self.pipeline.grid, 3)[-1]
 
-    def _usable(
-        self, pictures: Pictures | Iterable[Picture], line: Channel
-    ) -> Iterator[tuple[int, npt.NDArray[np.uint8]]]:
+    def _usable(self, pictures: Pictures | Iterable[Picture], line: Channel) -> Iterator[tuple[int, Bytes]]:
         """Give pictures on the grid, each with its number; leave out and count what gives no right depth."""
         reference = self.pipeline.sensor.reference
         rest = None if reference is None else Rest.of(reference.reshape(-1, *self.pipeline.grid, 3))
@@ -357,7 +355,7 @@ class Device(AbstractContextManager["Device"]):
                 continue
             yield index, frame
 
-    def _on_grid(self, pictures: Pictures | Iterable[Picture]) -> Iterator[tuple[Part, npt.NDArray[np.uint8]]]:
+    def _on_grid(self, pictures: Pictures | Iterable[Picture]) -> Iterator[tuple[Part, Bytes]]:
         """Give pictures on the grid, each with its name; those of an iterable one by one."""
         if is_array(pictures) or isinstance(pictures, str | Path | Sequence) or not isinstance(pictures, Iterable):
             yield from self._reader.pictures(cast(Pictures, pictures), PICTURES)[0]

@@ -7,9 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 
-import numpy as np
-import numpy.typing as npt
-
+from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.link.depth_frames import NUMBERS
 from tactile_depth.device.channel import Arrival, Channel
 from tactile_depth.device.errors import DeviceError
@@ -35,7 +33,7 @@ class Exchange(AbstractContextManager["Exchange"]):
     def __exit__(self, *raised: object) -> None:
         self._line.collect(False)
 
-    def depth_of(self, pixels: npt.NDArray[np.uint8]) -> Arrival | None:
+    def depth_of(self, pixels: Bytes) -> Arrival | None:
         """Return the depth of a picture; None, and count it as lost, if a part of either got lost on the line.
 
         Parameters

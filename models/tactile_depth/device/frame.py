@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tactile_depth.base.by_value import ByValue
+from tactile_depth.base.npy import Codes, Flags, Floats
 from tactile_depth.chip.contact.contact_events import Record
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.depth.result import Contact, Recorder, Result
@@ -51,7 +52,7 @@ class DeviceFrame(ByValue):
         Rows and columns of the device, in whose pixels `record` counts.
     """
 
-    codes: npt.NDArray[np.int32]
+    codes: Codes
     record: Record
     number: int
     time_s: float
@@ -93,7 +94,7 @@ class DeviceFrame(ByValue):
         return self._result.height_mm.astype(np.float32)
 
     @property
-    def depth_mm(self) -> npt.NDArray[np.float64]:
+    def depth_mm(self) -> Floats:
         """Depth in mm, float64 (rows, columns)."""
         return self._result.depth_mm
 
@@ -108,7 +109,7 @@ class DeviceFrame(ByValue):
         return self._result.threshold_mm
 
     @property
-    def mask(self) -> npt.NDArray[np.bool_]:
+    def mask(self) -> Flags:
         """Pixels whose depth is above the threshold, bool (rows, columns)."""
         return self._result.mask
 

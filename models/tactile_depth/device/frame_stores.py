@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from tactile_depth.base.npy import Bytes, Codes
 from tactile_depth.chip.link.depth_formats import DepthFormat, from_bytes, value_bytes
 from tactile_depth.device import mapped_words
 from tactile_depth.device.errors import DeviceError
@@ -65,8 +65,8 @@ class FrameStores:
             raise
         self.addresses = [first + store * rows * self.stride for store in range(STORES)]
         whole = np.frombuffer(self._file.memory, np.uint8, size)
-        self._bytes: npt.NDArray[np.uint8] | None = whole.reshape(STORES, rows, self.stride)
-        self._marks: npt.NDArray[np.uint8] = np.zeros((STORES, 0), np.uint8)
+        self._bytes: Bytes | None = whole.reshape(STORES, rows, self.stride)
+        self._marks: Bytes = np.zeros((STORES, 0), np.uint8)
 
     def mark(self) -> None:
         """Write random bytes to the end of each store, which the VDMA must not write meanwhile."""
@@ -79,19 +79,19 @@ class FrameStores:
         """Stores whose end has been written since `mark`."""
         return np.flatnonzero((self._ends != self._marks).any(1)).tolist()
 
-    def codes(self, store: int) -> npt.NDArray[np.int32]:
+    def codes(self, store: int) -> Codes:
         """Return a copy of the codes of a store, int32 (rows, columns), in the order in which rows leave."""
         values = self._shown[store].copy()[:, : self.row_bytes]
         return from_bytes(values.tobytes(), self._value_bytes).reshape(len(values), -1)
 
     @property
-    def _shown(self) -> npt.NDArray[np.uint8]:
+    def _shown(self) -> Bytes:
         self._file.require_open()
         assert self._bytes is not None
         return self._bytes
 
     @property
-    def _ends(self) -> npt.NDArray[np.uint8]:
+    def _ends(self) -> Bytes:
         return self._shown[:, -1, max(self.row_bytes - MARK_BYTES, 0) : self.row_bytes]
 
     def close(self) -> None:

@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 from tactile_depth.base.errors import InputError
+from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.link.depth_formats import DepthFormat, exact_shift
 from tactile_depth.chip.link.depth_frames import DepthFrames
 from tactile_depth.chip.link.framing import to_line
@@ -286,7 +286,7 @@ class Line:
 
     # Pictures and frames.
 
-    def send(self, pixels: npt.NDArray[np.uint8]) -> None:
+    def send(self, pixels: Bytes) -> None:
         """Send a picture of the grid, uint8 (rows, columns, 3). Raises DeviceError if the line is gone."""
         self._picture = (self._picture + 1) % (1 << 32)
         for packet in _packets(self._picture, pixels):
@@ -361,7 +361,7 @@ class Line:
         self._transport.close()
 
 
-def _packets(number: int, pixels: npt.NDArray[np.uint8]) -> Iterator[Picture]:
+def _packets(number: int, pixels: Bytes) -> Iterator[Picture]:
     """Give the packets of a picture."""
     rows, columns, _ = pixels.shape
     data = np.ascontiguousarray(pixels).tobytes()

@@ -7,8 +7,8 @@ import time
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from tactile_depth.base.npy import Bytes, Codes
 from tactile_depth.chip.contact.contact_events import Record, record
 from tactile_depth.chip.link.depth_formats import DepthFormat
 from tactile_depth.chip.link.depth_frames import NUMBERS, RESETS, DepthFrame
@@ -212,7 +212,7 @@ class Uio:
 
     # Frames.
 
-    def send(self, pixels: npt.NDArray[np.uint8]) -> None:
+    def send(self, pixels: Bytes) -> None:
         """Raise DeviceError: this channel carries no pictures."""
         problem = "uio carries no pictures to the device: they come from its camera"
         raise DeviceError(problem, remedy="let the camera send pictures of the grid, and give none")
@@ -358,7 +358,7 @@ def _settle() -> None:
     time.sleep(SETTLE_S)
 
 
-def _fits(made: Record, codes: npt.NDArray[np.int32]) -> bool:
+def _fits(made: Record, codes: Codes) -> bool:
     """Return True if area and weight of a record are those of the codes."""
     above = codes[codes > made.area_threshold].astype(np.int64)
     return (above.size, int(above.sum()) - above.size * made.area_threshold) == (made.area, made.weight)

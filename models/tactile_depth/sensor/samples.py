@@ -5,11 +5,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-import numpy.typing as npt
-
 from tactile_depth.base.by_value import ByValue
 from tactile_depth.base.errors import Argument, one_of
+from tactile_depth.base.npy import Bytes, Floats
 from tactile_depth.sensor.scenes import BENCH, Press, render, scene_pixel_pitch_mm
 from tactile_depth.sensor.sensor import Camera, Sensor
 from tactile_depth.sensor.synthetic import synthetic
@@ -31,9 +29,9 @@ class Sample(ByValue):
     """
 
     sensor: Sensor
-    image: npt.NDArray[np.uint8]
-    reference: npt.NDArray[np.uint8]
-    height_mm: npt.NDArray[np.float64]
+    image: Bytes
+    reference: Bytes
+    height_mm: Floats
 
     def __repr__(self) -> str:
         rows, columns = self.height_mm.shape

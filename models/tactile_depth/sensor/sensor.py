@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tactile_depth.base import files
 from tactile_depth.base.by_value import ByValue
 from tactile_depth.base.errors import Argument, InputError, Part, is_number
+from tactile_depth.base.npy import Bytes, Floats
 from tactile_depth.chip.camera_configuration import FORMATS
 from tactile_depth.chip.limits import (
     COEFFICIENT_LIMITS,
@@ -132,19 +132,19 @@ class Sensor(ByValue):
     """
 
     name: str
-    gradient: npt.NDArray[np.float64] | None
+    gradient: Floats | None
     pixel_pitch_mm: float
-    coefficients: npt.NDArray[np.float64] | None = None
+    coefficients: Floats | None = None
     largest_slope: float = 0.0
     model: str = "lut"
-    reference: npt.NDArray[np.uint8] | None = None
+    reference: Bytes | None = None
     camera: Camera | None = None
     flat_field: bool | None = None
     fitted_slope: Mapping[str, float] = field(default_factory=dict)
     height_errors: Mapping[str, HeightError] = field(default_factory=dict)
-    lighting: npt.NDArray[np.float64] | None = None
-    cubic: npt.NDArray[np.float64] | None = None
-    corrections: npt.NDArray[np.float64] | None = None
+    lighting: Floats | None = None
+    cubic: Floats | None = None
+    corrections: Floats | None = None
     pixel_aspect: float = 1.0
 
     def __post_init__(self) -> None:

@@ -7,8 +7,8 @@ from enum import IntEnum
 from typing import Final, Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from tactile_depth.base.npy import Codes
 from tactile_depth.chip.common.td_round_saturate import round_saturate
 
 SHORT_BITS: Final = 16
@@ -60,7 +60,7 @@ def exact_shift(width: int) -> int:
     return max(width - SHORT_BITS, 0)
 
 
-def to_bytes(codes: npt.NDArray[np.int32], depth_format: DepthFormat, width: int, shift: int) -> bytes:
+def to_bytes(codes: Codes, depth_format: DepthFormat, width: int, shift: int) -> bytes:
     """Return the values that a device sends of a frame, one after another, little-endian.
 
     The 16-bit formats round half to even, once, and clip.
@@ -85,7 +85,7 @@ def to_bytes(codes: npt.NDArray[np.int32], depth_format: DepthFormat, width: int
     return round_saturate(wide, shift, SHORT_BITS).astype("<i2").tobytes()
 
 
-def from_bytes(values: bytes, count: int) -> npt.NDArray[np.int32]:
+def from_bytes(values: bytes, count: int) -> Codes:
     """Return the signed values (n,) of little-endian words of `count` bytes, 1 to 4."""
     wide = np.zeros((len(values) // count, 4), np.uint8)
     wide[:, 4 - count :] = np.frombuffer(values, np.uint8).reshape(-1, count)

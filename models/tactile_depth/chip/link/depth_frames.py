@@ -7,9 +7,9 @@ import zlib
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from tactile_depth.base.by_value import ByValue
+from tactile_depth.base.npy import Codes
 from tactile_depth.chip.contact.contact_events import Record
 from tactile_depth.chip.link.depth_formats import DepthFormat, from_bytes, sent_shape, value_bytes
 from tactile_depth.chip.link.packets import Depth, Packet, PacketReader, Status, Trailer
@@ -38,7 +38,7 @@ class DepthFrame(ByValue):
         The contact record, with the frame's number and time in the pipeline.
     """
 
-    codes: npt.NDArray[np.int32]
+    codes: Codes
     depth_format: DepthFormat
     shift: int
     number: int

@@ -8,9 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
+from tactile_depth.base.npy import Codes
 from tactile_depth.chip.contact.contact_events import Record
 from tactile_depth.chip.link.depth_formats import (
     VALUES_A_PACKET,
@@ -106,7 +104,7 @@ class LinkDevice:
         self._replies: list[ReadReply | WriteReply] = []  # to be sent
         self._record: Record | None = None  # to be sent
         self._depth_is_next = False
-        self._waiting: tuple[npt.NDArray[np.int32], Record] | None = None  # the newest frame
+        self._waiting: tuple[Codes, Record] | None = None  # the newest frame
         self._frame: _Frame | None = None
         self._position = 0  # of the next value of the frame
         self._picture: tuple[int, int, int] | None = None  # its number, and its next row and column
@@ -120,7 +118,7 @@ class LinkDevice:
 
     # Frames in.
 
-    def offer(self, codes: npt.NDArray[np.int32], record: Record) -> None:
+    def offer(self, codes: Codes, record: Record) -> None:
         """Take a whole frame of the pipeline. It replaces the frame, and the record, that still wait.
 
         Parameters
@@ -239,7 +237,7 @@ class LinkDevice:
         shape = frame.depth_format, frame.shift, rows, columns
         return Trailer(frame.number, self.resets, *shape, build.bottom_first, crc, frame.record)
 
-    def _begin(self, codes: npt.NDArray[np.int32], record: Record) -> None:
+    def _begin(self, codes: Codes, record: Record) -> None:
         depth_format, width = self._depth_format, self.build.data_width
         self.sent = (self.sent + 1) % (1 << 32)
         shift = 0 if depth_format == DepthFormat.WORDS else self._shift
