@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
+import math
 import os
 import platform
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +24,7 @@ NOT_CACHED, SYNC_MODES = 1, 3  # a value of sync_mode, and its bits without that
 ADDRESS_BITS = 32
 
 
-class FrameStores:
+class FrameStores(MappedFile):
     """Three frames of depth codes in a buffer. They hold words of `m_axis`: as many bytes a value, little-endian.
 
     Parameters
@@ -54,18 +54,16 @@ class FrameStores:
         self._value_bytes = value_bytes(DepthFormat.WORDS, width)
         self.row_bytes = columns * self._value_bytes
         self.stride = -(-self.row_bytes // ALIGNED) * ALIGNED
-        size = STORES * rows * self.stride
+        self._shape = STORES, rows, self.stride
+        size = math.prod(self._shape)
         folder = _folder_of(path)
-        region = None if folder is None else number_in(folder / "size")
-        self._file = MappedFile(path, size, region, f"a buffer of {STORES} frames")
+        super().__init__(path, size, number_in(folder / "size"), f"a buffer of {STORES} frames")
         try:
             first = _physical_address(path, folder, size)
         except BaseException:
-            self._file.close()
+            self.close()
             raise
         self.addresses = [first + store * rows * self.stride for store in range(STORES)]
-        whole = np.frombuffer(self._file.memory, np.uint8, size)
-        self._bytes: Bytes | None = whole.reshape(STORES, rows, self.stride)
         self._marks: Bytes = np.zeros((STORES, 0), np.uint8)
 
     def mark(self) -> None:
@@ -86,30 +84,23 @@ class FrameStores:
 
     @property
     def _shown(self) -> Bytes:
-        self._file.require_open()
-        assert self._bytes is not None
-        return self._bytes
+        return np.frombuffer(self.memory, np.uint8, math.prod(self._shape)).reshape(self._shape)
 
     @property
     def _ends(self) -> Bytes:
         return self._shown[:, -1, max(self.row_bytes - MARK_BYTES, 0) : self.row_bytes]
 
-    def close(self) -> None:
-        """Free the buffer; closing twice does nothing."""
-        self._bytes = None
-        self._file.close()
+
+def _folder_of(path: str) -> Path:
+    """Return the folder of a buffer in sysfs; without one, where it would be."""
+    folders = [mapped_words.SYSFS / name / name_of(path) for name in CLASSES]
+    return next((folder for folder in folders if folder.is_dir()), folders[0])
 
 
-def _folder_of(path: str) -> Path | None:
-    """Return the folder of a buffer in sysfs; None without one."""
-    folders: Sequence[Path] = [mapped_words.SYSFS / name / name_of(path) for name in CLASSES]
-    return next((folder for folder in folders if folder.is_dir()), None)
-
-
-def _physical_address(path: str, folder: Path | None, size: int) -> int:
+def _physical_address(path: str, folder: Path, size: int) -> int:
     """Return where a buffer lies. Raises DeviceError for one that a VDMA cannot write or this program cannot copy."""
-    address = None if folder is None else number_in(folder / "phys_addr")
-    if folder is None or address is None:
+    address = number_in(folder / "phys_addr")
+    if address is None:
         place = f"{mapped_words.SYSFS / CLASSES[0] / name_of(path)}/phys_addr"
         raise DeviceError(f"{place} does not say where {path} lies", remedy="give a buffer of the driver u-dma-buf")
     if address + size > 1 << ADDRESS_BITS:

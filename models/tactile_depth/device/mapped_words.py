@@ -52,36 +52,30 @@ class MappedFile:
             raise DeviceError("uio is a transport of Linux", remedy="run this on the Zynq, or use a serial line")
         import fcntl
 
-        self.path, self._descriptor = path, -1
-        self._map: mmap.mmap | None = None
+        self.path = path
         try:
-            self._descriptor = os.open(path, os.O_RDWR | os.O_SYNC | os.O_CLOEXEC)  # O_SYNC: not cached
-            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            status = os.fstat(self._descriptor)
-            if stat.S_ISREG(status.st_mode):
-                region = status.st_size if region is None else min(region, status.st_size)
-            if region is not None and region < size:
-                raise DeviceError(f"{path} has {region} bytes, but {what} needs {size}", remedy=LARGER)
-            length = -(-size // mmap.PAGESIZE) * mmap.PAGESIZE
-            self._map = mmap.mmap(self._descriptor, length if region is None else min(length, region))
+            descriptor = os.open(path, os.O_RDWR | os.O_SYNC | os.O_CLOEXEC)  # O_SYNC: not cached
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                status = os.fstat(descriptor)
+                if stat.S_ISREG(status.st_mode):
+                    region = status.st_size if region is None else min(region, status.st_size)
+                if region is not None and region < size:
+                    raise DeviceError(f"{path} has {region} bytes, but {what} needs {size}", remedy=LARGER)
+                length = -(-size // mmap.PAGESIZE) * mmap.PAGESIZE
+                mapped = mmap.mmap(descriptor, length if region is None else min(length, region))
+                self._map: mmap.mmap | None = mapped  # keeps the file open, and locked
+            finally:
+                os.close(descriptor)
         except OSError as error:
-            self.close()
             raise _not_opened(path, what, error) from error
-        except BaseException:
-            self.close()
-            raise
 
     @property
     def memory(self) -> mmap.mmap:
         """Bytes of the file. Raises DeviceError if it is closed."""
-        self.require_open()
-        assert self._map is not None
-        return self._map
-
-    def require_open(self) -> None:
-        """Raise DeviceError if the file is closed."""
         if self._map is None:
             raise DeviceError(f"{self.path} is closed", remedy="open the device with Device(..)")
+        return self._map
 
     def close(self) -> None:
         """Free the file; closing twice does nothing."""
@@ -89,24 +83,17 @@ class MappedFile:
         if mapped is not None:
             with contextlib.suppress(BufferError):  # an array still shows it
                 mapped.close()
-        descriptor, self._descriptor = self._descriptor, -1
-        if descriptor >= 0:
-            os.close(descriptor)
 
 
-class MappedWords:
+class MappedWords(MappedFile):
     """32-bit registers of a file of the driver uio, each accessed as one aligned word.
 
     For parameters and errors see `MappedFile`.
     """
 
     def __init__(self, path: str, size: int, what: str) -> None:
-        self._file = MappedFile(path, size, number_in(SYSFS / "uio" / name_of(path) / "maps/map0/size"), what)
-        self._words: memoryview | None = memoryview(self._file.memory)[: size // WORD_BYTES * WORD_BYTES].cast("I")
-
-    @property
-    def path(self) -> str:
-        return self._file.path
+        super().__init__(path, size, number_in(SYSFS / "uio" / name_of(path) / "maps/map0/size"), what)
+        self._words = memoryview(self.memory)[: size // WORD_BYTES * WORD_BYTES].cast("I")
 
     def read(self, offset: int) -> int:
         """Return the word at a byte offset. Raises DeviceError if the file is closed."""
@@ -118,16 +105,13 @@ class MappedWords:
 
     @property
     def _open(self) -> memoryview:
-        self._file.require_open()
-        assert self._words is not None
+        _ = self.memory
         return self._words
 
     def close(self) -> None:
         """Free the file; closing twice does nothing."""
-        words, self._words = self._words, None
-        if words is not None:
-            words.release()
-        self._file.close()
+        self._words.release()
+        super().close()
 
 
 def name_of(path: str) -> str:

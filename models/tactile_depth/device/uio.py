@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from contextlib import ExitStack
 
 import numpy as np
 
@@ -88,27 +89,24 @@ class Uio:
 
     def __init__(self, registers: str, vdma: str, buffer: str) -> None:
         self.delivered = self.lost = 0
-        self._opened: list[MappedWords | FrameStores] = []
-        self._vdma: Vdma | None = None
-        try:
+        with ExitStack() as opened:
             self._words = MappedWords(registers, REGISTER_BYTES, "the registers of the device")
-            self._opened.append(self._words)
+            opened.callback(self._words.close)
             self._read_build()
             vdma_words = MappedWords(vdma, SPAN, "the registers of the VDMA")
-            self._opened.append(vdma_words)
+            opened.callback(vdma_words.close)
             self._stores = FrameStores(buffer, self._rows, self._columns, self._data_width)
-            self._opened.append(self._stores)
+            opened.callback(self._stores.close)
             sizes = self._rows, self._stores.row_bytes, self._stores.stride
             self._vdma = Vdma(vdma_words, *sizes, self._stores.addresses)
+            opened.callback(self._vdma.stop)  # first: it must not write into a buffer that is not there any more
             self._resets = self._restarts = self._misses = 0
             self._number = self._seen = self._word(NUMBER)
             self._is_set = self._thresholds_are_set()
             self._done = self._number  # the last frame that is delivered, lost or not wanted
             self._collects = self._is_fresh = False  # fresh: no frame was delivered yet
             self._start()
-        except BaseException:
-            self.close()
-            raise
+            self._opened = opened.pop_all()
 
     def _read_build(self) -> None:
         """Read what the device is. Raises DeviceError if that is no tactile_depth."""
@@ -116,18 +114,21 @@ class Uio:
         if word != REGISTERS["ID"].reset:
             problem = f"{path} has the ID {word:#010x}, and no tactile_depth"
             raise DeviceError(problem, remedy="give its registers first: uio:REGISTERS,VDMA,BUFFER")
-        grid, layout = (REGISTERS[name].unpack(self._word(name)) for name in ("GRID", "FORMAT"))
+        grid, layout = self._fields("GRID"), self._fields("FORMAT")
         self._rows, self._columns, self._data_width = grid["rows"], grid["columns"], layout["data_width"]
         sides_are_right = all(1 <= side <= LARGEST_GRID for side in (self._rows, self._columns))
         if not sides_are_right or not 1 <= self._data_width <= WORD_BITS:
             problem = f"{path} reads GRID {self._word('GRID'):#010x} and FORMAT {self._word('FORMAT'):#010x}"
             raise DeviceError(problem, remedy="check its address in the device tree, its clock and its reset")
-        self._bottom_first = bool(REGISTERS["DEVICE"].unpack(self._word("DEVICE"))["solver"])
+        self._bottom_first = bool(self._fields("DEVICE")["solver"])
 
     # Registers.
 
     def _word(self, name: str) -> int:
         return self._words.read(REGISTERS[name].offset)
+
+    def _fields(self, name: str) -> dict[str, int]:
+        return REGISTERS[name].unpack(self._word(name))
 
     def read(self, addresses: Sequence[int]) -> list[int]:
         """Return the words of registers at byte addresses, up to the first that the device would refuse."""
@@ -165,9 +166,9 @@ class Uio:
 
     def _is_closed(self) -> bool:
         """Return True if the table that is selected waits for a frame, or is captured."""
-        code = REGISTERS["TABLE_SELECT"].unpack(self._word("TABLE_SELECT"))["select"]
+        code = self._fields("TABLE_SELECT")["select"]
         captures = [register for table, register in CAPTURES.items() if TABLES[table] == code]
-        busy = any(register.unpack(self._word(register.name))["busy"] for register in captures)
+        busy = any(self._fields(register.name)["busy"] for register in captures)
         return busy or bool(self._word(COMMIT.name) >> code & 1)
 
     def _refuses_capture(self, name: str, word: int) -> bool:
@@ -175,10 +176,10 @@ class Uio:
         table = next((table for table, register in CAPTURES.items() if register.name == name), None)
         if table is None or not word & CAPTURES[table].field("start").mask:
             return False
-        build = REGISTERS["DEVICE"].unpack(self._word("DEVICE"))
+        build = self._fields("DEVICE")
         if table == "reference":
             return not build["flat_field"]
-        return not build["zero_offset"] or bool(COMMIT.unpack(self._word(COMMIT.name))["zero"])
+        return not build["zero_offset"] or bool(self._fields(COMMIT.name)["zero"])
 
     # Resets.
 
@@ -252,7 +253,6 @@ class Uio:
 
     def _start(self) -> None:
         """Start the VDMA with marked stores: `_find` then sees which of them it writes first."""
-        assert self._vdma is not None
         self._vdma.stop()
         self._stores.mark()
         self._first: tuple[int, int] | None = None  # number and store of a frame
@@ -269,7 +269,6 @@ class Uio:
 
     def _find(self) -> None:
         """Find the store of the first frame since the start, and its number."""
-        assert self._vdma is not None
         written = self._stores.written
         if not written:
             passed = (self._word(NUMBER) - self._begun) % NUMBERS
@@ -331,7 +330,6 @@ class Uio:
 
     def _fails(self) -> bool:
         """Return True, and start anew, if numbers may not tell the stores any more."""
-        assert self._vdma is not None
         trouble = self._vdma.trouble
         if trouble:
             self._restart(f"the VDMA has errors: {trouble}")
@@ -343,14 +341,7 @@ class Uio:
 
     def close(self) -> None:
         """Stop the VDMA and free the files; closing twice does nothing."""
-        vdma, self._vdma = self._vdma, None
-        try:
-            if vdma is not None:
-                vdma.stop()  # it must not write into a buffer that is not there any more
-        finally:
-            for file in reversed(self._opened):
-                file.close()
-            self._opened.clear()
+        self._opened.close()
 
 
 def _settle() -> None:
