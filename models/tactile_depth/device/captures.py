@@ -82,38 +82,28 @@ def capture_of_pictures(line: Channel, table: str, frames: Bytes, gains: Sequenc
         Too many pictures get lost, or the device does not answer.
     """
     with Exchange(line) as exchange:
-        _capture(line, exchange, table, frames, gains)
 
+        def untouched() -> None:
+            exchange.depth_of(frames[0])
 
-def _capture(
-    line: Channel,
-    exchange: Exchange,
-    table: str,
-    frames: Bytes,
-    gains: Sequence[Sequence[int]] | None,
-) -> None:
-    def untouched() -> None:
-        exchange.depth_of(frames[0])
+        def all_sent() -> bool:
+            """Send the pictures; return False as soon as one gets lost."""
+            for index, frame in enumerate(frames):
+                if gains is not None:
+                    write_gains(line, gains[index])
+                if exchange.depth_of(frame) is None:
+                    return False
+            return True
 
-    with held_light(line) if gains is not None else nullcontext():
-        for _ in range(ATTEMPTS):
-            wait_in_use(line, untouched)
-            _start(line, table, len(frames))
-            if _all_sent(line, exchange, frames, gains) and _has_ended(line, table):
-                break
-        else:
-            raise DeviceError(f"{ATTEMPTS} captures lost pictures on the line", remedy="check cable and baud rate")
-    wait_in_use(line, untouched)
-
-
-def _all_sent(line: Channel, exchange: Exchange, frames: Bytes, gains: Sequence[Sequence[int]] | None) -> bool:
-    """Send the pictures of a capture; return False as soon as one gets lost."""
-    for index, frame in enumerate(frames):
-        if gains is not None:
-            write_gains(line, gains[index])
-        if exchange.depth_of(frame) is None:
-            return False
-    return True
+        with held_light(line) if gains is not None else nullcontext():
+            for _ in range(ATTEMPTS):
+                wait_in_use(line, untouched)
+                _start(line, table, len(frames))
+                if all_sent() and _has_ended(line, table):
+                    break
+            else:
+                raise DeviceError(f"{ATTEMPTS} captures lost pictures on the line", remedy="check cable and baud rate")
+        wait_in_use(line, untouched)
 
 
 def capture_of_camera(line: Channel, table: str, count: int, give_picture: Callable[[], None]) -> None:

@@ -94,7 +94,8 @@ class Device(AbstractContextManager["Device"]):
         self.address, self.pipeline, self.depth_format = address, pipeline, depth_format
         self.registers: MutableMapping[str, int] = Registers(self._open_line)
         self._reader = Reader(pipeline.sensor, pipeline.grid)
-        self._codes = {name: self._code(mm) for name, mm in _thresholds_of(pipeline).items()}
+        depths_mm = pipeline.threshold_mm, pipeline.threshold_mm, pipeline.area_threshold_mm
+        self._codes = dict(zip(THRESHOLDS, map(self._code, depths_mm), strict=True))
         self._reference_gains: np.ndarray | None = None  # of the device, if they are known
         self._is_closed = False
         self._line: Channel | None = self._connect()
@@ -212,10 +213,9 @@ class Device(AbstractContextManager["Device"]):
         DeviceError
         """
         release_mm = touch_mm if release_mm is None else release_mm
-        given = {"THRESHOLD": ("touch_mm", touch_mm), "OFF_THRESHOLD": ("release_mm", release_mm)}
-        given["AREA_THRESHOLD"] = ("area_mm", area_mm)
+        given = {"touch_mm": touch_mm, "release_mm": release_mm, "area_mm": area_mm}
         codes = dict(self._codes)
-        for register, (name, depth_mm) in given.items():
+        for register, (name, depth_mm) in zip(THRESHOLDS, given.items(), strict=True):
             if depth_mm is None:
                 continue
             lowest_mm = self.pipeline.depth_lsb_mm if name == "touch_mm" else 0.0
@@ -261,11 +261,11 @@ class Device(AbstractContextManager["Device"]):
             problem = ": without pictures" if pictures is None else ": the reference of the device is not known"
             remedy = "give pictures" if pictures is None else "call load() first, or capture_reference(pictures)"
             raise InputError(Argument("stream", stream), problem, remedy=remedy)
-        if pictures is None:
-            yield from self._depth_of_camera()
-            return
         with ExitStack() as stack:
             line = stack.enter_context(self._open_line())
+            if pictures is None:
+                yield from (self._frame(arrival, None) for arrival in camera_frames(line))
+                return
             exchange = stack.enter_context(Exchange(line))
             if has_gains and not stream:
                 stack.enter_context(captures.held_light(line))
@@ -363,11 +363,6 @@ class Device(AbstractContextManager["Device"]):
         for index, picture in enumerate(pictures):
             yield from self._reader.pictures(picture, f"picture {index}")[0]
 
-    def _depth_of_camera(self) -> Iterator[DeviceFrame]:
-        with self._open_line() as line:
-            for arrival in camera_frames(line):
-                yield self._frame(arrival, None)
-
     def _capture_of_camera(self, table: str, count: int, largest_log2: int) -> None:
         accepted = [1 << power for power in range(largest_log2 + 1)]
         if count not in accepted:
@@ -377,7 +372,7 @@ class Device(AbstractContextManager["Device"]):
 
     def _frame(self, arrival: Arrival, picture: int | None) -> DeviceFrame:
         pipeline, frame = self.pipeline, arrival.frame
-        recorder = Recorder.of(pipeline.config, *(self._codes[name] for name in THRESHOLDS))
+        recorder = Recorder.of(pipeline.config, *self._codes.values())
         pitch_mm = span_of(frame.depth_format) * pipeline.pixel_pitch_mm
         units = pipeline.depth_lsb_mm, pitch_mm, pipeline.sensor.pixel_aspect
         counts = frame.number, arrival.time_s, arrival.lost
@@ -393,9 +388,3 @@ class Device(AbstractContextManager["Device"]):
     def _limit_mm(self) -> float:
         """Largest depth code in mm."""
         return ((1 << self.pipeline.config.depth.width - 1) - 1) * self.pipeline.depth_lsb_mm
-
-
-def _thresholds_of(pipeline: Pipeline) -> dict[str, float]:
-    """Return the depth in mm of each register of a threshold."""
-    depths_mm = pipeline.threshold_mm, pipeline.threshold_mm, pipeline.area_threshold_mm
-    return dict(zip(THRESHOLDS, depths_mm, strict=True))
