@@ -302,7 +302,10 @@ def _fit_models(
         corrections=corrections,
         pixel_aspect=presses.aspect,
     )
-    return sensor if corrections is None else replace(sensor, corrections=_as_stored(corrections, sensor))
+    if corrections is None:
+        return sensor
+    limit = sensor.gradient_limit  # the hardware holds corrections in 8 bits of half the largest slope
+    return replace(sensor, corrections=correction_units(corrections, limit) * correction_unit(limit))
 
 
 # Polynomials.
@@ -332,12 +335,6 @@ def _cubic(views: Sequence[View], equations: Sequence[Equations]) -> tuple[np.nd
     )
     limit = np.abs(corrections[tuple(np.unique(seen, axis=0).T)]).max(axis=0)
     return solution[:, :count].reshape(CUBIC), corrections.clip(-limit, limit)
-
-
-def _as_stored(corrections: np.ndarray, sensor: Sensor) -> np.ndarray:
-    """Return corrections as the hardware holds them, in 8 bits of half the largest slope."""
-    limit = sensor.gradient_limit
-    return correction_units(corrections, limit) * correction_unit(limit)
 
 
 def _equations(view: View, pitch_mm: float, model: str) -> Equations:
@@ -410,7 +407,8 @@ class TableSums:
 
 def _table_sums(view: View, bits: int) -> TableSums:
     entries = 1 << 3 * bits
-    index, truth, distance = _bins_of(view.codes, bits), view.press.slopes(view.grid), view.press.distance(view.grid)
+    index = np.ravel_multi_index(tuple(np.moveaxis(view.codes >> 8 - bits, -1, 0)), (1 << bits,) * 3)
+    truth, distance = view.press.slopes(view.grid), view.press.distance(view.grid)
     powers = _colour_powers(view.codes / FLAT_CODE - 1, PRIOR_DEGREES)
     inside = distance < FITTED_SHARE
     regions = (inside, distance > NOTHING_TOUCHES)
@@ -456,9 +454,3 @@ def _colour_powers(colours: np.ndarray, degrees: Iterable[int]) -> np.ndarray:
         for which in combinations_with_replacement(range(3), degree)
     ]
     return np.stack(products, axis=-1)
-
-
-def _bins_of(codes: np.ndarray, bits: int) -> np.ndarray:
-    """Return the index of each pixel's bin in the flattened table: uint8 (..., 3) to int64 (...)."""
-    red, green, blue = np.moveaxis(codes >> (8 - bits), -1, 0)
-    return np.ravel_multi_index((red, green, blue), (1 << bits,) * 3)

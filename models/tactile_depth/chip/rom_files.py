@@ -101,15 +101,6 @@ def write_direction(folder: Path, size: int, paths: int, inverse: bool, width: i
     write_wide_factors(folder / f"wide_phase_{direction}.hex", phases, width)
 
 
-def write_wide_transform(folder: Path, size: int, words_down: int, words_up: int, width: int) -> None:
-    """Write the ROMs of wide_dst_forward and wide_dst_inverse: `words_down` and `words_up` words per cycle.
-
-    The inverse has half as many paths as words, because it transforms two rows at once.
-    """
-    write_direction(folder, size, words_down, False, width)
-    write_direction(folder, size, words_up // 2, True, width)
-
-
 def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
     """Write slope codes (bins, 2) as gradient_lookup.sv reads them: {gy, gx}."""
     write_words(path, pack((codes[:, 1], codes[:, 0]), width), 2 * width)
@@ -182,7 +173,9 @@ def write_wide_thomas(folder: Path, config: Configuration) -> None:
 def write_solver(folder: Path, config: Configuration) -> None:
     """Write the ROMs of the solver."""
     if config.lanes > 1:
-        write_wide_transform(folder, config.columns, config.down_words, config.lanes, config.coefficient.width)
+        write_direction(folder, config.columns, config.down_words, False, config.coefficient.width)
+        # The inverse has half as many paths as words, because it transforms two rows at once.
+        write_direction(folder, config.columns, config.lanes // 2, True, config.coefficient.width)
         write_wide_thomas(folder, config)
         return
     write_transform(folder, config.columns, config.coefficient.width)

@@ -99,7 +99,9 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     load_rerun()  # its absence is told before anything is captured
     reference = None if options.reference == CAPTURE else read_reference(options.reference)
     with ExitStack() as stack:
-        source = stack.enter_context(Source(options.pictures or options.source)) if has_pictures(options) else None
+        source = None
+        if address is None or options.pictures is not None:
+            source = stack.enter_context(Source(options.pictures or options.source))
         key = stack.enter_context(pressed_keys())
         counts = Counts() if source is None else source.counts
         began = time.monotonic()
@@ -156,11 +158,6 @@ def device_of(options: argparse.Namespace) -> str | None:
             "--calibration NAME_OR_FILE"
         )
     return address
-
-
-def has_pictures(options: argparse.Namespace) -> bool:
-    """Return True if this command reads the pictures, False if a device's own camera takes them."""
-    return options.pictures is not None or not options.source.startswith(DEVICE)
 
 
 def of_pictures(

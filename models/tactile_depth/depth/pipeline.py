@@ -43,7 +43,6 @@ Arithmetic = Literal["chip", "float"]
 THRESHOLD_MM, AREA_THRESHOLD_MM = 0.1, 0.3  # of a contact
 THRESHOLDS = {"THRESHOLD": "on_threshold", "AREA_THRESHOLD": "area_threshold"}  # fields of Settings, by register
 PICTURES, REFERENCE = Argument("pictures"), Argument("reference")
-PIXELS_AT_ONCE = 1 << 16  # pixels of a batch of frames, whose arrays stay in a cache
 
 
 def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]:

@@ -62,7 +62,11 @@ class Exchange(AbstractContextManager["Exchange"]):
             if self._is_missing(lost):
                 self._missed += 1
                 if self._missed == MISSED:
-                    raise self._lossy()
+                    counts = (
+                        f"{line.bad_packets} broken packets came to this host, {line.status.bad_packets} to the device"
+                    )
+                    problem = f"{MISSED} pictures in a row gave no depth: {counts}"
+                    raise DeviceError(problem, remedy="check cable and baud rate")
                 return None
         remedy = "reset the device, then call load()"
         raise DeviceError(f"the depth of a picture has not come in {limit_s:.1f} s", remedy=remedy)
@@ -85,11 +89,6 @@ class Exchange(AbstractContextManager["Exchange"]):
         words = read_words(self._line, ["RECORD_FRAME", "FRAMES_IN"])
         return words["RECORD_FRAME"], words["FRAMES_IN"]
 
-    def _lossy(self) -> DeviceError:
-        line = self._line
-        counts = f"{line.bad_packets} broken packets came to this host, {line.status.bad_packets} to the device"
-        return DeviceError(f"{MISSED} pictures in a row gave no depth: {counts}", remedy="check cable and baud rate")
-
 
 def camera_frames(line: Channel) -> Iterator[Arrival]:
     """Give the depth frames of the device's camera as they come.
@@ -101,26 +100,22 @@ def camera_frames(line: Channel) -> Iterator[Arrival]:
     """
     line.collect(True)
     try:
-        yield from _camera_frames(line)
+        patience_s = line.depth_s + CAMERA_S
+        last, bad = time.monotonic(), line.bad_packets
+        while True:
+            line.check()
+            arrival = line.frame(patience_s, line.lost)
+            if arrival is not None:
+                yield arrival
+                last, bad = time.monotonic(), line.bad_packets
+            elif time.monotonic() - last > patience_s:
+                line.ask()
+                if line.bad_packets != bad:
+                    problem = (
+                        f"no depth frame came whole in {patience_s:.1f} s: {line.bad_packets - bad} packets are broken"
+                    )
+                    raise DeviceError(problem, remedy="check cable and baud rate")
+                problem = f"the device has sent no depth for {patience_s:.1f} s"
+                raise DeviceError(problem, remedy="let its camera send pictures of its grid, or give pictures")
     finally:
         line.collect(False)
-
-
-def _camera_frames(line: Channel) -> Iterator[Arrival]:
-    patience_s = line.depth_s + CAMERA_S
-    last, bad = time.monotonic(), line.bad_packets
-    while True:
-        line.check()
-        arrival = line.frame(patience_s, line.lost)
-        if arrival is not None:
-            yield arrival
-            last, bad = time.monotonic(), line.bad_packets
-        elif time.monotonic() - last > patience_s:
-            line.ask()
-            if line.bad_packets != bad:
-                problem = (
-                    f"no depth frame came whole in {patience_s:.1f} s: {line.bad_packets - bad} packets are broken"
-                )
-                raise DeviceError(problem, remedy="check cable and baud rate")
-            problem = f"the device has sent no depth for {patience_s:.1f} s"
-            raise DeviceError(problem, remedy="let its camera send pictures of its grid, or give pictures")

@@ -116,16 +116,13 @@ class Line:
                 return
             if data:
                 with self._changed:
-                    self._feed(data)
+                    self._bytes += len(data)
+                    try:
+                        for packet in self._frames.reader.feed(data):
+                            self._take(packet)
+                    except InputError as error:  # another version of the link
+                        self._trouble = error
                     self._changed.notify_all()
-
-    def _feed(self, data: bytes) -> None:
-        self._bytes += len(data)
-        try:
-            for packet in self._frames.reader.feed(data):
-                self._take(packet)
-        except InputError as error:  # another version of the link
-            self._trouble = error
 
     def _take(self, packet: Packet) -> None:
         frame = self._frames.take(packet)
@@ -210,10 +207,11 @@ class Line:
             It does not answer.
         """
         before = self._statuses
-        return self._repeat(to_line(Ask().pack()), lambda: self._status_after(before), "a request of its status")
 
-    def _status_after(self, count: int) -> Status | None:
-        return self._frames.status if self._statuses > count else None
+        def status() -> Status | None:
+            return self._frames.status if self._statuses > before else None
+
+        return self._repeat(to_line(Ask().pack()), status, "a request of its status")
 
     def _select(self) -> None:
         """Select the format of depth, and watch for resets from then on."""

@@ -272,8 +272,9 @@ class Uio:
         written = self._stores.written
         if not written:
             passed = (self._word(NUMBER) - self._begun) % NUMBERS
-            if self._vdma.is_halted or passed > STORES:
-                problem = f"{passed} frames passed, and none reached the buffer: {self._vdma.trouble or 'no error'}"
+            trouble = self._vdma.trouble
+            if trouble.endswith("halted") or passed > STORES:
+                problem = f"{passed} frames passed, and none reached the buffer: {trouble or 'no error'}"
                 self._restart(problem, "connect m_axis to the VDMA, and map the buffer without cache: docs/cable.md")
             return
         _settle()

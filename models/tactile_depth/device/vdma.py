@@ -108,10 +108,6 @@ class Vdma:
         names = [name for bit, name in ERRORS.items() if status >> bit & 1]
         return ", ".join([*names, *(["halted"] if status & HALTED else [])])
 
-    @property
-    def is_halted(self) -> bool:
-        return bool(self._words.read(STATUS) & HALTED)
-
     def clear(self) -> None:
         """Clear the errors."""
         self._words.write(STATUS, CLEARED)

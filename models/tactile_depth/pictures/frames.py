@@ -232,7 +232,8 @@ def read_pictures(
     except OSError as error:
         raise InputError(f"{name or source}: {error.strerror}: give a file or a folder") from error
     if folder:
-        files = sorted(filter(_is_picture, listed), key=_natural)
+        pictures = (each for each in listed if each.suffix.lower() in PICTURE_SUFFIXES)
+        files = sorted((each for each in pictures if not each.name.startswith(APPLE_DOUBLE)), key=_natural)
         if not files:
             raise InputError(f"{name or source}: a folder without any PNG or JPEG: accepted is {accepted}")
         return tuple(p.name for p in files), map(read_picture, files)
@@ -332,10 +333,6 @@ def _read_array(path: Path) -> np.ndarray:
         raise
     except Exception as error:  # numpy raises many kinds of errors for a damaged header
         raise InputError(f"{path}: not a readable .npy ({_line(error)}): write it with numpy.save") from error
-
-
-def _is_picture(path: Path) -> bool:
-    return path.suffix.lower() in PICTURE_SUFFIXES and not path.name.startswith(APPLE_DOUBLE)
 
 
 def _natural(path: Path) -> list[tuple[int, str]]:

@@ -136,15 +136,11 @@ def _other_pattern(blocks: np.ndarray, rest: np.ndarray, name: Part) -> list[Dou
             raise UnusablePicture(name, f": {exchange}, by its reference", remedy=CORRECT_IT)
     if bands.max() > BAND_DIFFERS and _is_torn(blocks, rest, difference, bands):
         raise UnusablePicture(name, ": it is torn, rows are shifted against its reference", remedy=COMPLETE)
-    if differs > PATTERN_DOUBTFUL and _is_no_light(difference):
+    # Light that changes across the picture is another doubt.
+    if differs > PATTERN_DOUBTFUL and median(np.abs(difference - smooth(difference, 2, rounds=6))) > PATTERN_DIFFERS:
         text = f": it differs by {100 * differs:.0f} % from its reference in more than half of its area"
         return [doubt("pattern", name, text, remedy=OTHER_SENSOR)]
     return []
-
-
-def _is_no_light(difference: np.ndarray) -> bool:
-    """Return True if differences are not explained by light that changes across the picture."""
-    return median(np.abs(difference - smooth(difference, degree=2, rounds=6))) > PATTERN_DIFFERS
 
 
 def _bands(difference: np.ndarray) -> np.ndarray:

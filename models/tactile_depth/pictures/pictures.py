@@ -44,7 +44,8 @@ def pictures_of(given: Pictures, name: Part) -> tuple[Iterator[tuple[Part, np.nd
     """
     if isinstance(given, str | Path):
         labels, read = read_pictures(given)
-        return _labelled(given, labels, read), Path(given).is_file() and labels == (Path(given).name,)
+        named = ((f"{given}: {label}", picture) for label, picture in zip(labels, read, strict=True))
+        return named, Path(given).is_file() and labels == (Path(given).name,)
     if is_array(given):
         array = np.asarray(given)
         if array.dtype != np.uint8 or array.ndim not in (3, 4) or array.shape[-1] != 3 or not array.size:
@@ -63,12 +64,6 @@ def pictures_of(given: Pictures, name: Part) -> tuple[Iterator[tuple[Part, np.nd
 
 def _item(name: Part, index: int) -> Part:
     return Argument(f"{name.name}[{index}]") if isinstance(name, Argument) else f"{name}[{index}]"
-
-
-def _labelled(
-    source: str | Path, labels: tuple[str, ...], pictures: Iterable[np.ndarray]
-) -> Iterator[tuple[Part, np.ndarray]]:
-    return ((f"{source}: {label}", picture) for label, picture in zip(labels, pictures, strict=True))
 
 
 def _of_sequence(given: Sequence[Picture], name: Part) -> Iterator[tuple[Part, np.ndarray]]:

@@ -44,7 +44,9 @@ def check_reference(sensor: Sensor, pictures: np.ndarray, name: Part = REFERENCE
             problem = f": picture {number} differs from the others by {100 * differs.max():.0f} %, as if touched"
             raise UnusablePicture(name, problem, remedy="take all with the sensor untouched")
     doubts = [*clipped(pictures, name), *_other_lighting(sensor, pictures.mean(axis=0, dtype=np.float32), name)]
-    rough = _roughness(blocks.mean(axis=0))
+    colours = np.log(blocks.mean(axis=0))
+    colours -= colours.mean(axis=-1, keepdims=True)
+    rough = float(np.percentile(np.abs(colours - smooth(colours, SMOOTH_DEGREE)).max(axis=-1), 99))
     if rough > ROUGH and not doubts:
         text = f": it is not smooth (differences of {100 * rough:.0f} %), as if something touched the gel"
         doubts.append(doubt("contact in the reference", name, text, remedy=TAKE_ANOTHER))
@@ -67,10 +69,3 @@ def _other_lighting(sensor: Sensor, rest: np.ndarray, name: Part) -> list[Doubt]
         remedy = ("give the ", Argument("calibration"), " of the sensor that took it")
         return [doubt("lighting", name, text, remedy=remedy)]
     return []
-
-
-def _roughness(blocks: np.ndarray) -> float:
-    """Return how far the ratios of a reference's colours are from smooth ones."""
-    colours = np.log(blocks)
-    colours -= colours.mean(axis=-1, keepdims=True)
-    return float(np.percentile(np.abs(colours - smooth(colours, SMOOTH_DEGREE)).max(axis=-1), 99))

@@ -85,7 +85,7 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
     return Sensor(
         name,
         _gradient(path, arrays["gradient"]) if held["lut"] else None,
-        _pitch(path, arrays),
+        _limited(path, arrays, "pixel_pitch_mm", PIXEL_PITCHES_MM, "in mm"),
         _polynomials(path, arrays, "coefficients", COEFFICIENTS) if held["quadratic"] else None,
         largest_slope,
         _model(path, arrays.get("model"), models),
@@ -98,7 +98,9 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
         lighting=_finite(path, arrays, "lighting", (*LIGHTING_BLOCKS, 3)) if "lighting" in arrays else None,
         cubic=_polynomials(path, arrays, "cubic", CUBIC) if held["cubic"] else None,
         corrections=_corrections(path, arrays) if held["cubic"] else None,
-        pixel_aspect=_aspect(path, arrays) if "pixel_aspect" in arrays else 1.0,
+        pixel_aspect=_limited(path, arrays, "pixel_aspect", PIXEL_ASPECTS, "width over height")
+        if "pixel_aspect" in arrays
+        else 1.0,
     )
 
 
@@ -274,15 +276,8 @@ def _model(path: Path, model: np.ndarray | None, held: list[str]) -> str:
     return name
 
 
-def _aspect(path: Path, arrays: Arrays) -> float:
-    aspect, (low, high) = _number(path, arrays, "pixel_aspect"), PIXEL_ASPECTS
-    if not low <= aspect <= high:
-        raise InputError(f"{path}: `pixel_aspect` is {aspect:g}: accepted are {low:g} to {high:g}, width over height")
-    return aspect
-
-
-def _pitch(path: Path, arrays: Arrays) -> float:
-    pitch, (low, high) = _number(path, arrays, "pixel_pitch_mm"), PIXEL_PITCHES_MM
-    if not low <= pitch <= high:
-        raise InputError(f"{path}: `pixel_pitch_mm` is {pitch:g}: accepted are {low:g} to {high:g}, in mm")
-    return pitch
+def _limited(path: Path, arrays: Arrays, key: str, limits: tuple[float, float], unit: str) -> float:
+    value, (low, high) = _number(path, arrays, key), limits
+    if not low <= value <= high:
+        raise InputError(f"{path}: `{key}` is {value:g}: accepted are {low:g} to {high:g}, {unit}")
+    return value

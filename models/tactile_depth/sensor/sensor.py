@@ -267,12 +267,9 @@ class Sensor(ByValue):
         )
         if not config.polynomials or isinstance(config, ExactConfiguration):
             return config
-        return replace(config, coefficient_limit=self._coefficient_limit(config))
-
-    def _coefficient_limit(self, config: Configuration) -> float:
-        """Return the power of two above all coefficients on the grid of a configuration, from the smallest accepted."""
         largest = np.abs(self.grid_coefficients(config)).max() / config.coefficient_unit
-        return max(COEFFICIENT_LIMITS[0], 2.0 ** (math.floor(math.log2(largest)) + 1) if largest else 0)
+        above = 2.0 ** (math.floor(math.log2(largest)) + 1) if largest else 0
+        return replace(config, coefficient_limit=max(COEFFICIENT_LIMITS[0], above))
 
     def grid_coefficients(self, config: Configuration) -> np.ndarray:
         """Return the coefficients at `Configuration.samples`, float64 (2, 3, `SAMPLES`, `SAMPLES`)."""

@@ -132,18 +132,6 @@ def _evaluate(words: np.ndarray, rows: int, columns: int, fine_bits: int) -> np.
         )
 
 
-def corrections_of(deviation: np.ndarray, table: np.ndarray) -> np.ndarray:
-    """Return the corrections of pixels by colour: int64 (..., 3) of `DEVIATION` to int64 (..., 2), in units.
-
-    Parameters
-    ----------
-    table : int64 array (2**(3 b), 2)
-        Entries by the top b bits of red, green and blue.
-    """
-    bits = (len(table).bit_length() - 1) // 3
-    return gradient_lookup(correction_codes(deviation), table, bits)
-
-
 def correction_codes(deviation: np.ndarray) -> np.ndarray:
     """Return 8-bit codes of colours for the table, whose middle entry has deviation 0 at its centre."""
     half_entry = 1 << DEVIATION.fraction - CORRECTION_BITS
@@ -186,11 +174,14 @@ def polynomial_gradient(
     ----------
     words : int64 array (2, 3, 10) of `polynomial_words`, or (2, 3, rows, columns) of `coefficient_map`
     table : int64 array (2**(3 b), 2), optional
-        Corrections, of `correction_entries`.
+        Corrections by the top b bits of red, green and blue, of `correction_entries`.
     """
     parameters = gradient_parameters(config)
     coefficients = words if words.ndim == 4 else coefficient_map(words, config)
-    added = None if table is None else corrections_of(deviation, table) * parameters["CorrectionUnit"]
+    added = None
+    if table is not None:
+        bits = (len(table).bit_length() - 1) // 3
+        added = gradient_lookup(correction_codes(deviation), table, bits) * parameters["CorrectionUnit"]
     return slope_codes(deviation, coefficients, parameters["Drop"], config.gradient.width, monitor, added)
 
 

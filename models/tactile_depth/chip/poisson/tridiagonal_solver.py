@@ -29,7 +29,8 @@ def solver_parameters(config: Configuration) -> dict[str, int]:
         **config.solver_parameters(),
         "Rows": config.rows,
         "Neumann": int(config.neumann),
-        "RowForwardOut": row_forward_drop(config),
+        # Slopes have the unit `unit_px`.
+        "RowForwardOut": config.row_forward.fraction + config.depth_limit_log2 - config.elimination.fraction,
         "StoreDrop": config.elimination.fraction - config.elimination_store.fraction,
         "RowInverseIn": row_inverse_drops(config)[0],
         "RowInverseOut": row_inverse_drops(config)[1],
@@ -42,11 +43,6 @@ def solver_parameters(config: Configuration) -> dict[str, int]:
         "StoreStyle": config.store_style,
         "WordsPerRow": config.words_per_row,
     }
-
-
-def row_forward_drop(config: Configuration) -> int:
-    """Return the fraction bits that the forward row transform drops at its output; slopes have the unit `unit_px`."""
-    return config.row_forward.fraction + config.depth_limit_log2 - config.elimination.fraction
 
 
 def row_inverse_drops(config: Configuration) -> tuple[int, int]:
