@@ -16,9 +16,6 @@ from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.flat_field import (
     captured_gains,
-    dark_pixels,
-    deviations,
-    flat_codes,
     pixel_gains,
     unit_gains,
 )
@@ -100,17 +97,6 @@ def test_depth_of_prepared_tables_is_that_of_the_calibration_in_double_precision
     np.testing.assert_array_equal(reference.depth_of(frames, calibration, config, tables), want)
 
 
-def test_gains_of_pixels_stand_for_those_of_nodes() -> None:
-    config = Configuration(columns=32)
-    frames = lit(config, 5, 2)
-    gains = captured_gains(frames, config)
-    gains[0, 3, 1] = (1 << 24) - 1  # dead
-    prepared = pixel_gains(gains, config)
-    assert prepared.dead.any()
-    for function in (dark_pixels, flat_codes, deviations):
-        np.testing.assert_array_equal(function(frames, prepared, config, 90), function(frames, gains, config, 90))
-
-
 # Flat-fielding.
 
 
@@ -124,7 +110,7 @@ def test_a_capture_zeroes_the_depth_of_an_untouched_gel() -> None:
     drifted = np.clip(np.rint(before * (0.9 + 0.1 * np.stack([x, y, x * y], axis=-1))), 0, 255).astype(np.uint8)
 
     def zero(frames: Any, gains: Any) -> Any:
-        slopes = polynomial_gradient(deviations(frames[:1], gains, config), words, config)
+        slopes = polynomial_gradient(pixel_gains(gains, config).deviations(frames[:1]), words, config)
         return np.std(solve(divergence(slopes, True), config)) * config.depth_lsb_px
 
     calibrated = zero(before, captured_gains(before, config))
@@ -137,7 +123,7 @@ def test_at_power_up_codes_are_the_pixels(choices: Any) -> None:
     config = Configuration(**choices)
     frames = np.random.default_rng(1).integers(0, 256, (2, config.rows, config.columns, 3)).astype(np.uint8)
     monitor = Monitor()
-    np.testing.assert_array_equal(flat_codes(frames, unit_gains(config), config, monitor=monitor), frames)
+    np.testing.assert_array_equal(pixel_gains(unit_gains(config), config).codes(frames, monitor=monitor), frames)
     assert not monitor.saturations
 
 
@@ -154,8 +140,8 @@ def test_the_reference_itself_reads_flat_where_it_is_smooth() -> None:
     config = Configuration(columns=64)
     frame = np.full((1, 64, 64, 3), (50, 100, 250), np.uint8)
     gains = captured_gains(frame, config)
-    np.testing.assert_array_equal(flat_codes(frame, gains, config), 128)
-    np.testing.assert_array_equal(deviations(frame, gains, config), 0)
+    np.testing.assert_array_equal(pixel_gains(gains, config).codes(frame), 128)
+    np.testing.assert_array_equal(pixel_gains(gains, config).deviations(frame), 0)
 
 
 @settings(max_examples=20)
@@ -168,10 +154,10 @@ def test_codes_and_deviations_are_the_ratio_rounded(seed: int, choices: Any) -> 
     frames = np.clip(still * chance.uniform(0, 4, (2, config.rows, config.columns, 1)), 0, 255).astype(np.uint8)
     exact = frames * (node_map(gains, config) / 2.0**27)
     monitor = Monitor()
-    code = flat_codes(frames, gains, config, monitor=monitor)
+    code = pixel_gains(gains, config).codes(frames, monitor=monitor)
     assert np.abs(code - np.minimum(128 * exact, 255)).max() <= 0.5
     assert monitor.saturations["flat_field"] == np.count_nonzero(128 * exact > 255.5)
-    deviation = deviations(frames, gains, config) * DEVIATION.lsb
+    deviation = pixel_gains(gains, config).deviations(frames) * DEVIATION.lsb
     assert np.abs(deviation - np.minimum(exact - 1, 2 - DEVIATION.lsb)).max() <= DEVIATION.lsb / 2
 
 
@@ -184,15 +170,14 @@ def test_a_dark_reference_gives_the_largest_gain() -> None:
 
 def test_a_dark_pixel_takes_what_left_before_it() -> None:
     config = Configuration(columns=16)
-    gains = unit_gains(config)
+    field = pixel_gains(unit_gains(config), config)
     chance = np.random.default_rng(3)
     frames = chance.integers(8, 256, (3, 16, 16, 3)).astype(np.uint8)
     dark = chance.random(frames.shape[:-1]) < 0.4
     frames[dark] = chance.integers(0, 8, (dark.sum(), 3))
-    np.testing.assert_array_equal(dark_pixels(frames, gains, config, 8), dark)
-    for held, flat in ((flat_codes(frames, gains, config, 8), 128), (deviations(frames, gains, config, 8), 0)):
-        last = {"codes": flat_codes(frames, gains, config), "deviations": deviations(frames, gains, config)}
-        plain = last["codes"] if flat else last["deviations"]
+    np.testing.assert_array_equal(field.dark(frames, 8), dark)
+    for model, flat in ((field.codes, 128), (field.deviations, 0)):
+        held, plain = model(frames, 8), model(frames)
         for frame, row in np.ndindex(3, 16):
             before = np.full(3, flat)
             for column in range(16):
@@ -205,7 +190,7 @@ def test_a_pixel_whose_reference_is_dark_is_held() -> None:
     config = Configuration(columns=16)
     still = np.full((1, 16, 16, 3), 100, np.uint8)
     still[:, 4:8, 4:8, 1] = 15  # whole blocks, in one colour
-    dark = dark_pixels(still, captured_gains(still, config), config)
+    dark = pixel_gains(captured_gains(still, config), config).dark(still)
     assert dark[0, 5:7, 5:7].all()
     assert not dark[0, :3].any()
 

@@ -16,7 +16,6 @@ from commands.common.tabular import Column
 from commands.study.drawn_light import DrawnLight
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.contact_events import WORD_BITS, ContactEvents, Settings
-from tactile_depth.chip.gradient.flat_field import ratios
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
 from tactile_depth.chip.registers.event_registers import COUNTERS, EVENT_COUNTERS, SATURATIONS, EventRegisters
 from tactile_depth.chip.tactile_depth import slope_tables
@@ -72,7 +71,7 @@ def light_states(drawn: DrawnLight, sensor: Sensor, config: Configuration, expos
     states = []
     for name, lights in LIGHTS.items():
         pictures = drawn.pictures(drawn.untouched, [(exposure * light,) * 3 for light in lights], seed=3)
-        relative = ratios(pictures, gains, config)
+        relative = gains.ratios(pictures)
         states += [light_state(name, relative, np.array(lights), Light.of(config), rate) for rate in RATES]
     return states
 

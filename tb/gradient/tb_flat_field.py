@@ -13,10 +13,8 @@ from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.gradient.flat_field import (
     CODE,
     LATENCY,
-    dark_pixels,
-    deviations,
-    flat_codes,
-    ratios,
+    PixelGains,
+    pixel_gains,
     unit_gains,
 )
 from tactile_depth.chip.limits import DEVIATION, RATIO
@@ -76,7 +74,9 @@ class Field:
         self.dut, self.gap = dut, gap
         self.config = Grid.of(dut, "GainWidth")
         offset, width = parameters(dut, "Offset", "OutWidth")
-        self.model: Any = deviations if offset else flat_codes if width == CODE.width else ratios
+        self.model: Any = (
+            PixelGains.deviations if offset else PixelGains.codes if width == CODE.width else PixelGains.ratios
+        )
         self.places = raster(self.config.rows, self.config.columns)
         self.frames = max(2, PIXELS // len(self.places))
         self.large = len(self.places) > PIXELS  # so that a large grid gets a few frames only
@@ -84,7 +84,7 @@ class Field:
         self.gains = Gains(dut, self.config, TABLES["reference"], channels=3)
         self.driver = StreamDriver(dut, "in", "valid", PIXEL)
         self.source = StreamMonitor(dut, "in", "valid", PIXEL, unsigned=PIXEL)
-        unsigned = ["position"] if self.model is deviations else COLOURS
+        unsigned = ["position"] if self.model is PixelGains.deviations else COLOURS
         self.sink = StreamMonitor(dut, "out", "valid", COLOURS, unsigned=unsigned)
         self.monitor = Monitor()
         self.sent: list[Any] = []
@@ -116,9 +116,9 @@ class Field:
             words = list(zip(pack(frame).ravel().tolist(), self.places, strict=True))
             while chance.random() < self.gap:
                 await self.bench.clocks(1)
-            gains = self.gains.begin_frame().copy()
-            self.expected.append(self.model(frame, gains, self.config, chosen_level, self.monitor))
-            self.dark += int(dark_pixels(frame, gains, self.config, chosen_level).sum())
+            gains = pixel_gains(self.gains.begin_frame().copy(), self.config)
+            self.expected.append(self.model(gains, frame, chosen_level, self.monitor))
+            self.dark += int(gains.dark(frame, chosen_level).sum())
             self.sent += words
             self.dut.dark_level.value = chosen_level
             await send_apart(self.bench, self.driver, words[:1], 0.0)
@@ -159,7 +159,11 @@ async def at_power_up(dut: Any) -> None:
     await device.check()
     (codes,) = device.expected
     wide = pixels.astype(int)
-    relative = {flat_codes: wide, deviations: wide - 128 << DEVIATION.fraction - 7, ratios: wide << RATIO.fraction - 7}
+    relative = {
+        PixelGains.codes: wide,
+        PixelGains.deviations: wide - 128 << DEVIATION.fraction - 7,
+        PixelGains.ratios: wide << RATIO.fraction - 7,
+    }
     np.testing.assert_array_equal(codes, relative[device.model])
 
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.gradient.flat_field import ratios
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
 from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.chip.poisson.divergence import divergence
@@ -92,7 +91,7 @@ class Scoreboard:
             return None
         assert content.slopes.gains is not None
         rgb = unpack(words).reshape(self.rows, self.columns, 3)
-        return light.take(ratios(rgb, content.slopes.gains, self.config, self.dark_level), bad)
+        return light.take(content.slopes.gains.ratios(rgb, self.dark_level), bad)
 
     def before_the_zero(
         self, words: Any, content: Content, monitor: Monitor | None = None, light: Any = None

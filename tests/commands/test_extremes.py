@@ -237,7 +237,7 @@ def test_the_gains_that_are_skipped_to_are_those_of_every_frame(monkeypatch: pyt
     pictures = drawn.pictures(drawn.untouched, [(1.2,) * 3] * 3, seed=1)
     gains = slope_tables(sensor, config).gains
     assert gains is not None
-    relative = long_state.ratios(pictures, gains, config)
+    relative = gains.ratios(pictures)
     light = long_state.Light.of(config)
     for frames in (100, 101, 500):
         monkeypatch.setattr(long_state, "FRAMES", frames)

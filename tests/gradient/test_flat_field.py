@@ -14,10 +14,8 @@ from tactile_depth.chip.fixed_point import Format
 from tactile_depth.chip.gradient.flat_field import (
     CODE,
     captured_gains,
-    deviations,
-    flat_codes,
     flat_field_parameters,
-    ratios,
+    pixel_gains,
     unit_gains,
 )
 from tactile_depth.chip.limits import DEVIATION, RATIO
@@ -82,17 +80,17 @@ def test_a_frame_like_the_reference_is_flat(level: int) -> None:
     frames = np.full((1, 21, 32, 3), level, np.uint8)
     gains = captured_gains(frames, CONFIG)
     assert np.all(np.abs(node_map(gains, CONFIG) * level - (1 << CONFIG.gain.fraction)) <= level)
-    assert np.all(flat_codes(frames, gains, CONFIG) == 128)
-    assert not np.any(deviations(frames, gains, CONFIG))
+    assert np.all(pixel_gains(gains, CONFIG).codes(frames) == 128)
+    assert not np.any(pixel_gains(gains, CONFIG).deviations(frames))
 
 
 def test_gains_at_power_up_leave_pixels_as_they_are() -> None:
     frames = np.random.default_rng(1).integers(0, 256, (2, 21, 32, 3), dtype=np.uint8)
-    np.testing.assert_array_equal(flat_codes(frames, unit_gains(CONFIG), CONFIG), frames)
+    np.testing.assert_array_equal(pixel_gains(unit_gains(CONFIG), CONFIG).codes(frames), frames)
     relative = frames.astype(int) - 128 << (DEVIATION.fraction - 7)
-    np.testing.assert_array_equal(deviations(frames, unit_gains(CONFIG), CONFIG), relative)
+    np.testing.assert_array_equal(pixel_gains(unit_gains(CONFIG), CONFIG).deviations(frames), relative)
     wide = frames.astype(int) << (RATIO.fraction - 7)
-    np.testing.assert_array_equal(ratios(frames, unit_gains(CONFIG), CONFIG), wide)
+    np.testing.assert_array_equal(pixel_gains(unit_gains(CONFIG), CONFIG).ratios(frames), wide)
 
 
 def test_interpolation_is_linear_between_the_centres_of_blocks() -> None:
@@ -113,7 +111,7 @@ def test_a_dark_pixel_takes_over_its_neighbour_and_is_not_counted_as_clipped() -
     frames[3, 0] = frames[3, 1] = frames[5, 4] = frames[5, 5] = 2
     frames[5, 3] = 77
     frames[7, 9] = 2, 3, 2  # one colour is not
-    codes = flat_codes(frames, unit_gains(CONFIG), CONFIG, dark_level=3)
+    codes = pixel_gains(unit_gains(CONFIG), CONFIG).codes(frames, dark_level=3)
     assert codes[3, :3, 0].tolist() == [128, 128, 100]
     assert codes[5, 2:7, 0].tolist() == [100, 77, 77, 77, 100]
     assert codes[7, 9].tolist() == [2, 3, 2]

@@ -18,7 +18,7 @@ from tactile_depth.calibrate.circles import find_circle, require_circle_finder
 from tactile_depth.calibrate.press_folder import background_path, read_presses
 from tactile_depth.chip.camera_configuration import FORMATS, CameraChoice
 from tactile_depth.chip.configuration import COLOURS, Configuration
-from tactile_depth.chip.gradient.flat_field import captured_gains, flat_codes, ratios, require_light
+from tactile_depth.chip.gradient.flat_field import captured_gains, pixel_gains, require_light
 from tactile_depth.chip.gradient.light_gains import Light, settled
 from tactile_depth.pictures.frames import read_picture
 from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler, picture_grid
@@ -365,7 +365,8 @@ def to_grid(
         geometry.append((at, press.diameter_mm))
         frames.append(sampler.frame(image))
     stack = np.array(frames, np.uint8).reshape(-1, *grid, 3)
-    codes, relative, light = flat_codes(stack, gains, config), ratios(stack, gains, config), Light.of(config)
+    field, light = pixel_gains(gains, config), Light.of(config)
+    codes, relative = field.codes(stack), field.ratios(stack)
     colours = light.deviations(relative, settled(relative, light)[:, None, None])
     views = tuple(View(*at, *parts) for at, *parts in zip(geometry, stack, codes, colours, strict=True))
     _require_colours(views, pictures.name)

@@ -26,10 +26,8 @@ from tactile_depth.chip.gradient.flat_field import (
     CODE_WIDTH,
     FLAT_CODE,
     PixelGains,
-    colours,
     flat_field_parameters,
     pixel_gains,
-    ratios,
     reference_gains,
 )
 from tactile_depth.chip.gradient.gradient_lookup import gradient_codes, gradient_lookup
@@ -195,7 +193,7 @@ def slopes_and_light(
     `light` is that of `tactile_depth`, or the function of `Cores` that finds the gains of single pictures.
     """
     if tables.gains is not None:
-        frames = colours(frames, tables.gains, config, dark_level, monitor)
+        frames = tables.gains.colours(frames, dark_level, monitor)
     if not config.polynomials:
         return gradient_lookup(frames, tables.slopes, config.bits_per_channel), None
     if not config.light_gains:
@@ -220,7 +218,7 @@ def light_of(
     if not config.light_gains:
         return None
     assert tables.gains is not None
-    relative = ratios(frames, tables.gains, config)
+    relative = tables.gains.ratios(frames)
     return cores.settled(relative, Light.of(config)) if stream is None else stream.take_all(relative)
 
 

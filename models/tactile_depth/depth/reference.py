@@ -10,7 +10,7 @@ import numpy as np
 from scipy.fft import dctn, dstn, idctn, idstn
 
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.gradient.flat_field import PixelGains, flat_codes, hold_dark, pixel_gains, reference_gains
+from tactile_depth.chip.gradient.flat_field import PixelGains, hold_dark, pixel_gains, reference_gains
 from tactile_depth.chip.limits import DARKEST_LOG2, LIGHT_GAIN
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.poisson.transform.orders import read_only
@@ -149,7 +149,7 @@ def slopes_of(
         red, green, blue = np.moveaxis(np.rint((deviation + 1) * bins / 2).astype(int).clip(0, bins - 1), -1, 0)
         return slopes_by_position + tables.corrections[red, green, blue]
     if tables.table_gains is not None:
-        frames = flat_codes(frames, tables.table_gains, config)
+        frames = tables.table_gains.codes(frames)
     return slopes(frames, calibration)
 
 

@@ -12,7 +12,7 @@ from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration, ExactConfiguration
 from tactile_depth.chip.depth.zero_capture import captured_zero
 from tactile_depth.chip.depth.zero_offset import exact_zero
-from tactile_depth.chip.gradient.flat_field import dark_pixels, pixel_gains, reference_gains
+from tactile_depth.chip.gradient.flat_field import pixel_gains, reference_gains
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
 from tactile_depth.chip.poisson.cores import NUMPY, Cores
 from tactile_depth.chip.poisson.divergence import divergence
@@ -74,7 +74,7 @@ class Twin:
     def dark(self, frames: np.ndarray) -> np.ndarray:
         """Return the pixels where the reference is too dark, bool (frames, rows, columns)."""
         gains = self.tables.gains
-        return np.zeros(frames.shape[:-1], bool) if gains is None else dark_pixels(frames, gains, self.config)
+        return np.zeros(frames.shape[:-1], bool) if gains is None else gains.dark(frames)
 
     def light(self, frames: np.ndarray, stream: LightFilter | None = None) -> np.ndarray | None:
         """Return the light gains of single pictures, or of a stream (frames, 3); None without them."""

@@ -105,114 +105,68 @@ class PixelGains:
     gains : int64 array (rows, columns, 3)
     dead : bool array (rows, columns)
         True where the reference of any colour is too dark, so that the pixel is dark in every frame.
+    config : Configuration
     """
 
     gains: np.ndarray
     dead: np.ndarray
+    config: Configuration
+
+    def dark(self, frames: np.ndarray, dark_level: int = 0) -> np.ndarray:
+        """Return the dark pixels, which repeat the pixel before them: bool (..., rows, columns)."""
+        if not dark_level:  # no colour is below 0
+            return np.broadcast_to(self.dead, frames.shape[:-1])
+        return np.logical_or((frames < dark_level).all(axis=-1), self.dead)
+
+    def colours(self, frames: np.ndarray, dark_level: int = 0, monitor: Monitor | None = None) -> np.ndarray:
+        """Return the colours of frames relative to the reference, as the gradient model of the configuration takes
+        them."""
+        own = (self.ratios if self.config.light_gains else self.deviations) if self.config.polynomials else self.codes
+        return own(frames, dark_level, monitor)
+
+    def codes(self, frames: np.ndarray, dark_level: int = 0, monitor: Monitor | None = None) -> np.ndarray:
+        """Return the codes 128 I / ref of frames: uint8 (..., rows, columns, 3) to uint8 of the same shape."""
+        return self._relative(frames, dark_level, monitor, CODE, FLAT_CODE).astype(np.uint8)
+
+    def ratios(self, frames: np.ndarray, dark_level: int = 0, monitor: Monitor | None = None) -> np.ndarray:
+        """Return the codes of I / ref, `RATIO`, of frames: uint8 (..., rows, columns, 3) to int64, same shape."""
+        return self._relative(frames, dark_level, monitor, RATIO, 0)
+
+    def _relative(
+        self, frames: np.ndarray, dark_level: int, monitor: Monitor | None, output: Format, flat: int
+    ) -> np.ndarray:
+        """Return unsigned codes of I / ref."""
+        code = round_half_even(frames * self.gains, self.config.gain.fraction - output.fraction)
+        dark, largest = self.dark(frames, dark_level), (1 << output.width) - 1
+        if monitor is not None:
+            monitor.clipped("flat_field", int(np.count_nonzero((code > largest) & ~dark[..., None])))
+        return hold_dark(np.minimum(code, largest), dark, flat)
+
+    def deviations(self, frames: np.ndarray, dark_level: int = 0, monitor: Monitor | None = None) -> np.ndarray:
+        """Return the codes of I / ref - 1, `DEVIATION`: uint8 (..., rows, columns, 3) to int64 of the same shape."""
+        dark, fraction = self.dark(frames, dark_level), self.config.gain.fraction
+        ratio = np.where(dark[..., None], 0, frames) * self.gains  # saturation is not counted at dark pixels
+        ratio -= 1 << fraction
+        code = round_saturate(ratio, fraction - DEVIATION.fraction, DEVIATION.width, monitor, "flat_field")
+        return hold_dark(code, dark, 0)
 
 
 def pixel_gains(gains: np.ndarray, config: Configuration) -> PixelGains:
     """Interpolate the gains of the nodes (node rows, node columns, 3), and find the dead pixels."""
     interpolated = node_map(gains, config)
-    return PixelGains(interpolated, np.bitwise_or.reduce(interpolated, axis=-1) >> (config.gain.width - 1) != 0)
-
-
-def dark_pixels(
-    frames: np.ndarray, gains: np.ndarray | PixelGains, config: Configuration, dark_level: int = 0
-) -> np.ndarray:
-    """Return the dark pixels, which repeat the pixel before them: bool (..., rows, columns)."""
-    dead = _at_pixels(gains, config).dead
-    if not dark_level:  # no colour is below 0
-        return np.broadcast_to(dead, frames.shape[:-1])
-    return np.logical_or((frames < dark_level).all(axis=-1), dead)
+    dead = np.bitwise_or.reduce(interpolated, axis=-1) >> (config.gain.width - 1) != 0
+    return PixelGains(interpolated, dead, config)
 
 
 def require_light(gains: np.ndarray, config: Configuration, name: Part = REFERENCE) -> None:
     """Raise InputError, which names the reference, if it is too dark for more than half of the pixels."""
-    dark = dark_pixels(np.full((config.rows, config.columns, 3), 255, np.uint8), gains, config)
-    if 2 * np.count_nonzero(dark) > dark.size:
+    dead = pixel_gains(gains, config).dead
+    if 2 * np.count_nonzero(dead) > dead.size:
         raise InputError(
-            *(name, f": under {1 << (DARKEST_LOG2 + 1)} grey levels in a colour at {100 * dark.mean():.0f} % of the "),
+            *(name, f": under {1 << (DARKEST_LOG2 + 1)} grey levels in a colour at {100 * dead.mean():.0f} % of the "),
             "pixels, from which nothing can be read",
             remedy="take it with the lights on and with a longer exposure",
         )
-
-
-def _at_pixels(gains: np.ndarray | PixelGains, config: Configuration) -> PixelGains:
-    return gains if isinstance(gains, PixelGains) else pixel_gains(gains, config)
-
-
-# The functions below take the gains of the nodes (node rows, node columns, 3) or the result of `pixel_gains`.
-
-
-def colours(
-    frames: np.ndarray,
-    gains: np.ndarray | PixelGains,
-    config: Configuration,
-    dark_level: int = 0,
-    monitor: Monitor | None = None,
-) -> np.ndarray:
-    """Return the colours of frames relative to the reference, as the gradient model of a configuration takes them."""
-    kind = (ratios if config.light_gains else deviations) if config.polynomials else flat_codes
-    return kind(frames, gains, config, dark_level, monitor)
-
-
-def flat_codes(
-    frames: np.ndarray,
-    gains: np.ndarray | PixelGains,
-    config: Configuration,
-    dark_level: int = 0,
-    monitor: Monitor | None = None,
-) -> np.ndarray:
-    """Return the codes 128 I / ref of frames: uint8 (..., rows, columns, 3) to uint8 of the same shape."""
-    return _relative(frames, gains, config, dark_level, monitor, CODE, FLAT_CODE).astype(np.uint8)
-
-
-def ratios(
-    frames: np.ndarray,
-    gains: np.ndarray | PixelGains,
-    config: Configuration,
-    dark_level: int = 0,
-    monitor: Monitor | None = None,
-) -> np.ndarray:
-    """Return the codes of I / ref, `RATIO`, of frames: uint8 (..., rows, columns, 3) to int64, same shape."""
-    return _relative(frames, gains, config, dark_level, monitor, RATIO, 0)
-
-
-def _relative(
-    frames: np.ndarray,
-    gains: np.ndarray | PixelGains,
-    config: Configuration,
-    dark_level: int,
-    monitor: Monitor | None,
-    output: Format,
-    flat: int,
-) -> np.ndarray:
-    """Return unsigned codes of I / ref."""
-    gains = _at_pixels(gains, config)
-    code = round_half_even(frames * gains.gains, config.gain.fraction - output.fraction)
-    dark = dark_pixels(frames, gains, config, dark_level)
-    largest = (1 << output.width) - 1
-    if monitor is not None:
-        monitor.clipped("flat_field", int(np.count_nonzero((code > largest) & ~dark[..., None])))
-    return hold_dark(np.minimum(code, largest), dark, flat)
-
-
-def deviations(
-    frames: np.ndarray,
-    gains: np.ndarray | PixelGains,
-    config: Configuration,
-    dark_level: int = 0,
-    monitor: Monitor | None = None,
-) -> np.ndarray:
-    """Return the codes of I / ref - 1, `DEVIATION`, of frames: uint8 (..., rows, columns, 3) to int64, same shape."""
-    gains = _at_pixels(gains, config)
-    dark = dark_pixels(frames, gains, config, dark_level)
-    lit = np.where(dark[..., None], 0, frames)  # saturation is not counted at dark pixels
-    ratio = lit * gains.gains
-    ratio -= 1 << config.gain.fraction
-    code = round_saturate(ratio, config.gain.fraction - DEVIATION.fraction, DEVIATION.width, monitor, "flat_field")
-    return hold_dark(code, dark, 0)
 
 
 def hold_dark(codes: np.ndarray, dark: np.ndarray, flat: int) -> np.ndarray:
