@@ -111,6 +111,11 @@ def sources(top: str | None = None, without: Iterable[str] = ()) -> list[Path]:
     return [files[name] for name in sorted(needed, key=lambda name: (name not in packages, name))]
 
 
+def packages() -> list[Path]:
+    """Return the packages of hdl/."""
+    return [path for path in sources() if path.stem.endswith(PACKAGE)]
+
+
 @cache
 def _instances(file: Path) -> list[str]:
     """Return the names of what may be modules that a file instantiates."""

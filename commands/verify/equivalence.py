@@ -19,7 +19,7 @@ import itertools
 import json
 import re
 import subprocess
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -140,9 +140,8 @@ def read_protocol(top: str, parameters: Mapping[str, int | str], folder: Path) -
         return {}
     declared = re.findall(r"^ +parameter +int +(\w+)", file.read_text(), re.M)
     chosen = " ".join(f"-G {name}={value}" for name, value in parameters.items() if name in declared)
-    packages = [path for path in repository.sources() if path.stem.endswith(repository.PACKAGE)]
     protocols = {*FORMAL.rglob("protocol_*.sv"), *(FORMAL / "protocols").glob("*.sv")}
-    files = " ".join(map(str, [*packages, *sorted(protocols)]))
+    files = " ".join(map(str, [*repository.packages(), *sorted(protocols)]))
     read = f"read_slang --threads 1 --top {top} {chosen} {files}\n"
     yosys(f"{read}write_json protocol.json\nwrite_rtlil protocol.il\n", folder, "protocol")
     module = json.loads((folder / "protocol.json").read_text())["modules"][top]
@@ -161,21 +160,18 @@ def graph(core: str, folder: Path, protocol: str, parameters: Mapping[str, int |
     steps = TO_GRAPH.format(**(TWO_CLOCKS if len(clocks(core, folder)) > 1 else ONE_CLOCK))
     yosys(f"{steps}write_aiger -ascii -symbols graph.aag\n", folder, "graph")
     lines = iter((folder / "graph.aag").read_text().splitlines())
-    _, _, inputs, latches, outputs, ands = next(lines).split()
-    in_literals = [int(next(lines)) for _ in range(int(inputs))]
-    rows = [[int(word) for word in next(lines).split()] for _ in range(int(latches))]
-    out_literals = [int(next(lines)) for _ in range(int(outputs))]
-    gates = [tuple(int(word) for word in next(lines).split()) for _ in range(int(ands))]
+    counts = map(int, next(lines).split()[2:])
+    inputs, latches, outputs, ands = ([[*map(int, next(lines).split())] for _ in range(count)] for count in counts)
     symbols = re.findall(r"^([io])(\d+) (\S+)$", "\n".join(lines), re.M)
     names = {(kind, int(number)): name for kind, number, name in symbols}
     # Inputs without a name are undefined values, such as words beyond the end of a memory: any value, the same in both.
-    inputs_by_name = {names.get(("i", n), f"undefined{n}"): literal for n, literal in enumerate(in_literals)}
+    inputs_by_name = {names.get(("i", n), f"undefined{n}"): literal for n, [literal] in enumerate(inputs)}
 
     return Graph(
         inputs_by_name,
-        [(row[0], row[1], row[2] if len(row) > 2 else 0) for row in rows],
-        {names["o", n]: literal for n, literal in enumerate(out_literals)},
-        sorted((gate[0], gate[1], gate[2]) for gate in gates),
+        [(literal, following, start[0] if start else 0) for literal, following, *start in latches],
+        {names["o", n]: literal for n, [literal] in enumerate(outputs)},
+        sorted((out, a, b) for out, a, b in ands),
     )
 
 
@@ -244,35 +240,29 @@ class Miter(Gates):
 
     def _build(self) -> None:
         source = self.source
-        value = {0: 0, 1: 1}
+        value = {0: 0} | self.input_of | dict.fromkeys(self.selector, 0)
 
         def read(values: Mapping[int, int], literal: int) -> int:
             return values[literal & ~1] ^ (literal & 1)
 
-        value.update(self.input_of)
         if RESET in source.inputs:  # the first cycle is a reset
             literal = source.inputs[RESET]
             value[literal] = self.either((self.input_of[literal], self.started ^ 1))
-        value.update(dict.fromkeys(self.selector, 0))
         for literal, _, start in source.latches:
             value[literal] = self.state(self.latch[literal], literal, start)
         for out, a, b in source.ands:
             value[out] = self.both(read(value, a), read(value, b))
         # The part of the second copy that can differ: logic that depends on the selector, then logic that it reaches.
-        other = dict(value)
         users: dict[int, list[int]] = {}
-        for index, (_, a, b) in enumerate(source.ands):
-            users.setdefault(a & ~1, []).append(index)
-            users.setdefault(b & ~1, []).append(index)
+        for index, (_, *operands) in enumerate(source.ands):
+            for operand in operands:
+                users.setdefault(operand & ~1, []).append(index)
         loaded: dict[int, list[int]] = {}
         for index, (_, following, _) in enumerate(source.latches):
             loaded.setdefault(following & ~1, []).append(index)
         apart: set[int] = set()  # latches with a second copy
-        changed = []
-        for literal, bit in self.selector.items():
-            if self.number >> bit & 1:
-                other[literal] = 1
-                changed.append(literal)
+        changed = [literal for literal, bit in self.selector.items() if self.number >> bit & 1]
+        other = value | dict.fromkeys(changed, 1)
         while changed:
             reached: set[int] = set()
             stack = list(changed)
@@ -293,9 +283,8 @@ class Miter(Gates):
             for node in moved:
                 for index in loaded.get(node, ()):
                     literal, following, start = source.latches[index]
-                    if literal in apart or (self.allowed is not None and literal not in self.allowed):
-                        continue
-                    if read(other, following) != read(value, following):
+                    may_differ = literal not in apart and (self.allowed is None or literal in self.allowed)
+                    if may_differ and read(other, following) != read(value, following):
                         apart.add(literal)
                         other[literal] = self.state(self.twin[literal], literal, start)
                         changed.append(literal)
@@ -318,9 +307,8 @@ class Miter(Gates):
             {self.twin[literal]: read(other, following) for literal, following, _ in source.latches if literal in apart}
         )
 
-    def write(self, path: Path, apiece: bool = False) -> None:
-        """Write a binary AIGER file with one output, any difference; with `apiece` one output for each of `wrong`."""
-        outputs = [*self.wrong.values()] if apiece else [self.bad]
+    def write(self, path: Path, outputs: Collection[int]) -> None:
+        """Write a binary AIGER file with literals as outputs."""
         latches = [(self.started, 1, 0)]
         latches += [
             (table[literal], self.next.get(table[literal], table[literal]), int(start == 1))
@@ -329,16 +317,21 @@ class Miter(Gates):
         ]
         top = self.first - 1 + len(self.ands)
         head = f"aig {top} {len(self.inputs) + len(self.power_up)} {len(latches)} {len(outputs)} {len(self.ands)}\n"
-        text = head + "".join(
-            f"{following} {start}\n" if start else f"{following}\n" for _, following, start in latches
-        )
+        text = head + "".join(f"{following}{' 1' * start}\n" for _, following, start in latches)
         text += "".join(f"{literal}\n" for literal in outputs)
         coded = bytearray()
         for index, (a, b) in enumerate(self.ands):
             node = 2 * (self.first + index)
             for delta in (node - b, b - a):
                 coded += number_of(delta)
-        path.write_bytes(text.encode() + bytes(coded))
+        path.write_bytes(text.encode() + coded)
+
+    def differing(self, path: Path, how: str, limit: int) -> list[str | int]:
+        """Return the latches and output bits in which yosys-abc finds a difference."""
+        self.write(path, self.wrong.values())
+        output = abc(f"read_aiger {path.name}; {how}", path.parent, limit)
+        places = list(self.wrong)
+        return [places[int(number)] for number in re.findall(r"[Oo]utput +(\d+)[^\n]* asserted", output)]
 
 
 def number_of(value: int) -> bytes:
@@ -387,20 +380,12 @@ def confined(source: Graph, number: int, folder: Path, seconds: int) -> bool:
         miter = Miter(source, number, apart)
         if miter.bad == 0:
             return True
-        places = list(miter.wrong)
-
-        def met(how: str, limit: int, places: Sequence[str | int] = places, miter: Miter = miter) -> list[str | int]:
-            """Return the latches and output bits in which yosys-abc finds a difference."""
-            miter.write(folder / name, apiece=True)
-            output = abc(f"read_aiger {name}; {how}", folder, limit)
-            return [places[int(number)] for number in re.findall(r"[Oo]utput +(\d+)[^\n]* asserted", output)]
-
-        differing = met(f"bmc3 -a -T {max(2, seconds // 8)}", seconds + 20)
+        differing = miter.differing(folder / name, f"bmc3 -a -T {max(2, seconds // 8)}", seconds + 20)
         if not differing:
-            miter.write(folder / name)
+            miter.write(folder / name, [miter.bad])
             if proved(name, folder, seconds):
                 return True
-            differing = met(f"pdr -a -T {seconds}", 2 * seconds + 20)
+            differing = miter.differing(folder / name, f"pdr -a -T {seconds}", 2 * seconds + 20)
         new = {place for place in differing if isinstance(place, int)}
         if not new:
             return False
@@ -416,7 +401,7 @@ def settle(source: Graph, number: int, folder: Path, seconds: int) -> tuple[str,
     if miter.bad == 0:
         return EQUIVALENT, "structure"
     name = f"miter{number}.aig"
-    miter.write(folder / name)
+    miter.write(folder / name, [miter.bad])
 
     def search(limit: int) -> bool:
         return "asserted in frame" in abc(f"read_aiger {name}; bmc3 -T {limit}", folder, 4 * limit + 20)

@@ -141,7 +141,7 @@ def slang_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
         str(core.hdl.relative_to(repository.ROOT)) for core in repository.cores().values() if core.name not in cores
     }
     if len(cores) < len(repository.cores()):
-        others |= {str(file.relative_to(repository.ROOT)) for file in files if file.stem.endswith(repository.PACKAGE)}
+        others |= {str(file.relative_to(repository.ROOT)) for file in repository.packages()}
     reported = slang(cores, {}, files).splitlines()
     return "\n".join(line for line in reported if line.partition(":")[0] not in others)
 

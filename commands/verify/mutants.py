@@ -196,12 +196,11 @@ def run(
     """
     (folder / "wrapper.sv").write_text(wrapper(core, folder))
     (folder / "waivers.vlt").write_text(AS_IT_IS)
-    package = [path for path in repository.sources() if path.stem.endswith("_pkg")]
     build = folder / simulator
     simulation.build(
         simulator,
         core,
-        [folder / "waivers.vlt", *package, folder / "mutants.v", folder / "wrapper.sv"],
+        [folder / "waivers.vlt", *repository.packages(), folder / "mutants.v", folder / "wrapper.sv"],
         structure.parameters,
         build,
         fast=True,

@@ -110,14 +110,13 @@ def run(case: Case, seed: int) -> Result:
     cells = netlist(case, folder)
     (folder / "waivers.vlt").write_text(mutants.AS_IT_IS + LIBRARY_AS_IT_IS)
     files = [folder / "waivers.vlt", yosys.in_wheel("pyosys", LIBRARY), folder / "netlist.v", folder / "wrapper.sv"]
-    package = [path for path in repository.sources() if path.stem.endswith("_pkg")]
     count = failed = 0
     for simulator, level in case.levels.items():
         place = folder / simulator
         simulation.build(
             simulator,
             case.core,
-            [*package, *files],
+            [*repository.packages(), *files],
             case.structure.parameters,
             place,
             fast=True,
