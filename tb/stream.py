@@ -110,6 +110,11 @@ def depth_position(frame_start: Any, row_end: Any, frame_end: Any) -> int:
     return int(frame_start) << 2 | int(row_end) << 1 | int(frame_end)
 
 
+def start_clock(clock: Any) -> None:
+    """Start a clock, low at first, of the period that all testbenches of one clock have."""
+    Clock(clock, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+
+
 class EveryEdge:
     """Generators that advance at each rising edge of a clock, in one task: a task for each takes as long as most do."""
 
@@ -268,7 +273,7 @@ class Bench:
         self.in_reset: int | None = None  # en in the cycle of a reset
 
     async def start(self) -> None:
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         self.dut.rst.value, self.dut.en.value = 1, 1
         for _ in range(3):
             await RisingEdge(self.dut.clk)
@@ -479,7 +484,7 @@ async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any
     """
     chance = random.Random(cocotb.RANDOM_SEED)
     edge, write, has_en = RisingEdge(dut.clk), pins.Driver(dut), hasattr(dut, "en")
-    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+    start_clock(dut.clk)
     write(**dict.fromkeys(stimuli[0], 0))  # a pin that is random at first may write a word
     write(**{pin: 1 for pin in ("rst", "en") if hasattr(dut, pin)})
     await edge

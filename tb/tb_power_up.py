@@ -6,15 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
-from tb.stream import CLOCK_NS
+from tb.stream import start_clock
 
 
 @cocotb.test()
 async def state(dut: Any) -> None:
-    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+    start_clock(dut.clk)
     words = []
     for address in range(16):
         dut.address.value = address

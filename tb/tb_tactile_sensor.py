@@ -7,7 +7,6 @@ from typing import Any
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.camera.camera_front_end import camera_front_end, camera_settings
@@ -22,7 +21,7 @@ from tb.axis import AxisMonitor, AxisSource
 from tb.camera.slots import camera_words
 from tb.cases import on_bench
 from tb.settings import RUN
-from tb.stream import CLOCK_NS, MANY, configuration
+from tb.stream import MANY, configuration, start_clock
 
 IDLE = {"frames_lost": 0, "setup_done": 0, "setup_failed": 0, "setup_entry": 0, "setup_found": 0}
 STATUS = CAMERA_REGISTERS["CAMERA_STATUS"]
@@ -44,7 +43,7 @@ class Bench:
         self.master = axil.Master(dut)
 
     async def start(self) -> None:
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         await ClockCycles(self.dut.clk, 3)
         self.dut.rst.value = 0
         await RisingEdge(self.dut.clk)

@@ -7,7 +7,6 @@ from typing import Any
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge, gather
 
 from tactile_depth.chip.configuration import Configuration
@@ -18,7 +17,7 @@ from tactile_depth.sensor.synthetic import synthetic
 from tb.axis import AxisMonitor, AxisSource, video
 from tb.pixels import unpack
 from tb.settings import RUN
-from tb.stream import CLOCK_NS
+from tb.stream import start_clock
 
 STEEPNESS = {"left": 1.0, "right": -0.5}  # slope of each gel, relative to the synthetic sensor
 
@@ -33,7 +32,7 @@ def calibration(side: str, config: Configuration) -> Sensor:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def codes(dut: Any) -> None:
     """Send a frame to each pipeline at the same time, and compare each depth map with its model."""
-    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+    start_clock(dut.clk)
     rng = random.Random(cocotb.RANDOM_SEED)
     configs = {side: Configuration(**choices) for side, choices in RUN.device["configurations"].items()}
     sources = {side: AxisSource(dut, f"{side}_s_axis", prefix="t") for side in configs}

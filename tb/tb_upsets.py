@@ -15,7 +15,6 @@ from typing import Any
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.handle import ArrayObject, HierarchyArrayObject, HierarchyObject, LogicArrayObject, LogicObject
 from cocotb.triggers import FallingEdge, RisingEdge
 
@@ -27,7 +26,7 @@ from tactile_depth.sensor.synthetic import synthetic
 from tb.axis import video
 from tb.pixels import pack
 from tb.settings import RUN
-from tb.stream import CLOCK_NS, configuration
+from tb.stream import configuration, start_clock
 
 FRAMES = 6
 FLIPPED_IN = 1  # the flip comes as this frame enters, or up to one latency later
@@ -203,7 +202,7 @@ class Device:
 @cocotb.test()
 async def upsets(dut: Any) -> None:
     rng = random.Random(cocotb.RANDOM_SEED)
-    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+    start_clock(dut.clk)
     device = Device(dut, rng)
     await device.reset()
     by_module: dict[str, list[Place]] = {}

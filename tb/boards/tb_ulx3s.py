@@ -5,13 +5,11 @@
 broken one must be right.
 """
 
-import os
 import random
 from typing import Any
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, FallingEdge, ReadOnly, RisingEdge, Timer, ValueChange
 
 from commands.common.run_request import threshold_code
@@ -28,7 +26,7 @@ from tactile_depth.sensor.scenes import render
 from tactile_depth.sensor.synthetic import synthetic
 from tb.pixels import unpack
 from tb.selection import Level, case
-from tb.stream import CLOCK_NS, configuration, parameters
+from tb.stream import CLOCK_NS, configuration, parameters, start_clock
 
 THRESHOLDS = ("THRESHOLD", "OFF_THRESHOLD")
 BREAK_BITS = 25
@@ -39,7 +37,6 @@ class Board:
     """Device with a driver and a monitor of its serial line."""
 
     def __init__(self, dut: Any) -> None:
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.config = dut, configuration()
         self.rows, self.columns = self.config.rows, self.config.columns
         self.threshold = threshold_code(self.config)
@@ -58,7 +55,7 @@ class Board:
         return self.dut.u_system.g_serial.u_depth.u_pipeline
 
     async def start(self, button: bool = True) -> None:
-        Clock(self.dut.clk_25mhz, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk_25mhz)
         self.dut.btn.value = int(button)
         await ClockCycles(self.dut.clk_25mhz, RESET_CLOCKS)
         self.dut.btn.value = 0

@@ -12,7 +12,6 @@ from typing import Any
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.camera.camera_front_end import SETTINGS, camera_front_end, camera_settings
@@ -25,7 +24,7 @@ from tb.camera.slots import camera_words, pack_settings
 from tb.cases import on_bench
 from tb.pins import unsigned
 from tb.settings import RUN
-from tb.stream import CLOCK_NS, MANY, at_every_edge, parametrize, sample
+from tb.stream import MANY, at_every_edge, parametrize, sample, start_clock
 
 KINDS = [kind for kind in BREAKS if kind not in SILENT]
 SETTLE = 60
@@ -46,7 +45,7 @@ class Bench:
 
     async def start(self) -> None:
         self.use(self.camera)
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         at_every_edge(self.dut.clk, self.watch())
         await self.reset(3)
 

@@ -2,13 +2,11 @@
 """camera_setup against its model in every cycle, with a camera on its lines that also fails."""
 
 import itertools
-import os
 import random
 from collections.abc import Callable
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, ReadOnly, RisingEdge
 
 from tactile_depth.chip.camera.camera_setup import CameraSetup, Entry, Kind, Outputs
@@ -16,7 +14,7 @@ from tb.camera.sccb_camera import SccbCamera
 from tb.cases import on_bench
 from tb.pins import by_name
 from tb.settings import RUN
-from tb.stream import CLOCK_NS, REGRESS, parameters, parametrize, sample
+from tb.stream import REGRESS, parameters, parametrize, sample, start_clock
 
 Fault = Callable[[str, int, int], int | None]
 COUNTS = ("AddressBytes", "DeviceId", "QuarterClocks", "MillisecondClocks", "Attempts")
@@ -58,9 +56,8 @@ class Bench:
 
     async def start(self) -> None:
         dut = self.dut
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         dut.rst.value, dut.restart.value, dut.sio_d.value = 1, 0, 1
-        Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(dut.clk)
         await ClockCycles(dut.clk, 4)
         cocotb.start_soon(self.follow())
         await RisingEdge(dut.clk)

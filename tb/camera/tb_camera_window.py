@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.camera.camera_window import FAULTS, LATENCY, Settings, camera_window
@@ -17,7 +16,7 @@ from tactile_depth.chip.video.frame_guard import Word
 from tb.axis import BREAKS, SILENT, AxisSource, broken, positions, profile, spoiled, video
 from tb.cases import on_bench
 from tb.pins import by_name
-from tb.stream import CLOCK_NS, MANY, REGRESS, parameters, parametrize
+from tb.stream import MANY, REGRESS, parameters, parametrize, start_clock
 
 KINDS = [kind for kind in BREAKS if kind not in SILENT]
 STALLS = {"none": ("none", "none"), "gaps": ("random", "none"), "both": ("random", "random")}
@@ -65,7 +64,7 @@ class Bench:
 
     async def start(self) -> None:
         self.use(self.any_settings())
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         cocotb.start_soon(self.enable())
         cocotb.start_soon(self.watch())
         await self.reset(3)

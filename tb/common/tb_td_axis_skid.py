@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """td_axis_skid against tactile_depth.chip.common.td_axis_skid, every output in every cycle; gaps, stalls, resets."""
 
-import os
 import random
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.common.td_axis_skid import AxisSkid
 from tb.axis import PROFILES, AxisMonitor, AxisSink, AxisSource, profile
 from tb.pins import by_name
-from tb.stream import CLOCK_NS, REGRESS, parameters, parametrize, sample
+from tb.stream import REGRESS, parameters, parametrize, sample, start_clock
 
 WORDS = 600 if REGRESS else 200
 FIELDS = ("data",)
@@ -43,12 +41,11 @@ async def reset(dut: Any, clocks: int = 3) -> None:
 
 async def start(dut: Any, offers: str, accepts: str) -> Any:
     """Start clock, drivers, monitors and model, and reset."""
-    dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     dut.rst.value, dut.s_data.value = 1, 0
     source = AxisSource(dut, "s", FIELDS, offers=profile(offers, 1))
     AxisSink(dut, "m", accepts=profile(accepts, 2))
     taken, left = (AxisMonitor(dut, side, FIELDS) for side in "sm")
-    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+    start_clock(dut.clk)
     cocotb.start_soon(follow(dut))
     await reset(dut)
     return source, taken, left

@@ -7,12 +7,11 @@ from typing import Any
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.common.td_banked_table import BankedTable
 from tb.pins import Driver, by_name
-from tb.stream import CLOCK_NS, parameters, parametrize
+from tb.stream import parameters, parametrize, start_clock
 
 CLOCKS = 6000
 
@@ -37,7 +36,7 @@ class Bench:
         """Start and reset. On Verilator pins are random at first, and may write a word (test_power_up)."""
         pins = ("en", "frame_start", "change", "read", "free_write", "free_read", "table_bank")
         self.drive(**dict.fromkeys(pins, 0), rst=1)
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         await self.edge
         if Bench.banks is None:
             Bench.banks = BankedTable.of(np.array([int(line, 16) for line in Path("table.hex").read_text().split()]))

@@ -7,12 +7,11 @@ from typing import Any
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.common.td_block_sum import CYCLES_TO_SUM, block_sum
 from tb.pins import Driver, by_name
-from tb.stream import CLOCK_NS, MANY, parameters, parametrize
+from tb.stream import MANY, parameters, parametrize, start_clock
 
 NAMES = ("Rows", "Columns", "BlockLog2", "ColumnLog2", "Channels", "Width", "Signed", "SumWidth")
 
@@ -37,7 +36,7 @@ class Device:
     async def start(self) -> None:
         self.drive(False, 0)
         self.dut.rst.value = 1
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         await RisingEdge(self.dut.clk)
         await RisingEdge(self.dut.clk)
         self.dut.rst.value = 0

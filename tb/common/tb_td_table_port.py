@@ -5,12 +5,11 @@ import random
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.common.td_table_port import WORD_BITS, TablePort
 from tb import structs
-from tb.stream import CLOCK_NS, parameters
+from tb.stream import parameters, start_clock
 
 CLOCKS = 6000
 
@@ -24,7 +23,7 @@ async def accesses(dut: Any) -> None:
     )
     model = TablePort(select, index_width, width, words, entries, bool(signed))
     dut.rst.value, dut.table_command.value, dut.free_word.value = 1, 0, 0
-    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+    start_clock(dut.clk)
     await RisingEdge(dut.clk)
     answers = 0
     for clock in range(CLOCKS):

@@ -2,18 +2,16 @@
 """Bench of the cores that take the outgoing depth, one cycle at a time, and depth maps that reach their special
 cases."""
 
-import os
 import random
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tb.pins import Driver, by_name
-from tb.stream import CLOCK_NS, depth_position, parameters
+from tb.stream import depth_position, parameters, start_clock
 
 WORD_LOW, WORD_HIGH = -(1 << 31), (1 << 31) - 1
 
@@ -22,7 +20,6 @@ class DepthBench:
     """Driver of depth maps; the bench of a core defines one cycle (`edge`)."""
 
     def __init__(self, dut: Any, gap: float = 0.0) -> None:
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.gap = dut, gap
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.width, self.rows, self.columns, self.lanes, self.bottom_first = parameters(
@@ -35,7 +32,7 @@ class DepthBench:
         self.now = 0
 
     async def start(self) -> None:
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         self.dut.rst.value = 1
         self.drive(in_valid=0)
         await RisingEdge(self.dut.clk)

@@ -1,19 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """depth_gate against its model, every output in every cycle; and its rules, checked at the pins alone."""
 
-import os
 import random
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.contact.depth_gate import DepthGate, Word
 from tb.axis import PROFILES, AxisMonitor, profile
 from tb.cases import on_bench
 from tb.pins import Driver, by_name
-from tb.stream import CLOCK_NS, depth_position, parameters, parametrize
+from tb.stream import depth_position, parameters, parametrize, start_clock
 
 ROWS, COLUMNS = 3, 5
 FIELDS = ("data", "position")
@@ -32,7 +30,6 @@ class Bench:
     """
 
     def __init__(self, dut: Any, accepts: str = "none") -> None:
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.drive, self.read = dut, Driver(dut), by_name(dut)
         self.edge = RisingEdge(dut.clk)
         self.random = random.Random(cocotb.RANDOM_SEED)
@@ -55,7 +52,7 @@ class Bench:
         self.monitor.forget()
 
     async def start(self) -> None:
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         self.drive(in_valid=0, m_ready=0, drop_frames=0, rst=1)
         for _ in range(2):
             await self.edge

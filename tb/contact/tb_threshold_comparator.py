@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """threshold_comparator against tactile_depth.chip.contact.threshold_comparator: contact in every cycle."""
 
-import os
 import random
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.contact.threshold_comparator import ThresholdComparator
 from tb.cases import on_bench
-from tb.stream import CLOCK_NS, parameters
+from tb.stream import parameters, start_clock
 
 CLOCKS = 5000
 WORD_BITS = 32
@@ -21,7 +19,6 @@ class Bench:
     """Driver of one cycle at a time; contact is compared with the model, which takes the beats of earlier cycles."""
 
     def __init__(self, dut: Any) -> None:
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.model = dut, ThresholdComparator()
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.width, self.lanes = parameters(dut, "Width", "Lanes")
@@ -30,7 +27,7 @@ class Bench:
         self.threshold, self.hold = self.highest, False
 
     async def start(self) -> None:
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         self.dut.rst.value = 1
         await self.edge(valid=False)
         self.dut.rst.value = 0

@@ -1,32 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
 """frame_output against tactile_depth.chip.depth.frame_output: words, side-bands and marks in every enabled cycle."""
 
-import os
 import random
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock as ClockOf
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.depth.frame_output import Clock, frame_output
 from tb.cases import on_bench
 from tb.pins import Driver, by_name
-from tb.stream import CLOCK_NS, depth_position, parameters, parametrize
+from tb.stream import depth_position, parameters, parametrize, start_clock
 
 
 class Bench:
     """Driver of one cycle at a time; it keeps the outputs and compares them with the model at the end."""
 
     def __init__(self, dut: Any, pause: float = 0.0) -> None:
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.pause = dut, pause
         self.drive, self.read = Driver(dut), by_name(dut)
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.width, self.rows, self.columns = parameters(dut, "Width", "Rows", "Columns")
 
     async def start(self) -> None:
-        ClockOf(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         self.drive(en=1)
         await self.reset()
 

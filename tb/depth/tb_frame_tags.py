@@ -1,31 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """frame_tags against its model: every output in every cycle; frames close together and apart, pauses, resets."""
 
-import os
 import random
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.depth.frame_tags import FrameTags
 from tb.cases import on_bench
-from tb.stream import CLOCK_NS, parameters, parametrize
+from tb.stream import parameters, parametrize, start_clock
 
 
 class Bench:
     """Driver of one cycle at a time; it compares the outputs with the model."""
 
     def __init__(self, dut: Any) -> None:
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut = dut
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.width, latency, self.pixels = parameters(dut, "Width", "Latency", "Pixels")
         self.model = FrameTags(latency)
 
     async def start(self) -> None:
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         self.dut.rst.value, self.dut.en.value, self.dut.push.value = 1, 1, 0
         await RisingEdge(self.dut.clk)
 

@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Packets of bytes on streams of valid, ready, data and last: a bench with drivers, monitors and resets."""
 
-import os
 import random
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tb.axis import AxisMonitor, AxisSink, AxisSource, profile
-from tb.stream import CLOCK_NS
+from tb.stream import start_clock
 
 BYTE = ("data",)
 FIELDS = ("data", "last")
@@ -69,7 +67,6 @@ class Bench:
         inputs: Sequence[str] = ("in",),
         out_fields: Sequence[str] = FIELDS,
     ) -> None:
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.random = dut, random.Random(cocotb.RANDOM_SEED)
         dut.rst.value = 1
         self.sources = {
@@ -83,7 +80,7 @@ class Bench:
         self.left = AxisMonitor(dut, "out", out_fields)
 
     async def start(self) -> None:
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         await self.reset()
 
     async def clocks(self, count: int) -> None:

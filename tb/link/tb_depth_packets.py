@@ -5,14 +5,12 @@ The testbench is the store: it holds a frame, and answers reads as depth_store d
 """
 
 import math
-import os
 import random
 import zlib
 from typing import Any
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.contact.contact_events import WORDS, record
@@ -21,7 +19,7 @@ from tactile_depth.chip.link.packets import LARGEST_SHIFT, Depth, Trailer
 from tb.axis import PROFILES, profile
 from tb.cases import on_bench
 from tb.pins import Driver, by_name
-from tb.stream import CLOCK_NS, MANY, parameters, parametrize
+from tb.stream import MANY, parameters, parametrize, start_clock
 
 FORMATS = (DepthFormat.WORDS, DepthFormat.SHORT, DepthFormat.AVERAGED)
 LONGEST_SILENCE = 8  # clocks
@@ -33,7 +31,6 @@ class Bench:
     """Store of a frame, and sink of the packets."""
 
     def __init__(self, dut: Any, accepts: str = "none") -> None:
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.drive, self.read = dut, Driver(dut), by_name(dut)
         self.edge, self.ready, self.always_ready = RisingEdge(dut.clk), profile(accepts), accepts == "none"
         self.chance = random.Random(cocotb.RANDOM_SEED)
@@ -45,7 +42,7 @@ class Bench:
         self.many = MANY if self.codes.size < 64 else 0  # frames of a large grid take long
 
     async def start(self) -> None:
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         self.drive(frame_valid=0, format=0, shift=0, depth_ready=0, value_data=0, record_data=0, cold_rst=0, resets=0)
         await self.reset(cold=True)
 

@@ -11,7 +11,6 @@ from typing import Any
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.contact.contact_events import WORDS, record
@@ -22,7 +21,7 @@ from tactile_depth.chip.link.framing import to_line
 from tb.axis import VIDEO
 from tb.link.axil_slave import AxilSlave, Registers
 from tb.pins import Driver, unsigned
-from tb.stream import CLOCK_NS, MANY, parameters, parametrize
+from tb.stream import MANY, parameters, parametrize, start_clock
 
 QUIET_CLOCKS = 300  # without a byte; a byte too many that comes later differs in the next comparison
 LAST_CLOCKS = 2000  # the same behind the last comparison: more than a packet of depth takes until its first byte
@@ -65,7 +64,7 @@ class Board:
         dut.rst.value, dut.cold_rst.value = 1, 1
         self.drive(in_valid=0, in_broken=0, s_axis_tvalid=0, s_event_tvalid=0, out_ready=0, m_axis_tready=0)
         AxilSlave(dut, self.registers, iter(lambda: bool(self.goes()), None), cocotb.RANDOM_SEED)
-        Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(dut.clk)
         for _ in range(4):
             await RisingEdge(dut.clk)
         dut.rst.value, dut.cold_rst.value = 0, 0

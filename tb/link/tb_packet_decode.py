@@ -5,7 +5,6 @@ import random
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.link.framing import LONGEST_BODY
@@ -13,7 +12,7 @@ from tactile_depth.chip.link.packets import SELECT, TO_DEVICE, Ask, Kind, Pictur
 from tb.axis import profile
 from tb.cases import on_bench
 from tb.pins import Driver, by_name
-from tb.stream import CLOCK_NS, parametrize
+from tb.stream import parametrize, start_clock
 
 LENGTHS = {  # of kind and fields: about the limits, and near each power of two
     Kind.ASK: (1, 2, 3),
@@ -69,7 +68,7 @@ class Bench:
         """Start the clock and reset."""
         dut = self.dut
         self.drive(rst=1, **dict.fromkeys((*SOURCE, "request_ready", "picture_ready"), 0))
-        Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(dut.clk)
         self.edge = RisingEdge(dut.clk)
         await ClockCycles(dut.clk, 3)
 

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """picture_pixels against the model of the device: packets of any size, some of them lost, twice, or wrong."""
 
-import os
 import random
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.link.device import Build, LinkDevice
@@ -15,7 +13,7 @@ from tactile_depth.chip.link.packets import MOST_PIXELS, Picture
 from tb.axis import AxisMonitor, AxisSink, AxisSource, profile
 from tb.cases import on_bench
 from tb.pins import Driver, unsigned
-from tb.stream import CLOCK_NS, MANY, parameters, parametrize
+from tb.stream import MANY, parameters, parametrize, start_clock
 
 LONGEST = 5_000  # clocks until all pixels have left
 
@@ -24,7 +22,6 @@ class Bench:
     """Bench of a host that sends pictures, whose video is compared with that of the model."""
 
     def __init__(self, dut: Any, stalls: str = "none") -> None:
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut = dut
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.rows, self.columns = parameters(dut, "Rows", "Columns")
@@ -35,7 +32,7 @@ class Bench:
         self.monitor = AxisMonitor(dut, "m_axis", prefix="t")
 
     async def start(self) -> None:
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         await self.reset()
 
     async def reset(self) -> None:

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """register_access against the model of the device: the same accesses and replies, whatever streams and port do."""
 
-import os
 import random
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.link.device import Build, LinkDevice
@@ -15,7 +13,7 @@ from tactile_depth.chip.link.packets import Ask, PacketReader, Read, ReadReply, 
 from tb.axis import AxisMonitor, AxisSink, AxisSource, profile
 from tb.cases import on_bench
 from tb.link.axil_slave import AxilSlave, Registers
-from tb.stream import CLOCK_NS, MANY, parameters, parametrize
+from tb.stream import MANY, parameters, parametrize, start_clock
 
 Request = Read | Write
 LONGEST = 5_000  # clocks until all replies have left
@@ -25,7 +23,6 @@ class Bench:
     """Bench of a host that sends requests, and of a port; each access and reply is compared with the model."""
 
     def __init__(self, dut: Any, stalls: str = "none") -> None:
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut = dut
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.width, self.accesses = parameters(dut, "AddressWidth", "Accesses")
@@ -46,7 +43,7 @@ class Bench:
         self.device = LinkDevice(build, self.model_registers.read, self.model_registers.write)
 
     async def start(self) -> None:
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         await self.reset()
 
     async def reset(self, clocks: int = 2) -> None:

@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """status_packet against packets.Status: each request makes a packet of the fields of the clock in which it begins."""
 
-import os
 import random
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.link.depth_formats import DepthFormat
 from tactile_depth.chip.link.packets import Status
 from tb.axis import PROFILES, profile
-from tb.stream import CLOCK_NS, parametrize
+from tb.stream import parametrize, start_clock
 
 PROFILES["rarely"] = lambda rng: (rng.random() < 0.2 for _ in iter(int, 1))
 CLOCKS = 3000
@@ -29,10 +27,9 @@ def random_body(chance: random.Random) -> bytes:
 
 async def play(dut: Any, requests: float, resets: float, accepts: str) -> int:
     """Compare every output in every clock with what the packets so far ask for; return how many packets were sent."""
-    dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     chance, ready, edge = random.Random(cocotb.RANDOM_SEED), profile(accepts), RisingEdge(dut.clk)
     dut.rst.value, dut.request.value, dut.status_ready.value, dut.fields.value = 1, 0, 0, 0
-    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+    start_clock(dut.clk)
     for _ in range(2):
         await edge
     due, left, sent, was_reset, body = False, b"", 0, True, b""

@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """uart_receive against tactile_depth.chip.link.uart: bytes at several rates, gaps, breaks, noise, resets."""
 
-import os
 import random
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.link.uart import receive, transmit
-from tb.stream import CLOCK_NS, parameters, parametrize
+from tb.stream import parameters, parametrize, start_clock
 
 BYTES = 40
 LEVELS = 120
@@ -32,12 +30,11 @@ def line_of(data: Any, clocks_a_bit: Any, gaps: Any) -> Any:
 
 async def play(dut: Any, levels: Any, resets: Any = ()) -> Any:
     """Drive the pin with levels, the first of them in a reset, and those of `resets`; return the bytes received."""
-    dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     edge = RisingEdge(dut.clk)
     received: list[Any] = []
     (divider,) = parameters(dut, "Divider")
     dut.rst.value, dut.line.value = 1, levels[0]
-    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+    start_clock(dut.clk)
     await ClockCycles(dut.clk, 8)
     dut.rst.value = 0
     for clock, level in enumerate([*levels, *[levels[-1]] * 12 * divider]):

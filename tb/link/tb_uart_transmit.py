@@ -1,28 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """uart_transmit against tactile_depth.chip.link.uart: every level of every bit; gaps, a reset."""
 
-import os
 import random
 from itertools import groupby
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.link.uart import BITS, receive, transmit
 from tb.axis import AxisSource, profile
-from tb.stream import CLOCK_NS, parameters, parametrize
+from tb.stream import parameters, parametrize, start_clock
 
 BYTES = 40
 
 
 async def start(dut: Any, offers: str) -> Any:
     """Start clock and driver, reset, and record the level of the line from then on."""
-    dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     dut.rst.value = 1
     source = AxisSource(dut, "in", ("data",), offers=profile(offers))
-    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+    start_clock(dut.clk)
     await ClockCycles(dut.clk, 3)
     dut.rst.value = 0
     await RisingEdge(dut.clk)

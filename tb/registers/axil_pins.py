@@ -7,12 +7,11 @@ from collections.abc import Callable, Coroutine
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.registers.axil_port import AxilPort, Pins
 from tb.pins import by_name
-from tb.stream import CLOCK_NS
+from tb.stream import start_clock
 
 INPUTS = tuple(
     f"s_axil_{pin}"
@@ -94,7 +93,7 @@ class PortChecker:
         for name in self.inputs:
             getattr(self.dut, name).value = 0
         self.dut.rst.value = 1
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         await RisingEdge(self.dut.clk)
         for task in self.tasks():
             cocotb.start_soon(task)

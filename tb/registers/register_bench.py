@@ -12,13 +12,12 @@ from types import MappingProxyType
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.registers.axil_port import strobed_bits
 from tactile_depth.chip.registers.register_map import ADDRESS_WIDTH, MAP, WORD, Register
 from tb.pins import Driver, by_name
-from tb.stream import CLOCK_NS, REGRESS
+from tb.stream import REGRESS, start_clock
 
 RANDOM_CLOCKS = 10_000 if REGRESS else 2_000
 WHOLE = 0xF  # every byte is strobed
@@ -45,7 +44,7 @@ class RegisterBench:
         self.offset = {register.name: register.offset for register in self.registers}
         self.name_at = {offset: name for name, offset in self.offset.items()}
         self.random = random.Random(cocotb.RANDOM_SEED)
-        Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(dut.clk)
 
     # A core's own: its model.
 

@@ -6,7 +6,6 @@ The cores inside have their own testbenches. The tests here check that together 
 
 from __future__ import annotations
 
-import os
 import random
 from typing import Any
 
@@ -382,7 +381,6 @@ async def what_shows_as_it_is(checker: Checker, dut: Any) -> None:
 async def random_traffic(checker: Checker, dut: Any, pressure: float) -> None:
     """Drive random reads, writes and events; ready of the responses is low with probability `pressure`."""
     rng = random.Random(cocotb.RANDOM_SEED)
-    dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     master = master_of(dut)
     done = False
     since_start = 0

@@ -6,12 +6,11 @@ from __future__ import annotations
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tb.axil import OFFSET, present, value_of, write
-from tb.stream import CLOCK_NS
+from tb.stream import start_clock
 
 INPUTS = (
     *("s_axis_tdata", "s_axis_tvalid", "s_axis_tlast", "s_axis_tuser", "m_axis_tready", "m_event_tready"),
@@ -52,7 +51,7 @@ async def banks_are_known_after_a_cold_reset(dut: Any) -> None:
     keep."""
     for name in INPUTS:
         getattr(dut, name).value = 0
-    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+    start_clock(dut.clk)
     await reset(dut, cold=0)
     assert "X" in (await pending(dut)).upper(), "the test is void: the banks had a value at power-up"
     await reset(dut, cold=1)

@@ -6,14 +6,12 @@ latency, counter and status bit; `contact` is compared in every cycle. Each test
 with the tables of its build.
 """
 
-import os
 import random
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.configuration import Configuration
@@ -26,7 +24,7 @@ from tb.axis import AxisMonitor, AxisSink, AxisSource, BeatMonitor, positions, p
 from tb.pixels import pack
 from tb.second_client import SecondMaster, SecondSink, SecondSource
 from tb.settings import RUN
-from tb.stream import CLOCK_NS, at_every_edge, configuration
+from tb.stream import at_every_edge, configuration, start_clock
 from tb.tactile_depth import device_tables
 from tb.tactile_depth.contact_watch import RECORD, ContactWatch
 from tb.tactile_depth.device_tables import Content, DeviceTables
@@ -45,7 +43,6 @@ class Pipeline:
     """Drivers, monitors, scoreboard and registers of one test."""
 
     def __init__(self, dut: Any, offers: str = "none", accepts: str = "none", timeout: int = 0) -> None:
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.random = dut, random.Random(cocotb.RANDOM_SEED)
         self.config: Configuration = configuration()
         self.rows, self.columns = self.config.rows, self.config.columns
@@ -75,7 +72,7 @@ class Pipeline:
 
     async def start(self) -> None:
         """Start clock and monitors, reset, and restore the tables that earlier tests have changed."""
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         at_every_edge(self.dut.clk, self.contact.watch_contact())
         cocotb.start_soon(self.contact.watch_events())
         functional_coverage.start(self.dut, self.config, *self.profiles)

@@ -4,20 +4,18 @@
 tests/video/test_frame_guard.py checks the frames and faults of the model.
 """
 
-import os
 import random
 from itertools import chain, repeat
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.video.frame_guard import FAULTS, frame_guard
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSource, broken, faults_of, positions, profile, spoiled, video
 from tb.cases import on_bench
 from tb.pins import by_name, unsigned
-from tb.stream import CLOCK_NS, REGRESS, parameters, parametrize, raster
+from tb.stream import REGRESS, parameters, parametrize, raster, start_clock
 
 TIMEOUT = 5
 RANDOM_FRAMES = 60
@@ -70,7 +68,6 @@ class Collector:
 class Bench:
     def __init__(self, dut: Any, stalls: str = "none") -> None:
         offers, enabled = STALLS[stalls]
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut = dut
         self.rows, self.columns = parameters(dut, "Rows", "Columns")
         self.random = random.Random(cocotb.RANDOM_SEED)
@@ -81,7 +78,7 @@ class Bench:
         self.enabled = profile(enabled, 2)
 
     async def start(self, timeout: int = 0) -> None:
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        start_clock(self.dut.clk)
         cocotb.start_soon(self.enable())
         await self.reset(3, timeout)
 
