@@ -6,23 +6,19 @@ docs/exit-status.md lists the statuses; make itself returns only 0 and 2.
 
 import importlib
 import io
+import re
 import sys
+from pathlib import Path
 
 from commands.common import signals, variables
 from tactile_depth.base.errors import InputError
 
-ROOMS = {
-    "run": ("calibrate", "reflex", "sim"),
-    "study": ("baselines", "budget", "certify", "extremes", "figures", "presses", "report", "sweep", "trade", "tune"),
-    "verify": ("coverage", "formal", "lint", "mutate", "netlists", "quick", "regress", "sign-off", "test", "upsets"),
-    "hardware": ("asic", "fpga", "registers", "synth", "wrap"),
+COMMANDS = {
+    begins[1]: path.parent.name
+    for path in sorted(Path(__file__).parent.glob("*/*.py"))
+    if (begins := re.match(r'# SPDX.*\n"""`make ([a-z-]+)', path.read_text()))
 }
-INTERRUPTED = {  # says what a signal leaves
-    **dict.fromkeys(("baselines", "budget", "reflex"), "nothing was written"),
-    **dict.fromkeys(("sweep", "trade"), "every row measured is kept, run it again to go on"),
-    "report": "the rows of the sweep are kept, run it again to go on",
-}
-COMMANDS = {command: room for room, commands in ROOMS.items() for command in commands}
+"""Commands and their folders: modules whose docstring begins with `make <command>`."""
 
 
 def main() -> None:
@@ -34,10 +30,11 @@ def main() -> None:
         unknown = InputError(f"{command or 'no command'}: unknown command: accepted are {', '.join(sorted(COMMANDS))}")
         print(f"python -m commands: {unknown}", file=sys.stderr)
         sys.exit(variables.BAD_INPUT)
-    with signals.guarded(), variables.reported(command, INTERRUPTED.get(command, "")):  # imports take seconds
+    with signals.guarded(), variables.reported(command):  # imports take seconds
         sys.argv = sys.argv[1:]
         module = importlib.import_module(f"commands.{COMMANDS[command]}.{command.replace('-', '_')}")
-        sys.exit(variables.read(module.main, sys.argv[1:]))
+        with variables.reported(command, getattr(module, "INTERRUPTED", "")):
+            sys.exit(variables.read(module.main, sys.argv[1:]))
 
 
 if __name__ == "__main__":

@@ -42,6 +42,7 @@ from tactile_depth.sensor.sensor import Sensor
 
 RESULTS = ("reflex.json", "reflex.png")
 DEFAULT_OUT = ReflexRun.out
+INTERRUPTED = "nothing was written"
 DECIDING_CLOCKS = 1  # cycles from the deciding depth on m_axis to `contact`
 
 

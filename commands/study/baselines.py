@@ -60,6 +60,7 @@ from commands.study.baseline_throughput import FEWEST_RUNS, WARM_UPS, timed
 
 RESULTS = ("baselines.json", "baselines.png")
 DEFAULT_OUT = repository.ROOT / "build" / "baselines"
+INTERRUPTED = "nothing was written"
 GRIDS = (64, 128, 256, 512)
 SCENE = "bench"
 RUNS = 1000

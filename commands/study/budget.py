@@ -67,6 +67,7 @@ AREAS = {"contact": "contact", "untouched": "untouched gel"}  # of the table of 
 WIDTHS = tuple(width.variable for width in SOLVER_WIDTHS.values())
 RESULTS = ("budget.json", "budget.png")
 DEFAULT_OUT = repository.ROOT / "build" / "budget"
+INTERRUPTED = "nothing was written"
 CAMERA = "raw8"
 PRESSES = 30  # of the drawn calibration
 UNTOUCHED_MM = 2.0  # from displaced gel; of a press `AT_REST`

@@ -42,6 +42,7 @@ from commands.study.report_page import LOOKS, PUBLISHED_LOOK, Section, page, res
 from commands.study.transform_noise import Compliance
 
 DEFAULT_OUT = ROOT / "build" / "report"
+INTERRUPTED = "the rows of the sweep are kept, run it again to go on"
 SIZE = 128
 CONSECUTIVE = 1000  # frames, at least
 RTL_S = 240  # of these frames and the extremes, on two cores

@@ -28,6 +28,8 @@ from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 
 CONNECT_S, WORKERS_S = 10, 60  # wait for a cluster, and for its first worker
+INTERRUPTED = "every row measured is kept, run it again to go on"
+"""Sentence of a study that a signal ends; `python -m commands` prints what a module has under this name."""
 
 
 def _version() -> str:

@@ -22,6 +22,7 @@ from commands.common.variables import Name, Place
 from commands.cost.cost import ECP5, cost
 from commands.study import study
 from commands.study.accuracy import errors
+from commands.study.study import INTERRUPTED as INTERRUPTED
 from commands.study.study import Study, built
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import COEFFICIENT, DEFAULT_WIDTHS, SOLVER_WIDTHS, STORED, WIDTHS, Configuration

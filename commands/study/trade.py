@@ -36,6 +36,7 @@ from commands.common.zero_offset import untouched
 from commands.cost.cost import ECP5, cost
 from commands.run import sim
 from commands.study.presses import Measured, measured
+from commands.study.study import INTERRUPTED as INTERRUPTED
 from commands.study.study import VERSION, Study, built
 from commands.study.trade_front import DEFAULT, LUT, Point, Row, draw, front_of, summary, write_beaten
 from tactile_depth.base import files
