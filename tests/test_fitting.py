@@ -154,8 +154,8 @@ def test_the_table_gives_a_bin_the_mean_slope_of_its_pixels(fit: Any, presses: A
     views, gradient = presses.views, fit.sensor.gradient
     assert gradient.shape == (32, 32, 32, 2)
     truth, codes = (
-        np.concatenate([value(view)[view.press.distance(view.grid) < FITTED_SHARE] for view in views])  # type: ignore[no-untyped-call]
-        for value in (lambda view: view.press.slopes(view.grid), lambda view: view.codes >> 3)
+        np.concatenate([value(view)[view.press.distance < FITTED_SHARE] for view in views])  # type: ignore[no-untyped-call]
+        for value in (lambda view: view.press.slopes, lambda view: view.codes >> 3)
     )
     index = np.ravel_multi_index(tuple(codes.T), (32, 32, 32))
     steep = np.hypot(*truth.T) > 0.35  # colours that no frame without contact has
@@ -180,7 +180,7 @@ def test_a_sensor_knows_what_it_was_fitted_to(sensor: Any, presses: Any) -> None
     assert sensor.bits_per_channel == 5
     assert sensor.fitted_slope == dict.fromkeys(MODELS, steepest)
     assert sensor.largest_slope == steepest
-    assert sensor.height_errors["lut"].presses == sum(view.press.is_central(view.grid) for view in presses.views)
+    assert sensor.height_errors["lut"].presses == sum(view.press.is_central for view in presses.views)
     assert sensor.name == "presses"
 
 
@@ -358,7 +358,7 @@ def test_presses_that_the_picture_cuts_are_left_out_with_a_note(sensor: Any, fol
     assert cut
     assert len(evaluation.presses) == 24 - len(cut)
     assert [note.split(":")[0] for note in evaluation.notes] == cut
-    assert evaluation.central == tuple(view.press.is_central(view.grid) for view in presses.views if view.is_whole)
+    assert evaluation.central == tuple(view.press.is_central for view in presses.views if view.is_whole)
     assert "cuts the contact: left out" in evaluation.notes[0]
     assert all(note in str(evaluation) for note in evaluation.notes)
     assert [Path(warning.filename) for warning in caught] == [Path(__file__)]

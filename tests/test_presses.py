@@ -34,7 +34,7 @@ from tests.ball_presses import (
     write_table,
 )
 
-BALL = GridPress("ball", 30.4, 33.7, 14.0, 26.0)
+BALL = GridPress("ball", (64, 64), 30.4, 33.7, 14.0, 26.0)
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +67,7 @@ def test_the_recovered_height_is_that_of_the_cap() -> None:
 
 def test_the_largest_slope_is_that_at_the_edge_of_the_contact() -> None:
     assert BALL.largest_slope == pytest.approx(math.tan(math.asin(14 / 26)))
-    assert np.linalg.norm(BALL.slopes((64, 64)), axis=-1).max() == pytest.approx(BALL.largest_slope, rel=0.05)
+    assert np.linalg.norm(BALL.slopes, axis=-1).max() == pytest.approx(BALL.largest_slope, rel=0.05)
 
 
 # Circles.

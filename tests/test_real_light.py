@@ -28,7 +28,7 @@ def on_grid(pipeline: td.Pipeline, press: Any) -> GridPress:
     """Return the geometry of a press on the grid of a pipeline."""
     scale = pipeline.sensor.camera.columns / pipeline.grid[1]  # type: ignore[union-attr]
     x, y, radius = (np.array(press.circle) + np.array([0.5, 0.5, 0])) / scale
-    return GridPress(press.name, x - 0.5, y - 0.5, radius, press.ball_radius_px / scale)
+    return GridPress(press.name, pipeline.grid, x - 0.5, y - 0.5, radius, press.ball_radius_px / scale)
 
 
 def measure(pipeline: td.Pipeline, press: Any, result: td.Result) -> Measured:

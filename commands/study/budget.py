@@ -158,7 +158,7 @@ def real_presses(request: BudgetRun, pictures: PressPictures) -> Iterator[tuple[
     """Give place and products of each whole press, by the calibration from all others."""
     presses = to_grid(pictures, camera_pitch_mm(pictures, request.pitch_mm), choice=request.choice)
     fit = fitted(presses)
-    camera, chance, grid = Camera.of(presses, request.choice), np.random.default_rng(1), presses.grid
+    camera, chance = Camera.of(presses, request.choice), np.random.default_rng(1)
     rest = presses.background_on_grid, camera.rounded(presses.background), camera.average(presses.background)
     images = {press.name: press.image for press in pictures.presses}
     for view in presses.views:
@@ -169,17 +169,17 @@ def real_presses(request: BudgetRun, pictures: PressPictures) -> Iterator[tuple[
         steady = image if isinstance(image, np.ndarray) else read_picture(Path(image))
         levels = steady * request.drawn.light(chance)
         pipeline = request.pipeline(replace(fit.without[press.name], camera=fit.sensor.camera), rest[0])
-        distance, height = press.distance(grid), press.depth(grid)
+        distance, height = press.distance, press.depth
         seen = Seen(
-            PLACES[0] if press.is_central(grid) else PLACES[1],
+            PLACES[0] if press.is_central else PLACES[1],
             request.drawn.picture(levels, chance),
             levels,
             steady,
-            press.slopes(grid),
+            press.slopes,
             ((distance < 1) | (distance > AT_REST))[..., None],
             np.nan_to_num(height),
             np.isfinite(height),
-            press.untouched(grid),
+            press.untouched,
             height_of_cap(press),
         )
         exact = [Exact(pipeline, each) for each in rest]

@@ -59,9 +59,8 @@ class Measured:
 
 def measured(result: td.Result, press: GridPress) -> Measured:
     """Measure the result of a picture of a press whose geometry is on the same grid."""
-    rows, columns = result.codes.shape
     pitch, depth = result.pixel_pitch_mm, result.depth_mm
-    rest = depth[press.untouched((rows, columns))]
+    rest = depth[press.untouched]
     rest = np.abs(rest - rest.mean())
     row, column = result.contact.centroid_px  # of the depth map, whose centre of the ball is at y + 0.5, x + 0.5
     return Measured(
@@ -149,7 +148,7 @@ def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
         if simulator is not None:
             differing += codes_differ(simulator, pipeline, view.frame, result)
     print(f"each press by a calibration from all others, {presses.grid[1]} x {presses.grid[0]}, {pictures.name}\n")
-    central = np.array([view.press.is_central(view.grid) for view in views])
+    central = np.array([view.press.is_central for view in views])
     print(means(same, central))
     rows = []
     for light, values in lit.items():

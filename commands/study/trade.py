@@ -158,7 +158,7 @@ def prepare(folder: Path, source: Path, pitch_mm: float | None) -> Prepared:
     pictures = gather(source)
     pitch = camera_pitch_mm(pictures, pitch_mm)
     on = to_grid(pictures, pitch)
-    whole = {view.press.name: view.press.is_central(on.grid) for view in on.views if view.is_whole}
+    whole = {view.press.name: view.press.is_central for view in on.views if view.is_whole}
     middle, sides = (frozenset(name for name, central in whole.items() if central == is_in) for is_in in (True, False))
     study = Prepared(folder, source, pitch, middle, sides, _digest(pictures, pitch))
     stamp = folder / "presses.txt"

@@ -72,7 +72,7 @@ def test_the_whole_error_of_a_press_is_that_of_make_presses(pictures: PressPictu
     for view, (place, found) in zip(views, budget.real_presses(request, pictures), strict=True):
         sensor = replace(fit.without[view.press.name], camera=fit.sensor.camera)
         ours = measured(request.pipeline(sensor, presses.background_on_grid)(view.frame), view.press)
-        assert place == PLACES[not view.press.is_central(view.grid)]
+        assert place == PLACES[not view.press.is_central]
         assert whole(found)["contact"] == pytest.approx(ours.height_rms)
         assert whole(found)["untouched"] == pytest.approx(ours.rest_rms)
         rms = dict(zip((*FRONT, budget.BESIDE, *BACK), np.sqrt(found["contact"].diagonal()), strict=True))

@@ -26,9 +26,9 @@ def test_every_press_is_measured_by_the_others_and_equals_the_rtl(
 
 def test_a_drawn_depth_measures_as_it_was_drawn() -> None:
     """Give a result the depth of the ball itself on flat gel."""
-    press = GridPress("ball", 60.3, 40.8, 12.0, 22.0)
     grid = (96, 128)
-    depth = np.nan_to_num(press.depth(grid))
+    press = GridPress("ball", grid, 60.3, 40.8, 12.0, 22.0)
+    depth = np.nan_to_num(press.depth)
     pipeline = td.Pipeline(td.load("synthetic"), grid=grid, threshold_mm=0.1, arithmetic="float")
     pitch = pipeline.pixel_pitch_mm
     codes = np.rint(depth * pitch / pipeline.depth_lsb_mm).astype(np.int32)

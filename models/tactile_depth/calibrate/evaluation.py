@@ -143,7 +143,7 @@ def evaluation_of(
 ) -> Evaluation:
     """Return the evaluation of presses whose scores are known."""
     names = tuple(view.press.name for view in views)
-    central = tuple(view.press.is_central(presses.grid) for view in views)
+    central = tuple(view.press.is_central for view in views)
     return Evaluation(names, tuple(view.diameter_mm for view in views), central, scores, presses.notes + notes)
 
 
@@ -229,8 +229,8 @@ def slopes_and_depths(
 
 
 def _score(view: View, slopes: np.ndarray, depth: np.ndarray, pitch_mm: float) -> Score:
-    outside = view.press.distance(view.grid) > NOTHING_TOUCHES
+    outside = view.press.distance > NOTHING_TOUCHES
     slope = math.sqrt((slopes[outside] ** 2).mean()) if outside.any() else math.nan
-    far = view.press.untouched(view.grid)
+    far = view.press.untouched
     rest_mm = float(depth[far].std()) * pitch_mm if far.any() else math.nan
     return Score(view.press.height_rms(depth) * pitch_mm, view.press.recovered(depth), slope, rest_mm)

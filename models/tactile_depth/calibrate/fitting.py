@@ -198,7 +198,7 @@ def fit_presses(
         Wraps the list of the presses that are left out in turn, for example to show progress.
     """
     measured = [view for view in presses.views if view.is_whole]
-    central = sum(view.press.is_central(presses.grid) for view in measured)
+    central = sum(view.press.is_central for view in measured)
     if len(presses.views) < FEWEST or central < FEWEST_MEASURED:
         why = f"; {presses.notes[0]}" if presses.notes else ""
         raise InputError(
@@ -226,14 +226,12 @@ def fit_presses(
     return Fit(sensor, evaluation, without)
 
 
-def fit_folds(
-    presses: GridPresses, folds: Sequence[Collection[str]], models: Sequence[str] = MODELS, bits: int = DEFAULT_BITS
-) -> list[Sensor]:
+def fit_folds(presses: GridPresses, folds: Sequence[Collection[str]]) -> list[Sensor]:
     """Fit a calibration for each fold, the names of some presses, to all presses that are not in it.
 
     Their errors are not measured.
     """
-    parts = {view.press.name: _parts(view, presses.grid_pitch_mm, models, bits) for view in presses.views}
+    parts = {view.press.name: _parts(view, presses.grid_pitch_mm, MODELS, DEFAULT_BITS) for view in presses.views}
     rows, columns = presses.background.shape[:2]
     camera = Camera(rows, columns, presses.pixel_format)
     fitted = []
@@ -258,7 +256,7 @@ def errors_by_number(
     """
     chance = np.random.default_rng(1)
     parts = {view.press.name: _parts(view, presses.grid_pitch_mm, ("cubic",), DEFAULT_BITS) for view in presses.views}
-    central = [view for view in presses.views if view.press.is_central(presses.grid)]
+    central = [view for view in presses.views if view.press.is_central]
     errors = {}
     for number in progress(list(numbers)):
         scores: list[Score] = []
@@ -331,7 +329,7 @@ def _cubic(views: Sequence[View], equations: Sequence[Equations]) -> tuple[np.nd
     colours = np.stack(np.meshgrid(entries, entries, entries, indexing="ij"), axis=-1)
     corrections = _colour_powers(colours, CORRECTION_DEGREES) @ solution[:, count:].T
     seen = np.concatenate(
-        [correction_codes(view.deviations[view.press.distance(view.grid) < 1]) >> 8 - CORRECTION_BITS for view in views]
+        [correction_codes(view.deviations[view.press.distance < 1]) >> 8 - CORRECTION_BITS for view in views]
     )
     limit = np.abs(corrections[tuple(np.unique(seen, axis=0).T)]).max(axis=0)
     return solution[:, :count].reshape(CUBIC), corrections.clip(-limit, limit)
@@ -341,15 +339,15 @@ def _equations(view: View, pitch_mm: float, model: str) -> Equations:
     """Return what a press adds to the normal equations of slopes, depths and the height of its cap."""
     is_cubic = model == "cubic"
     colours = view.deviations * DEVIATION.lsb
-    terms = pixel_terms(*view.grid, pitch_mm)[..., : CUBIC[-1] if is_cubic else COEFFICIENTS[-1]]
-    feature = (colours[..., None] * terms[..., None, :]).reshape(*view.grid, -1)
+    terms = pixel_terms(*view.press.grid, pitch_mm)[..., : CUBIC[-1] if is_cubic else COEFFICIENTS[-1]]
+    feature = (colours[..., None] * terms[..., None, :]).reshape(*view.press.grid, -1)
     if is_cubic:
         feature = np.concatenate((feature, _colour_powers(colours, CORRECTION_DEGREES)), axis=-1)
-    inside = view.press.distance(view.grid) < FITTED_SHARE
+    inside = view.press.distance < FITTED_SHARE
     squares = np.kron(np.eye(2), feature[inside].T @ feature[inside])
-    products = (feature[inside].T @ view.press.slopes(view.grid)[inside]).T.ravel()
-    depths, ball = _depth_features(feature), view.press.depth(view.grid)
-    touches, far = np.isfinite(ball), view.press.untouched(view.grid)
+    products = (feature[inside].T @ view.press.slopes[inside]).T.ravel()
+    depths, ball = _depth_features(feature), view.press.depth
+    touches, far = np.isfinite(ball), view.press.untouched
     within, height = (each - each.mean(axis=-1, keepdims=True) for each in (depths[:, touches], ball[touches]))
     squares += DEPTH_WEIGHT * within @ within.T
     products += DEPTH_WEIGHT * within @ height
@@ -408,7 +406,7 @@ class TableSums:
 def _table_sums(view: View, bits: int) -> TableSums:
     entries = 1 << 3 * bits
     index = np.ravel_multi_index(tuple(np.moveaxis(view.codes >> 8 - bits, -1, 0)), (1 << bits,) * 3)
-    truth, distance = view.press.slopes(view.grid), view.press.distance(view.grid)
+    truth, distance = view.press.slopes, view.press.distance
     powers = _colour_powers(view.codes / FLAT_CODE - 1, PRIOR_DEGREES)
     inside = distance < FITTED_SHARE
     regions = (inside, distance > NOTHING_TOUCHES)

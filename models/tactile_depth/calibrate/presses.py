@@ -49,6 +49,7 @@ class GridPress:
     """
 
     name: str
+    grid: tuple[int, int]
     x: float
     y: float
     contact_radius: float
@@ -65,52 +66,60 @@ class GridPress:
         """Slope of the ball at the contact circle."""
         return self.contact_radius / math.sqrt(self.ball_radius**2 - self.contact_radius**2)
 
-    def margin(self, grid: tuple[int, int]) -> float:
-        """Return the distance from the contact circle to the nearest edge of a grid; negative if it is cut."""
-        rows, columns = grid
+    @property
+    def margin(self) -> float:
+        """Distance from the contact circle to the nearest edge of the grid; negative if it is cut."""
+        rows, columns = self.grid
         across, down = min(self.x, columns - 1 - self.x), min(self.y, rows - 1 - self.y)
         return min(across * self.aspect, down) - self.contact_radius
 
-    def is_central(self, grid: tuple[int, int]) -> bool:
-        """Return True if the contact lies completely in the middle square of a grid."""
-        side = min(grid)
-        top, left = ((length - side) / 2 for length in grid)
-        return replace(self, x=self.x - left, y=self.y - top).margin((side, side)) >= 0
+    @property
+    def is_central(self) -> bool:
+        """True if the contact lies completely in the middle square of the grid."""
+        side = min(self.grid)
+        top, left = ((length - side) / 2 for length in self.grid)
+        return replace(self, grid=(side, side), x=self.x - left, y=self.y - top).margin >= 0
 
-    def distance(self, grid: tuple[int, int]) -> np.ndarray:
-        """Return the distance of each pixel from the centre in contact radii, float64 (rows, columns)."""
-        rows, columns = np.indices(grid)
+    @property
+    def distance(self) -> np.ndarray:
+        """Distance of each pixel from the centre in contact radii, float64 (rows, columns)."""
+        rows, columns = np.indices(self.grid)
         return np.hypot((columns - self.x) * self.aspect, rows - self.y) / self.contact_radius
 
-    def slopes(self, grid: tuple[int, int]) -> np.ndarray:
-        """Return the change of the depth from pixel to pixel, float64 (rows, columns, 2), in heights of a pixel.
+    @property
+    def slopes(self) -> np.ndarray:
+        """Change of the depth from pixel to pixel, float64 (rows, columns, 2), in heights of a pixel.
 
         It is that of the ball in the contact, 0 elsewhere. Of square pixels it is the slope.
         """
-        rows, columns = np.indices(grid, dtype=np.float64)
+        rows, columns = np.indices(self.grid, dtype=np.float64)
         offset = np.stack(((columns - self.x) * self.aspect, rows - self.y), axis=-1)
         squared = (offset**2).sum(axis=-1)
         touches = squared < self.contact_radius**2
         drop = np.sqrt(np.where(touches, self.ball_radius**2 - squared, 1))
         return np.where(touches[..., None], -offset * (self.aspect, 1) / drop[..., None], 0)
 
-    def _squared(self, grid: tuple[int, int]) -> np.ndarray:
-        """Return the squared distance of each depth of a map from the centre."""
-        rows, columns = np.indices(grid)
+    @property
+    def _squared(self) -> np.ndarray:
+        """Squared distance of each depth of a map from the centre."""
+        rows, columns = np.indices(self.grid)
         return ((columns - self.x - 0.5) * self.aspect) ** 2 + (rows - self.y - 0.5) ** 2
 
-    def depth(self, grid: tuple[int, int]) -> np.ndarray:
-        """Return the depth of the ball above the contact circle, float64 (rows, columns), NaN outside."""
-        squared = self._squared(grid)
+    @property
+    def depth(self) -> np.ndarray:
+        """Depth of the ball above the contact circle, float64 (rows, columns), NaN outside."""
+        squared = self._squared
         height = np.sqrt(np.maximum(self.ball_radius**2 - squared, 0)) - (self.ball_radius - self.cap_height)
         return np.where(squared < self.contact_radius**2, height, np.nan)
 
-    def untouched(self, grid: tuple[int, int]) -> np.ndarray:
-        """Return the depths of a map that are so far from the contact that the gel is at rest, bool (rows, columns)."""
-        return self._squared(grid) > (AT_REST * self.contact_radius) ** 2
+    @property
+    def untouched(self) -> np.ndarray:
+        """Depths of a map that are so far from the contact that the gel is at rest, bool (rows, columns)."""
+        return self._squared > (AT_REST * self.contact_radius) ** 2
 
+    @property
     def edge(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return points of the contact circle in a depth map: columns, rows, float64 (360,) each."""
+        """Points of the contact circle in a depth map: columns, rows, float64 (360,) each."""
         angle = np.linspace(0, 2 * np.pi, 360, endpoint=False)
         return (
             self.x + 0.5 + self.contact_radius / self.aspect * np.cos(angle),
@@ -119,7 +128,7 @@ class GridPress:
 
     def edge_depth(self, depth: np.ndarray) -> float:
         """Return the mean of a depth map (rows, columns) on the contact circle."""
-        x, y = self.edge()
+        x, y = self.edge
         return float(map_coordinates(depth, [y, x], order=1, mode="nearest").mean())
 
     def recovered(self, depth: np.ndarray) -> float:
@@ -128,13 +137,12 @@ class GridPress:
         A height is the mean depth within `TOP_PX` of the centre minus that on the contact circle, of the map and of the
         ball alike.
         """
-        grid = (len(depth), depth.shape[1])
-        top = self._squared(grid) <= TOP_PX**2
-        return float((depth[top].mean() - self.edge_depth(depth)) / np.nanmean(self.depth(grid)[top]))
+        top = self._squared <= TOP_PX**2
+        return float((depth[top].mean() - self.edge_depth(depth)) / np.nanmean(self.depth[top]))
 
     def height_rms(self, depth: np.ndarray) -> float:
         """Return the standard deviation of a depth map (rows, columns) from the ball in the contact, in grid pixels."""
-        return float(np.nanstd(depth - self.depth((len(depth), depth.shape[1]))))
+        return float(np.nanstd(depth - self.depth))
 
 
 @dataclass(frozen=True)
@@ -156,14 +164,9 @@ class View:
     deviations: np.ndarray
 
     @property
-    def grid(self) -> tuple[int, int]:
-        """Rows and columns."""
-        return len(self.frame), self.frame.shape[1]
-
-    @property
     def is_whole(self) -> bool:
         """True if the contact lies completely on the grid."""
-        return self.press.margin(self.grid) >= 0
+        return self.press.margin >= 0
 
 
 @dataclass(frozen=True)
@@ -381,7 +384,7 @@ def _require_colours(views: Sequence[View], name: str) -> None:
     """Raise InputError if all colours change alike in all contacts, as in grey pictures: they show no direction."""
     if not views:
         return
-    colours = np.concatenate([view.deviations[view.press.distance(view.grid) < FITTED_SHARE] for view in views])
+    colours = np.concatenate([view.deviations[view.press.distance < FITTED_SHARE] for view in views])
     first, second, _ = np.sqrt(np.linalg.eigvalsh(np.cov(colours.T.astype(np.float64)))[::-1].clip(0))
     if second < ALIKE * first:
         remedy = "give colour pictures of a gel that is lit in several colours"
@@ -410,13 +413,14 @@ def _grid_press(
     top, left = sampler.origin
     press = GridPress(
         name,
+        grid,
         (circle.x - left + 0.5) / sampler.scale - 0.5,
         (circle.y - top + 0.5) / sampler.scale - 0.5,
         circle.radius / sampler.scale,
         ball / sampler.scale,
         aspect,
     )
-    if not (press.distance(grid) < FITTED_SHARE).any():
+    if not (press.distance < FITTED_SHARE).any():
         raise InputError(f"{name}: the press is outside the picture")
     return press
 

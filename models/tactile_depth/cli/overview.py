@@ -67,9 +67,9 @@ def draw_presses(fit: Fit, presses: GridPresses) -> Image.Image:
         maps = {model: slopes_and_depths(sensor, presses, [view], model) for model in sensor.models}
         slopes, depth_mm = maps[best][0][0], maps[best][1][0] * pitch_mm
         row = min(max(round(press.y + 0.5), 0), rows - 1)
-        lines = [press.depth(presses.grid)[row] * pitch_mm]
+        lines = [press.depth[row] * pitch_mm]
         lines += [(depth[row] - press.edge_depth(depth)) * pitch_mm for _, (depth,) in maps.values()]
-        circle = np.stack(press.edge()) / [[columns], [rows]]
+        circle = np.stack(press.edge) / [[columns], [rows]]
         steepest = float(np.abs(slopes).max()) or 1.0
         tilt, depths = Scale(-steepest, steepest, "", AROUND_ZERO), Scale(float(depth_mm.min()), float(depth_mm.max()))
         along = Scale(float(np.nanmin(lines)), float(np.nanmax(lines)))
