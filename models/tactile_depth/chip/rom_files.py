@@ -66,16 +66,6 @@ def write_factors(path: Path, factors: np.ndarray, width: int) -> None:
     write_words(path, pack((-im, im, re), width), 3 * width)
 
 
-def write_transform(folder: Path, size: int, width: int) -> None:
-    """Write the ROMs of dst_forward and dst_inverse."""
-    for inverse, direction in ((False, "forward"), (True, "inverse")):
-        blocks = sorted({s.block for s in stages(size, inverse) if s.delay == 0}, reverse=True)
-        for pair, block in enumerate(blocks):
-            factors = twiddle_factors(block, inverse, width)
-            write_factors(folder / f"twiddle_{direction}_{pair}.hex", factors, width)
-        write_factors(folder / f"phase_{direction}.hex", phase_factors(size, inverse, width), width)
-
-
 def write_wide_factors(path: Path, factors: np.ndarray, width: int) -> None:
     """Write complex factors (beats, paths, 2) as wide_twiddle.sv reads them: {-Im, Im, Re} of each path, 0 lowest."""
     re, im = np.moveaxis(factors[:, ::-1], -1, 0)
@@ -86,19 +76,21 @@ def write_wide_factors(path: Path, factors: np.ndarray, width: int) -> None:
 def write_direction(folder: Path, size: int, paths: int, inverse: bool, width: int) -> None:
     """Write the ROMs of wide_fft in one direction, and the phases of the transform around it.
 
-    One path has the twiddle factors of sdf_fft.
+    With 0 paths they are those of sdf_fft, and of the transform around it; one path has the same twiddle factors.
     """
     direction = "inverse" if inverse else "forward"
     blocks = sorted({s.block for s in stages(size, inverse) if s.delay == 0}, reverse=True)
     for pair, block in enumerate(blocks):
-        if paths == 1:
-            path = folder / f"twiddle_{direction}_{pair}.hex"
-            write_factors(path, twiddle_factors(block, inverse, width), width)
-        else:
-            path = folder / f"wide_twiddle_{direction}_{pair}.hex"
+        path = folder / f"{'wide_' if paths > 1 else ''}twiddle_{direction}_{pair}.hex"
+        if paths > 1:
             write_wide_factors(path, wide_factors(size, paths, block, inverse, width), width)
-    phases = phase_factors(size, inverse, width)[positions(size, paths, 0)]
-    write_wide_factors(folder / f"wide_phase_{direction}.hex", phases, width)
+        else:
+            write_factors(path, twiddle_factors(block, inverse, width), width)
+    phases = phase_factors(size, inverse, width)
+    if paths:
+        write_wide_factors(folder / f"wide_phase_{direction}.hex", phases[positions(size, paths, 0)], width)
+    else:
+        write_factors(folder / f"phase_{direction}.hex", phases, width)
 
 
 def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
@@ -136,16 +128,9 @@ def write_thomas(folder: Path, config: Configuration) -> None:
     table = thomas_table(config)
     width = config.coefficient.width
     write_words(folder / "thomas.hex", unsigned(table.words, width), width)
-    settled_width, shift_width = table.settled_width, table.last_shift_width
-    address_width = (len(table.words) - 1).bit_length()
-    write_words(
-        folder / "thomas_index.hex",
-        table.base << settled_width | table.settled,
-        address_width + settled_width,
-    )
-    write_words(
-        folder / "thomas_last.hex", table.last_shift << width | unsigned(table.last, width), shift_width + width
-    )
+    write_words(folder / "thomas_index.hex", table.index, table.index_width)
+    last = table.last_shift << width | unsigned(table.last, width)
+    write_words(folder / "thomas_last.hex", last, table.last_shift_width + width)
 
 
 def write_wide_thomas(folder: Path, config: Configuration) -> None:
@@ -155,12 +140,7 @@ def write_wide_thomas(folder: Path, config: Configuration) -> None:
     for name, wide in zip(("wide_down", "wide_up"), tables(config), strict=True):
         count = wide.words.shape[1]
         write_words(folder / f"{name}.hex", pack(wide.words.T[::-1], width), count * width)
-        address_width = (len(wide.words) - 1).bit_length()
-        write_words(
-            folder / f"{name}_index.hex",
-            wide.base << wide.settled_width | wide.settled,
-            address_width + wide.settled_width,
-        )
+        write_words(folder / f"{name}_index.hex", wide.index, wide.index_width)
     words = []
     for shift, word in zip(table.last_shift[last], pack(table.last[last].T[::-1], width), strict=True):
         packed = 0
@@ -172,15 +152,14 @@ def write_wide_thomas(folder: Path, config: Configuration) -> None:
 
 def write_solver(folder: Path, config: Configuration) -> None:
     """Write the ROMs of the solver."""
+    size, width = config.columns, config.coefficient.width
+    # Of several lanes the inverse has half as many paths as words, because it transforms two rows at once.
+    paths = (config.down_words, config.lanes // 2) if config.lanes > 1 else (0, 0)
+    for inverse, count in enumerate(paths):
+        write_direction(folder, size, count, bool(inverse), width)
     if config.lanes > 1:
-        write_direction(folder, config.columns, config.down_words, False, config.coefficient.width)
-        # The inverse has half as many paths as words, because it transforms two rows at once.
-        write_direction(folder, config.columns, config.lanes // 2, True, config.coefficient.width)
         write_wide_thomas(folder, config)
-        return
-    write_transform(folder, config.columns, config.coefficient.width)
-    if config.solver == "tridiagonal":
+    elif config.solver == "tridiagonal":
         write_thomas(folder, config)
     else:
-        width = config.coefficient.width + reciprocals(config).shift_width
-        write_words(folder / "reciprocal.hex", reciprocal_rom(config), width)
+        write_words(folder / "reciprocal.hex", reciprocal_rom(config), width + reciprocals(config).shift_width)

@@ -18,7 +18,7 @@ from tactile_depth.chip.poisson.transform.orders import bit_reversed, makhoul
 from tactile_depth.chip.poisson.transform.sdf_fft import halvings, twiddle_stages
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
-from tactile_depth.chip.rom_files import write_transform
+from tactile_depth.chip.rom_files import write_direction
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.poisson.transform.transforms import coefficient_noise, transform_parameters
 from tests.rtl import test_rtl as test_rtl
@@ -26,7 +26,7 @@ from tests.rtl import test_rtl as test_rtl
 
 def built(parameters: dict[str, int], **runs: Any) -> Structure:
     size, coeff = parameters["Size"], parameters["CoeffWidth"]
-    return Structure(parameters, roms=lambda folder: write_transform(folder, size, coeff), **runs)
+    return Structure(parameters, roms=lambda folder: write_direction(folder, size, 0, True, coeff), **runs)
 
 
 STRUCTURES = (

@@ -14,7 +14,7 @@ from tactile_depth.chip.poisson.transform.orders import bit_reversed
 from tactile_depth.chip.poisson.transform.sdf_fft import halvings, sdf_fft, twiddle_stages
 from tactile_depth.chip.poisson.transform.sdf_fft import latency as sdf_fft_latency
 from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
-from tactile_depth.chip.rom_files import write_transform
+from tactile_depth.chip.rom_files import write_direction
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.poisson.transform.transforms import coefficient_noise
 from tests.rtl import test_rtl as test_rtl
@@ -23,7 +23,7 @@ from tests.rtl import test_rtl as test_rtl
 def built(size: int, width: int, coeff: int, inverse: int, **runs: Any) -> Structure:
     return Structure(
         {"Size": size, "Width": width, "CoeffWidth": coeff, "Inverse": inverse},
-        roms=lambda folder: write_transform(folder, size, coeff),
+        roms=lambda folder: write_direction(folder, size, 0, bool(inverse), coeff),
         **runs,
     )
 

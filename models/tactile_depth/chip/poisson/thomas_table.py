@@ -21,7 +21,37 @@ LATENCY = 5
 
 
 @dataclass(frozen=True)
-class ThomasTable:
+class WideTable:
+    """Coefficients of several positions side by side in a word, compressed as those of one position.
+
+    Attributes
+    ----------
+    words : int64 array (count, positions in a word), the coefficients of row i and clock t of a burst at
+        base[t] + min(i, settled[t]), where the last of the positions settles
+    base, settled : int64 arrays (clocks of a burst,)
+    """
+
+    words: np.ndarray
+    base: np.ndarray
+    settled: np.ndarray
+
+    @property
+    def settled_width(self) -> int:
+        return max(1, int(self.settled.max()).bit_length())
+
+    @property
+    def index_width(self) -> int:
+        """Bits of an index: the place of the words of a clock, and `settled`."""
+        return (len(self.words) - 1).bit_length() + self.settled_width
+
+    @property
+    def index(self) -> np.ndarray:
+        """Words {base, settled}, int64 (clocks of a burst,)."""
+        return self.base << self.settled_width | self.settled
+
+
+@dataclass(frozen=True)
+class ThomasTable(WideTable):
     """Coefficients c[i] of each position as words of the coefficient width; the last row is stored separately.
 
     A column of the table settles; values after its last change are not stored.
@@ -35,15 +65,8 @@ class ThomasTable:
         modes, and 0 for the singular mode.
     """
 
-    words: np.ndarray
-    base: np.ndarray
-    settled: np.ndarray
     last: np.ndarray
     last_shift: np.ndarray
-
-    @property
-    def settled_width(self) -> int:
-        return max(1, int(self.settled.max()).bit_length())
 
     @property
     def last_shift_width(self) -> int:
@@ -104,26 +127,6 @@ def ahead_rows(config: Configuration) -> np.ndarray:
     return _codes(-full[:-1] * full[1:], config)
 
 
-@dataclass(frozen=True)
-class WideTable:
-    """Coefficients of several positions side by side in a word, compressed as those of one position.
-
-    Attributes
-    ----------
-    words : int64 array (count, positions in a word), the coefficients of row i and clock t of a burst at
-        base[t] + min(i, settled[t]), where the last of the positions settles
-    base, settled : int64 arrays (clocks of a burst,)
-    """
-
-    words: np.ndarray
-    base: np.ndarray
-    settled: np.ndarray
-
-    @property
-    def settled_width(self) -> int:
-        return max(1, int(self.settled.max()).bit_length())
-
-
 def wide_table(codes: np.ndarray, positions: np.ndarray) -> WideTable:
     """Compress coefficients (rows, columns) for bursts whose clocks take `positions` (clocks, positions in a word)."""
     bursts = codes[:, positions]  # (rows, clocks, positions)
@@ -133,7 +136,6 @@ def wide_table(codes: np.ndarray, positions: np.ndarray) -> WideTable:
     return WideTable(words, base, settled)
 
 
-def table_parts(table: ThomasTable | WideTable, width: int) -> list[Memory]:
+def table_parts(table: WideTable, width: int) -> list[Memory]:
     """Return the two ROMs of a table of words of `width` bits, without that of the last row."""
-    index = (len(table.words) - 1).bit_length() + table.settled_width
-    return [rom(width, len(table.words)), rom(index, len(table.base))]
+    return [rom(width, len(table.words)), rom(table.index_width, len(table.base))]
