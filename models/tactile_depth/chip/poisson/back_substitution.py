@@ -13,9 +13,7 @@ from tactile_depth.chip.poisson.thomas_table import thomas_table
 LATENCY = 8
 
 
-def back_substitution(
-    d: np.ndarray, config: Configuration, monitor: Monitor | None = None, node: str = "back_substitution"
-) -> np.ndarray:
+def back_substitution(d: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
     """Compute z[i] = d[i] - c[i] z[i+1] from the last row up.
 
     Parameters
@@ -32,9 +30,9 @@ def back_substitution(
     exact = np.moveaxis(d, -2, 0) * 2 ** (lift + drop)
     z = np.empty(d.shape, d.dtype)
     z_rows = np.moveaxis(z, -2, 0)
-    state = z_rows[0] = round_saturate(exact[0], drop, width, monitor, node)
+    state = z_rows[0] = round_saturate(exact[0], drop, width, monitor, "back_substitution")
     for step in range(1, rows):
-        state = round_saturate(exact[step] - coefficients[step - 1] * state, drop, width, monitor, node)
+        state = round_saturate(exact[step] - coefficients[step - 1] * state, drop, width, monitor, "back_substitution")
         z_rows[step] = state
     return z
 

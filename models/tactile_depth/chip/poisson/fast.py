@@ -245,23 +245,19 @@ def dst_inverse(
     return _dst(modes, formats, True, monitor, node)
 
 
-def forward_elimination(
-    f: np.ndarray, config: Configuration, monitor: Monitor | None = None, node: str = "forward_elimination"
-) -> np.ndarray:
+def forward_elimination(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
     """Model poisson/forward_elimination.py."""
     frames = np.ascontiguousarray(f).reshape(-1, *f.shape[-2:])
     d = np.empty_like(frames)
     coefficients = coefficient_rows(config, f.shape[-2])
     counts = _eliminate(frames, coefficients, config.coefficient.fraction, config.arithmetic_width, d)
     if monitor is not None:
-        monitor.clipped(node + ".difference", counts[0])
-        monitor.clipped(node + ".state", counts[1])
-    return stored(d.reshape(f.shape), config, monitor, node)
+        monitor.clipped("forward_elimination.difference", counts[0])
+        monitor.clipped("forward_elimination.state", counts[1])
+    return stored(d.reshape(f.shape), config, monitor)
 
 
-def back_substitution(
-    d: np.ndarray, config: Configuration, monitor: Monitor | None = None, node: str = "back_substitution"
-) -> np.ndarray:
+def back_substitution(d: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
     """Model poisson/back_substitution.py."""
     frames = np.ascontiguousarray(d).reshape(-1, *d.shape[-2:])
     z = np.empty_like(frames)
@@ -269,7 +265,7 @@ def back_substitution(
     lift = config.elimination.fraction - config.elimination_store.fraction
     count = _substitute(frames, coefficients, lift, config.coefficient.fraction, config.arithmetic_width, z)
     if monitor is not None:
-        monitor.clipped(node, count)
+        monitor.clipped("back_substitution", count)
     return z.reshape(d.shape)
 
 

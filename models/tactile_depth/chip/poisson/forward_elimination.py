@@ -19,9 +19,7 @@ def mean_reciprocal(config: Configuration) -> tuple[int, int]:
     return round(2**drop / config.rows), drop
 
 
-def forward_elimination(
-    f: np.ndarray, config: Configuration, monitor: Monitor | None = None, node: str = "forward_elimination"
-) -> np.ndarray:
+def forward_elimination(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
     """Compute d[i] = c[i] (f[i] - d[i-1]) down the rows of modes (..., rows, columns), codes of `config.elimination`.
 
     The result has codes of `config.elimination_store`.
@@ -31,7 +29,7 @@ def forward_elimination(
     """
     rows, width, drop = f.shape[-2], config.arithmetic_width, config.coefficient.fraction
     coefficients = coefficient_rows(config, rows)
-    difference, divided = node + ".difference", node + ".state"
+    difference, divided = "forward_elimination.difference", "forward_elimination.state"
     f_rows = np.ascontiguousarray(np.moveaxis(f, -2, 0))
     d = np.empty(f.shape, f.dtype)
     d_rows = np.moveaxis(d, -2, 0)
@@ -40,7 +38,7 @@ def forward_elimination(
         x = round_saturate(f_rows[row] - state, 0, width, monitor, difference)
         state = round_saturate(x * coefficients[row], drop, width, monitor, divided)
         d_rows[row] = state
-    return stored(d, config, monitor, node)
+    return stored(d, config, monitor)
 
 
 def coefficient_rows(config: Configuration, rows: int) -> np.ndarray:
@@ -49,19 +47,19 @@ def coefficient_rows(config: Configuration, rows: int) -> np.ndarray:
     return np.concatenate((table.rows(rows - 1), [table.last << table.last_shift]))
 
 
-def stored(d: np.ndarray, config: Configuration, monitor: Monitor | None, node: str) -> np.ndarray:
+def stored(d: np.ndarray, config: Configuration, monitor: Monitor | None) -> np.ndarray:
     """Return the words of the frame store from the rows of the recursion.
 
     Under Neumann the last row of mode 0 is first written into `d`: see `forward_elimination`.
     """
     if config.neumann:
-        zero_mean(d, config, monitor, node)
+        zero_mean(d, config, monitor, "forward_elimination")
     return round_saturate(
         d,
         config.elimination.fraction - config.elimination_store.fraction,
         config.elimination_store.width,
         monitor,
-        node + ".store",
+        "forward_elimination.store",
     )
 
 

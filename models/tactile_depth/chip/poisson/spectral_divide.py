@@ -49,16 +49,14 @@ def reciprocals(config: Configuration) -> Reciprocals:
     return Reciprocals(mantissa, shift, config.coefficient.fraction - lowest, max(1, int(shift.max()).bit_length()))
 
 
-def spectral_divide(
-    modes: np.ndarray, config: Configuration, monitor: Monitor | None = None, node: str = "spectral_divide"
-) -> np.ndarray:
+def spectral_divide(modes: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
     """Divide modes (..., N, N), both axes in bit-reversed order, by the eigenvalues of the Laplacian."""
     table = reciprocals(config)
     product = modes * table.mantissa
     # (product << shift) >> drop within 64 bits. A left shift is needed only if less than one bit would be dropped.
     drop = np.maximum(table.drop - table.shift, 1)
     lift = np.int64(1) << drop - (table.drop - table.shift)
-    return round_saturate(product * lift, drop, config.arithmetic_width, monitor, node)
+    return round_saturate(product * lift, drop, config.arithmetic_width, monitor, "spectral_divide")
 
 
 def reciprocal_rom(config: Configuration) -> np.ndarray:

@@ -15,9 +15,7 @@ from tactile_depth.chip.resources import Memory, Parts, Words, products, rom
 LATENCY = 9  # from the first modes of a row to its first d, with which e of the row above leaves
 
 
-def wide_elimination(
-    f: np.ndarray, config: Configuration, monitor: Monitor | None = None, node: str = "wide_elimination"
-) -> np.ndarray:
+def wide_elimination(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
     """Compute d[i] = c[i] (f[i] - d[i-1]) down the rows, and e[i] = d[i] - c[i] d[i+1], which look one row ahead.
 
     Parameters
@@ -30,28 +28,30 @@ def wide_elimination(
     """
     rows, width, drop = f.shape[-2], config.arithmetic_width, config.coefficient.fraction
     coefficients = coefficient_rows(config, rows)
-    difference, divided = node + ".difference", node + ".state"
+    difference, divided = "wide_elimination.difference", "wide_elimination.state"
     f_rows = np.ascontiguousarray(np.moveaxis(f, -2, 0))
     d_rows = np.empty_like(f_rows)
     state = np.zeros_like(f_rows[0])
     for row in range(rows):
         x = round_saturate(f_rows[row] - state, 0, width, monitor, difference)
         state = d_rows[row] = round_saturate(x * coefficients[row], drop, width, monitor, divided)
-    return ahead(np.moveaxis(d_rows, 0, -2), config, monitor, node)
+    return ahead(np.moveaxis(d_rows, 0, -2), config, monitor)
 
 
-def ahead(d: np.ndarray, config: Configuration, monitor: Monitor | None, node: str) -> np.ndarray:
+def ahead(d: np.ndarray, config: Configuration, monitor: Monitor | None) -> np.ndarray:
     """Return the words of the frame store from the rows d (..., rows, columns) of the recursion, which may change."""
     if config.neumann:
-        zero_mean(d, config, monitor, node)
+        zero_mean(d, config, monitor, "wide_elimination")
     drop = config.elimination.fraction - config.elimination_store.fraction
     e = np.empty_like(d)
     inner = coefficient_rows(config, d.shape[-2])[:-1]
     one = 2 ** (config.coefficient.fraction)
     exact = d[..., :-1, :] * one - inner * d[..., 1:, :]
     shift = config.coefficient.fraction + drop
-    e[..., :-1, :] = round_saturate(exact, shift, config.elimination_store.width, monitor, node + ".ahead")
-    e[..., -1, :] = round_saturate(d[..., -1, :], drop, config.elimination_store.width, monitor, node + ".store")
+    e[..., :-1, :] = round_saturate(exact, shift, config.elimination_store.width, monitor, "wide_elimination.ahead")
+    e[..., -1, :] = round_saturate(
+        d[..., -1, :], drop, config.elimination_store.width, monitor, "wide_elimination.store"
+    )
     return e
 
 

@@ -15,9 +15,7 @@ LATENCY = 2
 LOOP = 4  # clocks from a word to the product with it and back
 
 
-def wide_substitution(
-    e: np.ndarray, config: Configuration, monitor: Monitor | None = None, node: str = "wide_substitution"
-) -> np.ndarray:
+def wide_substitution(e: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
     """Compute z[i] = e[i] + c[i] c[i+1] z[i+2] from the last row up.
 
     Parameters
@@ -37,7 +35,7 @@ def wide_substitution(
     for step, row in enumerate(exact):
         if step >= 2:
             row -= coefficients[step - 2] * z_rows[step - 2]
-        z_rows[step] = round_saturate(row, drop, width, monitor, node)
+        z_rows[step] = round_saturate(row, drop, width, monitor, "wide_substitution")
     return z
 
 
