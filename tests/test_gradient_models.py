@@ -74,7 +74,7 @@ MODELS = [{}, {"flat_field": True}, POLYNOMIALS | {"gradient_model": "quadratic"
 
 
 @pytest.mark.parametrize("choices", MODELS, ids=str)
-def test_slopes_of_prepared_tables_are_those_of_the_calibration(choices: Any) -> None:
+def test_depth_of_prepared_tables_is_that_of_the_calibration(choices: Any) -> None:
     config = Configuration(columns=32, **choices)
     frames = lit(config, 1, 3)
     calibration = polynomials(2) if choices == POLYNOMIALS else synthetic()

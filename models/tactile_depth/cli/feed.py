@@ -14,7 +14,6 @@ from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.depth.result import Result
 from tactile_depth.device.device import Device
 from tactile_depth.device.frame import DeviceFrame
-from tactile_depth.pictures.blocks import Rest
 from tactile_depth.pictures.doubts import UnusablePicture
 from tactile_depth.pictures.picture_check import check_picture
 from tactile_depth.pictures.reader import Reader
@@ -127,8 +126,7 @@ class SentFeed:
 
     def _pictures(self) -> Iterator[np.ndarray]:
         """Give the pictures that the device shall get; count those that give no depth."""
-        reference = self._device.pipeline.sensor.reference
-        rest = None if reference is None else Rest.of(reference.reshape(-1, *self._device.pipeline.grid, 3))
+        rest = self._device.pipeline.rest
         for frame in self._frames:
             if frame is None:
                 continue

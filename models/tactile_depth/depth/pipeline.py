@@ -266,6 +266,11 @@ class Pipeline:
         return self._sensor
 
     @property
+    def rest(self) -> Rest | None:
+        """The sensor without contact, with which pictures are compared; None without a reference."""
+        return self._rest
+
+    @property
     def config(self) -> Configuration:
         """Configuration, which models and RTL share."""
         return self._config
@@ -320,9 +325,7 @@ class Pipeline:
         InputError
             The number of pictures is not accepted, they are too dark, or the pipeline takes colours as sent.
         """
-        if not self.config.flat_field:
-            problem = ": this pipeline takes colours as sent"
-            raise InputError(PICTURES, problem, remedy=("make it with ", Argument("reference", "<picture>")))
+        require_flat_field(self.config)
         self._use_reference(self._rest_of(pictures, PICTURES, largest_log2_frames(self.config)))
 
     def capture_zero(self, pictures: Pictures) -> None:
@@ -333,9 +336,7 @@ class Pipeline:
         InputError
             The number of pictures is not 1, 2, 4, .. 256, or the pipeline has no zero offset.
         """
-        if not self.config.zero_offset:
-            problem = ": this pipeline has no zero offset"
-            raise InputError(PICTURES, problem, remedy=("make it with ", Argument("zero_offset", True)))
+        require_zero_offset(self.config)
         frames, *_ = self._checked(pictures, PICTURES)
         power_of_two_of(len(frames), LARGEST_LOG2, PICTURES)
         self._use_zero(frames)
@@ -411,6 +412,20 @@ class Pipeline:
             tell(doubts if warned is None else warned.new(doubts))
             texts.append(tuple(map(str, (*self._doubts, *doubts))))
         return tuple(texts)
+
+
+def require_flat_field(config: Configuration) -> None:
+    """Refuse the capture of a reference that no colour is relative to."""
+    if not config.flat_field:
+        problem = ": this pipeline takes colours as sent"
+        raise InputError(PICTURES, problem, remedy=("make it with ", Argument("reference", "<picture>")))
+
+
+def require_zero_offset(config: Configuration) -> None:
+    """Refuse the capture of a zero offset that is not subtracted."""
+    if not config.zero_offset:
+        problem = ": this pipeline has no zero offset"
+        raise InputError(PICTURES, problem, remedy=("make it with ", Argument("zero_offset", True)))
 
 
 def is_whole(number: object) -> bool:

@@ -17,7 +17,7 @@ from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gai
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.depth.pipeline import PICTURES, Pipeline
+from tactile_depth.depth.pipeline import PICTURES, Pipeline, require_flat_field, require_zero_offset
 from tactile_depth.depth.result import Recorder
 from tactile_depth.device import captures
 from tactile_depth.device.addresses import open_channel
@@ -28,7 +28,6 @@ from tactile_depth.device.frame import DeviceFrame
 from tactile_depth.device.registers import Registers, read_words, write_words
 from tactile_depth.device.status import COUNTERS, DeviceStatus
 from tactile_depth.device.tables import load_tables, require_same, wait_in_use
-from tactile_depth.pictures.blocks import Rest
 from tactile_depth.pictures.doubts import UnusablePicture
 from tactile_depth.pictures.frames import GREY
 from tactile_depth.pictures.picture_check import check_picture
@@ -155,9 +154,7 @@ class Device(AbstractContextManager["Device"]):
         DeviceError
         """
         config = self.pipeline.config
-        if not config.flat_field:
-            problem = ": this pipeline takes colours as sent"
-            raise InputError(PICTURES, problem, remedy=("make it with ", Argument("reference", "<picture>")))
+        require_flat_field(config)
         largest = largest_log2_frames(config)
         if pictures is None:
             self._capture_of_camera("reference", frames, largest)
@@ -177,9 +174,7 @@ class Device(AbstractContextManager["Device"]):
         For parameters and errors see `capture_reference`.
         """
         config = self.pipeline.config
-        if not config.zero_offset:
-            problem = ": this pipeline has no zero offset"
-            raise InputError(PICTURES, problem, remedy=("make it with ", Argument("zero_offset", True)))
+        require_zero_offset(config)
         if pictures is None:
             self._capture_of_camera("zero", frames, LARGEST_LOG2)
             return
@@ -341,9 +336,7 @@ class Device(AbstractContextManager["Device"]):
 
     def _usable(self, pictures: Pictures | Iterable[Picture], line: Channel) -> Iterator[tuple[int, Bytes]]:
         """Give pictures on the grid, each with its number; leave out and count what gives no right depth."""
-        reference = self.pipeline.sensor.reference
-        rest = None if reference is None else Rest.of(reference.reshape(-1, *self.pipeline.grid, 3))
-        failed = False
+        rest, failed = self.pipeline.rest, False
         for index, (name, frame) in enumerate(self._on_grid(pictures)):
             try:
                 check_picture(frame, rest, name)

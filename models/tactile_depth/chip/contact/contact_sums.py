@@ -31,11 +31,6 @@ class Sums(NamedTuple):
     column_moment: int = 0
 
 
-def weight_bits(width: int, rows: int, columns: int) -> int:
-    """Return the bits of a weight, of depth codes of `width` bits."""
-    return width + (rows * columns - 1).bit_length()
-
-
 @dataclass
 class ContactSums:
     """State between two depths that leave.

@@ -27,18 +27,20 @@ def forward_elimination(f: np.ndarray, config: Configuration, monitor: Monitor |
     Under Neumann the constant of the singular mode (position 0) is chosen so that its column has zero mean. A last row
     of 0 would give the mean sum over i of (i + 1) d[i] / rows; the last row is minus this mean.
     """
-    rows, width, drop = f.shape[-2], config.arithmetic_width, config.coefficient.fraction
-    coefficients = coefficient_rows(config, rows)
-    difference, divided = "forward_elimination.difference", "forward_elimination.state"
+    return stored(recursion(f, config, monitor, "forward_elimination"), config, monitor)
+
+
+def recursion(f: np.ndarray, config: Configuration, monitor: Monitor | None, node: str) -> np.ndarray:
+    """Return the rows d of `forward_elimination` before they are stored, int64 (..., rows, columns)."""
+    width, drop = config.arithmetic_width, config.coefficient.fraction
     f_rows = np.ascontiguousarray(np.moveaxis(f, -2, 0))
     d = np.empty(f.shape, f.dtype)
-    d_rows = np.moveaxis(d, -2, 0)
     state = np.zeros_like(f_rows[0])
-    for row in range(rows):
-        x = round_saturate(f_rows[row] - state, 0, width, monitor, difference)
-        state = round_saturate(x * coefficients[row], drop, width, monitor, divided)
-        d_rows[row] = state
-    return stored(d, config, monitor)
+    rows = zip(f_rows, coefficient_rows(config, len(f_rows)), np.moveaxis(d, -2, 0), strict=True)
+    for f_row, coefficients, d_row in rows:
+        x = round_saturate(f_row - state, 0, width, monitor, node + ".difference")
+        state = d_row[...] = round_saturate(x * coefficients, drop, width, monitor, node + ".state")
+    return d
 
 
 def coefficient_rows(config: Configuration, rows: int) -> np.ndarray:

@@ -7,7 +7,7 @@ import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.poisson.forward_elimination import coefficient_rows, mean_products, zero_mean
+from tactile_depth.chip.poisson.forward_elimination import coefficient_rows, mean_products, recursion, zero_mean
 from tactile_depth.chip.poisson.thomas_table import WideTable, table_parts, thomas_table, wide_table
 from tactile_depth.chip.poisson.wide_stack import down_positions
 from tactile_depth.chip.resources import Memory, Parts, Words, products, rom
@@ -26,16 +26,7 @@ def wide_elimination(f: np.ndarray, config: Configuration, monitor: Monitor | No
     -------
     int64 array of the same shape, codes of `config.elimination_store`: e, and d in the last row
     """
-    rows, width, drop = f.shape[-2], config.arithmetic_width, config.coefficient.fraction
-    coefficients = coefficient_rows(config, rows)
-    difference, divided = "wide_elimination.difference", "wide_elimination.state"
-    f_rows = np.ascontiguousarray(np.moveaxis(f, -2, 0))
-    d_rows = np.empty_like(f_rows)
-    state = np.zeros_like(f_rows[0])
-    for row in range(rows):
-        x = round_saturate(f_rows[row] - state, 0, width, monitor, difference)
-        state = d_rows[row] = round_saturate(x * coefficients[row], drop, width, monitor, divided)
-    return ahead(np.moveaxis(d_rows, 0, -2), config, monitor)
+    return ahead(recursion(f, config, monitor, "wide_elimination"), config, monitor)
 
 
 def ahead(d: np.ndarray, config: Configuration, monitor: Monitor | None) -> np.ndarray:
