@@ -11,12 +11,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import tactile_depth as td
 from commands.common.repository import ROOT
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.bounds import bounds
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import DEFAULT_WIDTHS, WIDTHS, WORDS, Configuration, Format
+from tactile_depth.chip.configuration import NUMBERS, WORDS, Configuration, Format
 from tactile_depth.chip.limits import DEPTH_HEADROOM
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.poisson.spectral_solver import spectral_solver
@@ -283,12 +284,11 @@ def test_few_files_name_a_word_length(argument: str) -> None:
     assert 1 < sum(bool(spelled.search(path.read_text())) for path in paths) <= 12
 
 
-@pytest.mark.parametrize("name", WIDTHS)
-def test_pages_state_the_default_and_the_range_of_a_width(name: str) -> None:
-    width, default = WIDTHS[name], str(DEFAULT_WIDTHS[name])
-    low, high = width.accepted
-    (line,) = [line for line in (ROOT / "docs/make-sim.md").read_text().splitlines() if f"`{width.variable}`" in line]
-    assert re.search(rf"{width.word}[^,|]*\({low} to {high}\)", line)
-    assert default in line.split("|")[2]
-    option = width.option.split()[0]
-    assert re.search(rf"`{option}`.*\b{default}\b", (ROOT / "docs/cli.md").read_text())
+@pytest.mark.parametrize("name", NUMBERS)
+def test_a_number_has_a_row_and_an_argument(name: str) -> None:
+    number = NUMBERS[name]
+    names = f"`{number.variable}`, `{number.option.split()[0]}`, `{number.argument}`"
+    assert f"| {names} |" in (ROOT / "docs/make-sim.md").read_text(), "run make figures"
+    for value in number.accepted:
+        given: dict[str, Any] = {"solver": "spectral", "boundary": "dirichlet", number.argument: value}
+        assert getattr(td.Pipeline(td.load("synthetic"), grid=(32, 32), **given).config, name) == value

@@ -19,7 +19,7 @@ from commands.common.variables import Several
 from tactile_depth.base.errors import InputError
 from tactile_depth.base.npy import is_file
 from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoice, CameraConfiguration
-from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS, WIDTHS, WORDS, Configuration
+from tactile_depth.chip.configuration import CHOICES, DEFAULTS, NUMBERS, WORDS, Configuration
 from tactile_depth.chip.limits import BOUNDARIES, COLUMNS, MODELS
 from tactile_depth.pictures.frames import REST_SCENE
 from tactile_depth.sensor.built_in import load
@@ -32,15 +32,13 @@ DEFAULT_SCENE = "ball"
 WORST = "worst"  # a depth range that no slopes can exceed
 SOLVERS = tuple(COLUMNS)
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
-# Variables, by arguments of td.Pipeline.
-WIDTH_VARIABLES = {name: width.variable for name, width in WIDTHS.items()}
 *_, DEPTH_RANGE = WORDS.values()
-SHAPE = ("PRESET", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES")
-COLOURS = ("REFERENCE", "ZERO", "LIGHT_GAINS")
-CONFIGURING = (*SHAPE, *WORDS.values(), *COLOURS, "GRADIENT", "CALIBRATION", "CAMERA_SIZE", "CONFIG")
+CONFIGURING = (
+    *("PRESET", *(choice.variable for choice in CHOICES.values())),
+    *("COLS", "REFERENCE", "ZERO", "CALIBRATION", "CAMERA_SIZE", "CONFIG"),
+)
 ACCEPTED = (
-    *(*SHAPE, "SIM", *WORDS.values(), "FRAMES", "PRESS", "AT", "NOISE", *COLOURS, "CALIBRATION", "CAMERA_SIZE"),
-    *("GRADIENT", "REPEAT", "SEED", "GAPS", "STALLS", "WAVES", "CONFIG", "OUT"),
+    *(*CONFIGURING, "SIM", "FRAMES", "PRESS", "AT", "NOISE", "REPEAT", "SEED", "GAPS", "STALLS", "WAVES", "OUT"),
 )
 CAMERA = ("CAMERA", "BAYER", "WINDOW")  # variables of commands that convert pictures to the stream of a camera
 WITH_CAMERA = (*ACCEPTED, *CAMERA)
@@ -60,7 +58,7 @@ class Request:
     boundary: str
     lanes: int
     simulator: str
-    widths: Mapping[str, Any]  # by field of Configuration
+    numbers: Mapping[str, Any]  # by field of Configuration
     deepest_mm: float | None  # infinite: the largest depth that slopes can cause
     frames: str  # "": none is given, and none is needed
     press: Press
@@ -135,10 +133,7 @@ def of_values(
         boundary=choice("BOUNDARY", BOUNDARIES[::-1]),
         lanes=int(number("LANES", 1, -math.inf, math.inf)),  # see rows
         simulator=choice("SIM", simulation.SIMULATORS),
-        widths={
-            name: number(variable, DEFAULT_WIDTHS[name], -math.inf, math.inf)
-            for name, variable in WIDTH_VARIABLES.items()
-        },
+        numbers={name: number(each.variable, DEFAULTS[name], -math.inf, math.inf) for name, each in NUMBERS.items()},
         deepest_mm=math.inf if values.get(DEPTH_RANGE) == WORST else number(DEPTH_RANGE, 0, 1e-6, 1e6, float) or None,
         frames=values["FRAMES"],
         press=Press(
@@ -281,7 +276,7 @@ def from_file(path: Path, explicit: dict[str, str], accepted: list[str]) -> dict
 def described(config: Configuration) -> dict[str, Any]:
     """Return a configuration as the reports of commands state it."""
     stated = [field.name for field in fields(config) if field.name not in APART]
-    values = {WIDTH_VARIABLES.get(name, name).lower(): getattr(config, name) for name in stated}
+    values = {NUMBERS[name].variable.lower() if name in NUMBERS else name: getattr(config, name) for name in stated}
     return {"grid": [config.rows, config.columns], "solver": config.solver, "boundary": config.boundary, **values}
 
 
@@ -300,8 +295,13 @@ def described_camera(camera: CameraConfiguration | None) -> dict[str, Any]:
 
 
 def words_of(config: Configuration, colours: bool = False) -> str:
-    """Return the widths as names of folders state them; those of colours only if asked for."""
-    return "-".join(f"{name[0]}{getattr(config, name)}" for name in (WIDTHS if colours else SOLVER_WIDTHS))
+    """Return the numbers as names of folders state them; those of colours only if asked for."""
+    stated = {name: getattr(config, name) for name, number in NUMBERS.items() if colours or not number.colours}
+    return "-".join(
+        f"{NUMBERS[name].letter or name}{value}"
+        for name, value in stated.items()
+        if NUMBERS[name].letter or value != DEFAULTS[name]
+    )
 
 
 def model_of(config: Configuration) -> str:
@@ -337,7 +337,7 @@ def configure(request: Request, calibration: Sensor) -> Configuration:
         solver=request.solver,
         lanes=request.lanes,
         neumann=neumann,
-        **request.widths,
+        **request.numbers,
         depth_range_px=depth_range_px,
         zero_offset=request.zero is not None,
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactile_depth.chip.configuration import SOLVER_WIDTHS, WORDS, Configuration
+from tactile_depth.chip.configuration import COEFFICIENT, STORED, WIDTHS, WORDS, Configuration
 
 WARNED_RMS_PERCENT = 1.0  # mean RMS error to double precision, of the peak; the default widths stay below 0.001
 TOO_DARK = (
@@ -19,8 +19,6 @@ TOO_STEEP = (
 )
 OF_COLOURS = ("flat_field", "polynomial_gradient")  # nodes before the solver, which no depth range widens
 
-
-DATA, COEFFICIENT = SOLVER_WIDTHS.values()
 *_, DEEPEST = WORDS.values()
 
 
@@ -74,10 +72,12 @@ def warnings(config: Configuration, rms_percent: Sequence[float | None], saturat
         )
     elif saturations:
         change = f"values saturate; give a larger {DEEPEST}"
-    elif config.depth.width < config.coefficient.width and width <= DATA.accepted[1]:
-        change = f"words of {config.depth.width} bits are too short for this grid; try {DATA.variable}={width}"
+    elif config.depth.width < config.coefficient.width and width <= WIDTHS[STORED].accepted[1]:
+        change = (
+            f"words of {config.depth.width} bits are too short for this grid; try {WIDTHS[STORED].variable}={width}"
+        )
     else:
-        change = f"give a larger {DATA.variable} or {COEFFICIENT.variable}"
+        change = f"give a larger {WIDTHS[STORED].variable} or {WIDTHS[COEFFICIENT].variable}"
     return [f"the mean RMS error is {mean:.2f} % of peak, above {WARNED_RMS_PERCENT:g} %: {change}"]
 
 

@@ -54,7 +54,7 @@ from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.calibrate.fitting import Fit, fit_presses
 from tactile_depth.calibrate.presses import AT_REST, GridPresses, PressPictures, camera_pitch_mm, gather, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
-from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS
+from tactile_depth.chip.configuration import COEFFICIENT, DEFAULTS, SOLVER_NUMBERS, STORED
 from tactile_depth.chip.limits import BOUNDARIES
 from tactile_depth.pictures.frames import read_picture
 from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
@@ -64,7 +64,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 
 AREAS = {"contact": "contact", "untouched": "untouched gel"}  # of the table of shares, by measure
-WIDTHS = tuple(width.variable for width in SOLVER_WIDTHS.values())
+NUMBERS = tuple(number.variable for number in SOLVER_NUMBERS.values())
 RESULTS = ("budget.json", "budget.png")
 DEFAULT_OUT = repository.ROOT / "build" / "budget"
 INTERRUPTED = "nothing was written"
@@ -81,10 +81,10 @@ def _camera(values: Mapping[str, str]) -> CameraChoice:
     return choice
 
 
-def _widths(values: Mapping[str, str]) -> dict[str, Any]:
-    given = {name: width for name, width in SOLVER_WIDTHS.items() if width.variable in values}
+def _numbers(values: Mapping[str, str]) -> dict[str, Any]:
+    given = {name: number for name, number in SOLVER_NUMBERS.items() if number.variable in values}
     read = {name: whole(*each.accepted)(Argument(each.variable, values[each.variable])) for name, each in given.items()}
-    return DEFAULT_WIDTHS | read
+    return DEFAULTS | read
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class BudgetRun:
         default_factory=lambda: CameraChoice(CAMERA)
     )
     neumann: Annotated[bool, one({name: name == "neumann" for name in BOUNDARIES}), "BOUNDARY"] = True
-    widths: Annotated[Mapping[str, Any], Several(WIDTHS, _widths)] = field(default_factory=lambda: DEFAULT_WIDTHS)
+    numbers: Annotated[Mapping[str, Any], Several(NUMBERS, _numbers)] = field(default_factory=lambda: DEFAULTS)
     out: Place = DEFAULT_OUT
     drawn: DrawnSensor = field(default_factory=DrawnSensor)
     presses: int = PRESSES
@@ -110,7 +110,7 @@ class BudgetRun:
             background,
             grid=(len(background), background.shape[1]),
             boundary=BOUNDARIES[not self.neumann],
-            **self.widths,
+            **self.numbers,
         )
 
 
@@ -251,10 +251,9 @@ def read(out: Path = DEFAULT_OUT) -> dict[str, Any]:
 def setting(document: dict[str, Any]) -> str:
     """Return what was measured, in a sentence."""
     used = document["setting"]
-    data, coefficient = (used[name] for name in SOLVER_WIDTHS)
     return (
-        f"The pipeline of a real sensor, {used['boundary']}, {data}-bit words and "
-        f"{coefficient}-bit coefficients, behind a camera that sends {used['camera']}, with noise of "
+        f"The pipeline of a real sensor, {used['boundary']}, {used[STORED]}-bit words and "
+        f"{used[COEFFICIENT]}-bit coefficients, behind a camera that sends {used['camera']}, with noise of "
         f"{used['noise']:g} grey levels; light up to {100 * used['drift']:g} % off, and each colour up to "
         f"{100 * used['white']:g} % more. RMS errors, less the mean of the area, and "
         "95 % intervals by bootstrap over the pictures"
@@ -381,7 +380,7 @@ def run(request: BudgetRun) -> None:
         used = {
             "camera": request.choice.pixel_format,
             "boundary": BOUNDARIES[not request.neumann],
-            **{name: request.widths[name] for name in SOLVER_WIDTHS},
+            **{name: request.numbers[name] for name in SOLVER_NUMBERS},
             "drift": request.drawn.drift,
             "white": request.drawn.white,
             "noise": request.drawn.noise,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make figures`: write the tables of docs/{architecture,results,hardware,software,error-budget}.md, and draw.
+"""`make figures`: write the tables of docs/{make-sim,architecture,results,hardware,software,error-budget}.md, and draw.
 
 Cycles, multipliers, bits and errors of the arithmetic are computed here, by the models that the RTL is compared with.
 Figures of runs that take minutes come from docs/figures.json, each with its commit, and with "changed" where the RTL,
@@ -29,12 +29,13 @@ from commands.run.sim_table import coefficient_words
 from commands.study import baselines, budget, trade_front
 from commands.study.accuracy import errors
 from tactile_depth.chip import latency
-from tactile_depth.chip.configuration import COLOURS, STORED, Configuration
+from tactile_depth.chip.configuration import COLOURS, DEFAULTS, NUMBERS, STORED, Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.chip.limits import most_lanes
 from tactile_depth.depth.twin import Twin
 
-PAGES = [ROOT / "docs" / f"{name}.md" for name in ("architecture", "results", "hardware", "software", "error-budget")]
+NAMES = ("make-sim", "architecture", "results", "hardware", "software", "error-budget")
+PAGES = [ROOT / "docs" / f"{name}.md" for name in NAMES]
 TABLE = re.compile(r"(<!-- figures: ([^\n]+) -->\n).*?(\n<!-- end of figures -->)", re.DOTALL)
 GRIDS = (64, 128, 256)
 LANE_GRIDS = (*GRIDS, 512)
@@ -102,6 +103,16 @@ def configurations(*arguments: str, neumann: bool = False) -> Table:
         "coefficients of the solver, words": [f"{coefficient_words(config):,}" for config in configs],
     }
     return Table((f"`make sim {' '.join(arguments)} N=..`", *map(str, GRIDS)), [(n, *r) for n, r in rows.items()])
+
+
+def numbers() -> Table:
+    rows = [
+        (f"`{number.variable}`, `{number.option.split()[0]}`, `{number.argument}`",
+         "{} ({} to {})".format(DEFAULTS[name], *number.accepted),
+         f"{number.meaning}{', with a `REFERENCE`' if number.colours else ''}")
+        for name, number in NUMBERS.items()
+    ]  # fmt: skip
+    return Table(("variable, option, argument", "default", "meaning"), rows)
 
 
 def cycles_by_core() -> Iterator[Table]:
@@ -348,6 +359,7 @@ def as_sent(solver: str) -> Callable[[], Table]:
 
 
 TABLES: dict[str, Callable[[], Table | Iterable[Table]]] = {
+    "numbers": numbers,
     "cycles": cycles_by_core,
     "formats": number_formats,
     "costs": costs_by_build,

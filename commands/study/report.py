@@ -26,7 +26,7 @@ from commands.hardware import asic, synth
 from commands.run import reflex, reflex_tables, sim
 from commands.study import baselines, budget, extremes, study, sweep, trade, trade_front
 from tactile_depth.base import files
-from tactile_depth.chip.configuration import SOLVER_WIDTHS, STORED, Configuration
+from tactile_depth.chip.configuration import COEFFICIENT, STORED, Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth
 from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.depth import reference
@@ -230,7 +230,7 @@ def word_section(rows: Sequence[sweep.Row], folder: Path) -> Section:
     default = Configuration()
     for solver in COLUMNS:
         look, point = LOOKS[solver], sweep.square(solver=solver)
-        for axis, varied in zip((left, right), SOLVER_WIDTHS, strict=True):
+        for axis, varied in ((left, STORED), (right, COEFFICIENT)):
             axis.plot(*curve(rows, point, varied), **look, label=solver, markersize=4)
             thin = look | {"marker": "", "linewidth": 0.7}
             axis.plot(*curve(rows, point, varied, "rms_percent_worst"), **thin)

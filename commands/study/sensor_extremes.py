@@ -228,10 +228,10 @@ class SensorRow:
 
 def configurations(request: run_request.Request, sensor: DrawnLight) -> list[run_request.Request]:
     """Return the request, and that with the narrowest words that its grid and depth range take."""
-    narrow = {name: width.accepted[0] for name, width in WIDTHS.items()}
+    narrow = {**request.numbers, **{name: width.accepted[0] for name, width in WIDTHS.items()}}
     least, most = WIDTHS[STORED].accepted
     for bits in range(least, most + 1):
-        each = replace(request, widths=narrow | {STORED: bits})
+        each = replace(request, numbers=narrow | {STORED: bits})
         try:
             run_request.configure(each, on_grid(sensor, sensor.untouched.astype(np.uint8)))
         except InputError:
@@ -354,7 +354,7 @@ def _alone(
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", InputWarning)
             pipeline = Pipeline(
-                drawn.sensor, reference, grid=drawn.grid, depth_range_mm=request.deepest_mm, **request.widths
+                drawn.sensor, reference, grid=drawn.grid, depth_range_mm=request.deepest_mm, **request.numbers
             )
             result = pipeline(frame)
     except InputError as error:

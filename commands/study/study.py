@@ -70,9 +70,9 @@ class Shape:
         return replace(self, **changes)
 
 
-def with_widths(widths: Iterable[str]) -> type:
-    """Return the base of a Point: a Shape with a column for each of some widths of `Configuration`."""
-    return make_dataclass("Widths", [(name, int) for name in widths], bases=(Shape,), frozen=True)
+def with_numbers(numbers: Iterable[str]) -> type:
+    """Return the base of a Point: a Shape with a column for each of some numbers of `Configuration`."""
+    return make_dataclass("Numbers", [(name, int) for name in numbers], bases=(Shape,), frozen=True)
 
 
 class Measured(Protocol):

@@ -25,7 +25,7 @@ from commands.study.accuracy import errors
 from commands.study.study import INTERRUPTED as INTERRUPTED
 from commands.study.study import Study, built
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import COEFFICIENT, DEFAULT_WIDTHS, SOLVER_WIDTHS, STORED, WIDTHS, Configuration
+from tactile_depth.chip.configuration import COEFFICIENT, DEFAULTS, SOLVER_NUMBERS, STORED, WIDTHS, Configuration
 from tactile_depth.chip.limits import COLUMNS, most_lanes
 from tactile_depth.depth import reference
 from tactile_depth.depth.twin import Twin
@@ -41,7 +41,7 @@ WORST = "worst"  # depth range: the largest depth that any slopes can reach
 
 
 @dataclass(frozen=True)
-class Point(study.with_widths(SOLVER_WIDTHS)):  # type: ignore[misc]
+class Point(study.with_numbers(SOLVER_NUMBERS)):  # type: ignore[misc]
     """Configuration of a square grid."""
 
     depth_range: str  # `default` or WORST
@@ -84,7 +84,7 @@ class Row(Point):
 _usual = Configuration()
 DEFAULT = Point(
     *(_usual.solver, _usual.boundary, _usual.rows, _usual.columns, _usual.lanes),
-    *(*(DEFAULT_WIDTHS[name] for name in SOLVER_WIDTHS), "default"),
+    *(*(DEFAULTS[name] for name in SOLVER_NUMBERS), "default"),
 )
 SAFE_WORD = "DEPTH_RANGE=worst"
 SAFE: dict[str, Any] = {"depth_range": WORST}
@@ -104,13 +104,13 @@ def plan() -> list[Point]:
     slopes exceed (DEPTH_RANGE=worst) with each data width and both boundaries, and the lanes at the grids of
     LANE_GRIDS. The widest grids come first, so that all cores finish at about the same time.
     """
-    widths = [range(low, high + 1) for low, high in (width.accepted for width in SOLVER_WIDTHS.values())]
+    stored, coefficients = (range(low, high + 1) for low, high in (WIDTHS[n].accepted for n in (STORED, COEFFICIENT)))
     points: list[Point] = []
     for solver in COLUMNS:
         points += [square(columns, solver=solver) for columns in GRIDS if columns != DEFAULT.columns]
         points.append(square(solver=solver, boundary="neumann"))
-        for data in widths[0]:
-            points += [square(solver=solver, **{STORED: data, COEFFICIENT: c}) for c in widths[1]]
+        for data in stored:
+            points += [square(solver=solver, **{STORED: data, COEFFICIENT: c}) for c in coefficients]
             points.append(square(solver=solver, **{STORED: data}, **SAFE))
         points.append(square(solver=solver, boundary="neumann", **SAFE))
     for columns in LANE_GRIDS:
@@ -143,7 +143,7 @@ def measure(point: Point) -> dict[str, Any]:
     deep = (
         deepest(point.rows, point.columns, neumann) * synthetic().gradient_limit if point.depth_range == WORST else None
     )
-    same = {name: getattr(point, name) for name in ("solver", "rows", "columns", "lanes", *SOLVER_WIDTHS)}
+    same = {name: getattr(point, name) for name in ("solver", "rows", "columns", "lanes", *SOLVER_NUMBERS)}
     config = Configuration(neumann=neumann, depth_range_px=deep, **same)
     bench, pitch = _bench(config.columns, neumann), scene_pixel_pitch_mm(config.columns)
     monitor = Monitor()
@@ -196,7 +196,7 @@ def cost_of_worst(rows: Sequence[Row], solver: str) -> list[str]:
         {getattr(row, STORED): row.rms_percent_mean for row in like(rows, square(solver=solver, **chosen), STORED)}
         for chosen in ({}, SAFE)
     )
-    width = DEFAULT_WIDTHS[STORED]
+    width = DEFAULTS[STORED]
     if width not in default or width not in worst:
         return []
     line = f"{solver}: {SAFE_WORD}, {worst[width]:.4f} % in place of {default[width]:.4f} %"

@@ -45,7 +45,7 @@ from tactile_depth.calibrate.fitting import fit_folds
 from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import WIDTHS, Configuration
+from tactile_depth.chip.configuration import COEFFICIENT, GAIN, STORED, WIDTHS, Configuration
 from tactile_depth.chip.contact import threshold_comparator
 from tactile_depth.chip.latency import last_pixel_to_first_depth
 from tactile_depth.chip.limits import most_lanes
@@ -98,7 +98,7 @@ def plan() -> list[Point]:
 
 def point(grid: tuple[int, int], words: tuple[int, int, int], **changes: Any) -> Point:
     """Return the default configuration with a grid, words as WIDE, and changes."""
-    sizes = dict(zip(("rows", "columns", *WIDTHS), (*grid, *words), strict=True))
+    sizes = dict(zip(("rows", "columns", STORED, COEFFICIENT, GAIN), (*grid, *words), strict=True))
     return DEFAULT.but(**sizes, **changes)
 
 

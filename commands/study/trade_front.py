@@ -21,14 +21,14 @@ from commands.common.tabular import Table
 from commands.hardware.targets import TARGETS
 from commands.study import study
 from commands.study.study import built
-from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS, STORED, WIDTHS
+from tactile_depth.chip.configuration import COEFFICIENT, DEFAULTS, GAIN, NUMBERS, SOLVER_WIDTHS, STORED
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 
 
 @dataclass(frozen=True)
-class Point(study.with_widths(WIDTHS)):  # type: ignore[misc]
+class Point(study.with_numbers(NUMBERS)):  # type: ignore[misc]
     """Configuration of a real sensor's pipeline behind a camera."""
 
     gradient: str
@@ -36,7 +36,7 @@ class Point(study.with_widths(WIDTHS)):  # type: ignore[misc]
     light_gains: int  # 1 or 0
 
 
-DEFAULT = Point("tridiagonal", "neumann", 96, 128, 1, *DEFAULT_WIDTHS.values(), "cubic", "rgb888", 1)
+DEFAULT = Point("tridiagonal", "neumann", 96, 128, 1, *DEFAULTS.values(), "cubic", "rgb888", 1)
 """Configuration of td.Pipeline for a sensor of 4:3."""
 
 
@@ -75,7 +75,7 @@ COSTS = (
 )
 OPTIONS = (
     *("solver", "boundary", "gradient", "light_gains", "pixel_format", "rows", "columns", "lanes"),
-    *WIDTHS,
+    *NUMBERS,
 )
 NEAR = 1.1  # depth error of the knee over the smallest: what it adds is a tenth
 
@@ -152,7 +152,7 @@ HEAD = (
 
 
 def _words(data: int, coefficient: int, gain: int = 16) -> Point:
-    return DEFAULT.but(**dict(zip(WIDTHS, (data, coefficient, gain), strict=True)))
+    return DEFAULT.but(**{STORED: data, COEFFICIENT: coefficient, GAIN: gain})
 
 
 SQUARE = DEFAULT.but(rows=128, columns=128)

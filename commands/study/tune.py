@@ -28,10 +28,10 @@ from commands.common.zero_offset import untouched
 from commands.cost.cost import Cost
 from commands.run import sim
 from commands.study.accuracy import SMALLEST_PEAK_PX, errors
-from commands.study.tune_search import ALL_FRAMES, AUTO, COEFFICIENT, DATA, Judgement, Limits, Search, Widths
+from commands.study.tune_search import ALL_FRAMES, AUTO, COEFFICIENT_BITS, DATA_BITS, Judgement, Limits, Search, Widths
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
-from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS, WORDS, Configuration
+from tactile_depth.chip.configuration import COEFFICIENT, DEFAULTS, NUMBERS, STORED, WIDTHS, WORDS, Configuration
 from tactile_depth.chip.latency import last_pixel_to_last_depth
 from tactile_depth.chip.limits import COLUMNS, most_lanes
 from tactile_depth.depth.twin import Twin
@@ -40,12 +40,12 @@ from tactile_depth.sensor.scenes import AS_EVER
 from tactile_depth.sensor.sensor import Sensor
 
 AUTO_SHARE = 0.1  # fraction that TOLERANCE=auto adds to the error of the calibration
-NOT_OF_SIM = (*run_request.WIDTH_VARIABLES.values(), "REPEAT", "GAPS", "STALLS", "WAVES", "CONFIG")
+NOT_OF_SIM = (*(width.variable for width in WIDTHS.values()), "REPEAT", "GAPS", "STALLS", "WAVES", "CONFIG")
 OF_SIM = tuple(name for name in run_request.ACCEPTED if name not in NOT_OF_SIM)
 DEFAULT_OUT = repository.ROOT / "build" / "tune"
 RESULTS = ("config.json", "report.json")
 DEFAULT_FRAMES = "bench"
-DEFAULT = [DEFAULT_WIDTHS[name] for name in SOLVER_WIDTHS]
+DEFAULT = DEFAULTS[STORED], DEFAULTS[COEFFICIENT]
 *_, DEEPEST = WORDS.values()
 CHOOSE = 0  # number of lanes of a request without LANES
 
@@ -125,7 +125,7 @@ def lanes_within(
         return request.lanes or 1
     most = most_lanes(request.columns, request.zero is not None)
     for lanes in (1 << log2 for log2 in range(most.bit_length())):
-        config = build(Widths(solver, DATA[1], COEFFICIENT[1], lanes))
+        config = build(Widths(solver, DATA_BITS[1], COEFFICIENT_BITS[1], lanes))
         if config is None or last_pixel_to_last_depth(config) <= limits.map_latency_us * limits.clock_mhz:
             break
     return lanes
@@ -141,7 +141,7 @@ def config_file(request: run_request.Request, at: Widths) -> dict[str, str | int
         "BOUNDARY": request.boundary,
         "LANES": at.lanes if at.lanes > 1 else None,
         **({"N": request.columns} if square else {"ROWS": request.rows, "COLS": request.columns}),
-        **{run_request.WIDTH_VARIABLES[name]: bits for name, bits in at.words.items()},
+        **{NUMBERS[name].variable: value for name, value in {**request.numbers, **at.words}.items()},
         "FRAMES": _absolute(request.frames),
         "SEED": request.seed,
         "REFERENCE": _absolute(request.reference),
@@ -191,7 +191,7 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
         limits = replace(limits, tolerance=tolerance_of(calibration, request.gradient), judgement=ALL_FRAMES)
 
     def shaped(at: Widths) -> run_request.Request:
-        return replace(request, widths=at.words, solver=at.solver, lanes=at.lanes)
+        return replace(request, numbers={**request.numbers, **at.words}, solver=at.solver, lanes=at.lanes)
 
     _check_grid(request, solvers)
     shape = (request.rows, request.columns)
@@ -210,10 +210,10 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
         return built[at]
 
     lanes = {solver: lanes_within(build, request, limits, solver) for solver in solvers}
-    solvers = [s for s in solvers if build(Widths(s, DATA[1], COEFFICIENT[1], lanes[s])) is not None]
+    solvers = [s for s in solvers if build(Widths(s, DATA_BITS[1], COEFFICIENT_BITS[1], lanes[s])) is not None]
     if not solvers:
         raise refusals[-1]
-    widest = build(Widths(solvers[0], DATA[1], COEFFICIENT[1], lanes[solvers[0]]))
+    widest = build(Widths(solvers[0], DATA_BITS[1], COEFFICIENT_BITS[1], lanes[solvers[0]]))
     assert widest is not None
     exact = Twin(calibration, widest).exact_px(frames.pixels)
     tuning, proving, how = split(frames, np.abs(exact).max(axis=(1, 2)), request.seed)
@@ -299,7 +299,8 @@ def _check_grid(request: run_request.Request, solvers: list[str]) -> None:
     for solver in solvers:
         try:
             shape: dict[str, Any] = {"columns": request.columns, "rows": request.rows, "lanes": request.lanes or 1}
-            Configuration(**shape, solver=solver, **Widths(solver, DATA[1], DEFAULT[1]).words)
+            words = Widths(solver, DATA_BITS[1], DEFAULT[1]).words
+            Configuration(**shape, solver=solver, **{**request.numbers, **words})
             return
         except InputError as error:
             refused.append(error)
@@ -336,8 +337,8 @@ def _none(search: Search, solvers: list[str]) -> str:
     counts = {
         at: counted
         for solver in solvers
-        for data in range(DATA[0], DATA[1] + 1)
-        if (counted := search.cost(at := search.point(solver, data, COEFFICIENT[0]))) is not None
+        for data in range(DATA_BITS[0], DATA_BITS[1] + 1)
+        if (counted := search.cost(at := search.point(solver, data, COEFFICIENT_BITS[0]))) is not None
     }
     near = min(counts, key=lambda at: (len(limits.broken(counts[at])), search.rank(at)))
     return (

@@ -15,9 +15,9 @@ from commands.cost.cost import Cost, cost
 from commands.cost.devices import Device
 from commands.hardware.targets import DEFAULT_TARGET, TARGETS, Target
 from tactile_depth.base.errors import Argument
-from tactile_depth.chip.configuration import DEFAULT_WIDTHS, SOLVER_WIDTHS, WIDTHS, Configuration
+from tactile_depth.chip.configuration import COEFFICIENT, DEFAULTS, GAIN, SOLVER_WIDTHS, STORED, WIDTHS, Configuration
 
-DATA, COEFFICIENT, GAIN = (width.accepted for width in WIDTHS.values())
+DATA_BITS, COEFFICIENT_BITS, GAIN_BITS = (WIDTHS[name].accepted for name in (STORED, COEFFICIENT, GAIN))
 
 AUTO = "auto"  # of TOLERANCE
 DEFAULT_TOLERANCE = 0.1  # % of peak
@@ -102,22 +102,22 @@ class Widths:
     data: int
     coefficient: int
     lanes: int = 1
-    gain: int = GAIN[1]
+    gain: int = GAIN_BITS[1]
 
     def __str__(self) -> str:
         lanes = f" LANES={self.lanes}" if self.lanes > 1 else ""
-        own = [name for name, bits in self.words.items() if name in SOLVER_WIDTHS or bits != DEFAULT_WIDTHS[name]]
+        own = [name for name, bits in self.words.items() if name in SOLVER_WIDTHS or bits != DEFAULTS[name]]
         words = " ".join(f"{WIDTHS[name].variable}={self.words[name]}" for name in own)
         return f"SOLVER={self.solver} {words}{lanes}"
 
     @property
     def words(self) -> dict[str, Any]:
         """Widths by field of Configuration."""
-        return dict(zip(WIDTHS, (self.data, self.coefficient, self.gain), strict=True))
+        return {STORED: self.data, COEFFICIENT: self.coefficient, GAIN: self.gain}
 
 
 # Points of a solver that most searches measure: the widest, and a bisection of each width.
-MEASURED = 1 + sum((high - low).bit_length() for low, high in (DATA, COEFFICIENT))
+MEASURED = 1 + sum((high - low).bit_length() for low, high in (DATA_BITS, COEFFICIENT_BITS))
 
 
 @dataclass
@@ -163,26 +163,26 @@ class Search:
     def seconds(self, solvers: list[str]) -> float:
         """Return about how long `cheapest` takes, by the time of the first point that it measures."""
         began = time.monotonic()
-        self.error(self.point(solvers[0], DATA[1], COEFFICIENT[1]))
+        self.error(self.point(solvers[0], DATA_BITS[1], COEFFICIENT_BITS[1]))
         return (time.monotonic() - began) * len(solvers) * MEASURED
 
     def cheapest(self, solvers: list[str]) -> Widths | None:
         candidates: list[Widths] = []
         for solver in solvers:
-            widest = self.point(solver, DATA[1], COEFFICIENT[1])
+            widest = self.point(solver, DATA_BITS[1], COEFFICIENT_BITS[1])
             if not self.meets(widest):
                 continue
-            coefficient = COEFFICIENT[1]
-            data = _least(DATA[0], DATA[1], lambda d: self.meets(replace(widest, data=d)))  # noqa: B023
-            for width in range(data, DATA[1] + 1):
-                least = self.point(solver, width, COEFFICIENT[0])
+            coefficient = COEFFICIENT_BITS[1]
+            data = _least(DATA_BITS[0], DATA_BITS[1], lambda d: self.meets(replace(widest, data=d)))  # noqa: B023
+            for width in range(data, DATA_BITS[1] + 1):
+                least = self.point(solver, width, COEFFICIENT_BITS[0])
                 if self.build(least) is not None and (
                     not self.allowed(least) or (candidates and self.rank(least) >= min(map(self.rank, candidates)))
                 ):
                     break  # no coefficient meets the target, and wider words do not either
                 row = replace(widest, data=width)
                 coefficient = _least(
-                    COEFFICIENT[0],
+                    COEFFICIENT_BITS[0],
                     coefficient,
                     lambda c: self.meets(replace(row, coefficient=c)),  # noqa: B023
                 )
@@ -197,15 +197,15 @@ class Search:
         if config is None or not config.flat_field:
             return at
 
-        shorter = (replace(at, gain=width) for width in range(GAIN[0], at.gain))
+        shorter = (replace(at, gain=width) for width in range(GAIN_BITS[0], at.gain))
         return next((point for point in shorter if self.build(point) is not None and self.meets(point)), at)
 
     def nearest(self, solvers: list[str]) -> Widths | None:
         """Return the point of the smallest error within the limits."""
         corners = []
         for solver in solvers:
-            for coefficient in range(COEFFICIENT[0], COEFFICIENT[1] + 1):
-                widths = (self.point(solver, data, coefficient) for data in range(DATA[1], DATA[0] - 1, -1))
+            for coefficient in range(COEFFICIENT_BITS[0], COEFFICIENT_BITS[1] + 1):
+                widths = (self.point(solver, data, coefficient) for data in range(DATA_BITS[1], DATA_BITS[0] - 1, -1))
                 widest = next(filter(self.allowed, widths), None)
                 corners += [] if widest is None else [widest]
         outer = [a for a in corners if not any(_wider(b, a) for b in corners)]

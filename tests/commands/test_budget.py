@@ -18,7 +18,7 @@ from commands.study.presses import measured
 from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate.presses import GridPresses, PressPictures, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
-from tactile_depth.chip.configuration import WIDTHS
+from tactile_depth.chip.configuration import COEFFICIENT, STORED
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.depth import reference
 
@@ -81,7 +81,7 @@ def test_the_whole_error_of_a_press_is_that_of_make_presses(pictures: PressPictu
 
 def test_a_part_that_is_switched_off_vanishes() -> None:
     given, noisy = (parts(replace(SMALL, drawn=replace(STILL, noise=noise))) for noise in (0, 4))
-    plain = parts(replace(SMALL, choice=CameraChoice("rgb888"), widths=dict(zip(WIDTHS, (14, 12, 24), strict=True))))
+    plain = parts(replace(SMALL, choice=CameraChoice("rgb888"), numbers={STORED: 14, COEFFICIENT: 12}))
     assert given["camera noise and 8 bits"] < 0.5 * noisy["camera noise and 8 bits"]  # rounding is left
     assert plain["pixel format"] == 0 < given["pixel format"]
     assert given["quantisation"] < 0.1 * plain["quantisation"]

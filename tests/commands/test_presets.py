@@ -14,7 +14,10 @@ from commands.common import repository, run_request, variables, wrapper
 from commands.hardware import fpga, synth, synthesis
 from commands.run import sim
 from commands.study import tune
+from commands.study.tune_search import Widths
 from tactile_depth.base.errors import InputError
+from tactile_depth.chip.choices import Number
+from tactile_depth.chip.configuration import DEFAULTS, NUMBERS, Configuration
 from tactile_depth.chip.tactile_depth import default_parameters, top_parameters
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.sensor.built_in import load
@@ -98,6 +101,19 @@ def test_a_configuration_file_names_a_preset(tmp_path: Path) -> None:
     request = run_request.parse([f"CONFIG={file}"])
     assert (request.preset, request.solver, request.columns) == ("sensor", "tridiagonal", 64)
     assert run_request.parse([f"CONFIG={file}", "PRESET=published"]).solver == "spectral"
+
+
+def test_a_number_that_is_not_searched_has_its_own_folder_and_survives_tune(monkeypatch: pytest.MonkeyPatch) -> None:
+    field, usual = "bits_per_channel", Configuration.bits_per_channel
+    added = {field: Number(meaning="bits of a colour", accepted=(3, 5)).of(field)}
+    for module in (run_request, tune):
+        monkeypatch.setattr(module, "NUMBERS", NUMBERS | added)
+    monkeypatch.setattr(run_request, "DEFAULTS", DEFAULTS | {field: usual})
+    names = [run_request.words_of(Configuration(bits_per_channel=bits)) for bits in (usual, usual + 1)]
+    assert names == ["d24-c18", "d24-c18-bits_per_channel5"]
+    request = run_request.of_values({"BITS_PER_CHANNEL": "5"}, (*tune.OF_SIM, "BITS_PER_CHANNEL"), "sensor")
+    file = tune.config_file(request, Widths("spectral", 15, 12))
+    assert (file["BITS_PER_CHANNEL"], file["DATA_WIDTH"], file["GAIN_WIDTH"]) == (5, 15, 24)
 
 
 def test_an_unknown_preset_is_refused() -> None:

@@ -334,10 +334,10 @@ def test_a_configuration_file_gives_variables_and_explicit_ones_win(tmp_path: Pa
         tmp_path / "c.json", '{"SOLVER": "tridiagonal", "ROWS": 24, "COLS": 32, "DATA_WIDTH": 20, "AT": "1,0"}'
     )
     request = run_request.parse([words, "DATA_WIDTH=22"])
-    assert (request.rows, request.columns, request.solver, request.widths["data_width"]) == (24, 32, "tridiagonal", 22)
+    assert (request.rows, request.columns, request.solver, request.numbers["data_width"]) == (24, 32, "tridiagonal", 22)
     assert request.press.at_mm == (1, 0)
     square = run_request.parse([words, "N=64"])
-    assert (square.rows, square.columns, square.widths["data_width"]) == (64, 64, 20)
+    assert (square.rows, square.columns, square.numbers["data_width"]) == (64, 64, 20)
 
 
 # Bad input: one line that names what was given, exit status 2, nothing left behind.

@@ -18,7 +18,7 @@ from commands.common import published, run_request, variables
 from commands.cost.cost import cost
 from commands.run import sim
 from commands.study import tune
-from commands.study.tune_search import COEFFICIENT, DATA, WORST_FRAME, Limits, Search, Widths
+from commands.study.tune_search import COEFFICIENT_BITS, DATA_BITS, WORST_FRAME, Limits, Search, Widths
 from tactile_depth.calibrate.presses import gather
 from tactile_depth.chip.configuration import WORDS, Configuration
 from tactile_depth.chip.latency import last_pixel_to_last_depth
@@ -53,7 +53,7 @@ def falling(solver_bits: Any) -> Any:
 
 @cache
 def all_points() -> list[Any]:
-    widths = product(range(DATA[0], DATA[1] + 1), range(COEFFICIENT[0], COEFFICIENT[1] + 1))
+    widths = product(range(DATA_BITS[0], DATA_BITS[1] + 1), range(COEFFICIENT_BITS[0], COEFFICIENT_BITS[1] + 1))
     return [at for d, c in widths for s in COLUMNS if built(at := Widths(s, d, c)) is not None]
 
 

@@ -33,17 +33,24 @@ class Choice:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Width(Choice):
-    """Bits of a word, from the least to the most that are accepted.
+class Number(Choice):
+    """A whole number, from the least to the most that are accepted.
 
     Attributes
     ----------
-    word : str
-        Word of so many bits.
+    meaning : str
+        Its unit and what it counts, as help texts and pages state it.
+    letter : str
+        Letter by which names of folders always state it; they state others by their field, unless they are the default.
     colours : bool
         It has an effect with a flat field alone.
     """
 
-    word: str
+    meaning: str
     accepted: tuple[int, int]
+    letter: str = ""
     colours: bool = False
+
+
+class Width(Number):
+    """Bits of a word, which searches of word lengths vary."""

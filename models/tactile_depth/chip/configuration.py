@@ -19,7 +19,7 @@ import numpy as np
 from tactile_depth.base.declared import declared
 from tactile_depth.base.errors import Argument, InputError, former_names, one_of, power_of_two, within
 from tactile_depth.chip.bounds import Bounds, bounds, difference_bounds
-from tactile_depth.chip.choices import Choice, Width
+from tactile_depth.chip.choices import Choice, Number, Width
 from tactile_depth.chip.fixed_point import Format
 from tactile_depth.chip.limits import (
     BOUNDARIES,
@@ -96,9 +96,13 @@ class Configuration:
     solver: Annotated[str, Choice()] = "spectral"
     neumann: Annotated[bool, Choice(argument="boundary")] = False
     lanes: Annotated[int, Choice(option="lanes={}")] = 1  # no option of the command has it
-    data_width: Annotated[int, Width(word="stored word", accepted=(12, 32))] = 24
-    coefficient_width: Annotated[int, Width(word="coefficient", accepted=(10, 24), variable="COEFF_WIDTH")] = 18
-    gain_width: Annotated[int, Width(word="gain of the flat field", accepted=(16, 24), colours=True)] = 24
+    data_width: Annotated[int, Width(meaning="bits of a stored word", accepted=(12, 32), letter="d")] = 24
+    coefficient_width: Annotated[
+        int, Width(meaning="bits of a coefficient", accepted=(10, 24), letter="c", variable="COEFF_WIDTH")
+    ] = 18
+    gain_width: Annotated[
+        int, Width(meaning="bits of a gain of the flat field", accepted=(16, 24), letter="g", colours=True)
+    ] = 24
     depth_range_px: Annotated[float | None, Choice(argument="depth_range_mm", variable="DEPTH_RANGE")] = None
     gradient_limit: float = 1.0
     coefficient_limit: float = POLYNOMIAL.limit
@@ -130,8 +134,8 @@ class Configuration:
                 remedy=("set both the same, or ", Argument("solver", "tridiagonal")),
             )
         self._check_lanes()
-        for name, width in WIDTHS.items():
-            within(Argument(name, getattr(self, name)), *width.accepted)
+        for name, number in NUMBERS.items():
+            within(Argument(name, getattr(self, name)), *number.accepted)
         self._check_sums()
         if self.depth_range_px is None:
             object.__setattr__(self, "depth_range_px", min(self.rows, self.columns) / 4)
@@ -480,12 +484,15 @@ COLOURS: dict[str, Any] = {"flat_field": True, "gradient_model": "cubic", "light
 """Choices for colours of a real sensor, which are relative to a reference and to its light."""
 CHOICES = {name: choice.of(name) for name, choice in declared(Configuration, Choice).items()}
 """Choices that users name, by field."""
-WIDTHS = {name: width for name, width in CHOICES.items() if isinstance(width, Width)}
+NUMBERS = {name: number for name, number in CHOICES.items() if isinstance(number, Number)}
+"""Whole numbers that are declared with a range, by field."""
+SOLVER_NUMBERS = {name: number for name, number in NUMBERS.items() if not number.colours}
+DEFAULTS: dict[str, int] = {name: getattr(Configuration, name) for name in NUMBERS}
+WIDTHS = {name: number for name, number in NUMBERS.items() if isinstance(number, Width)}
 SOLVER_WIDTHS = {name: width for name, width in WIDTHS.items() if not width.colours}
-STORED, COEFFICIENT, GAIN = WIDTHS
-WORDS = {CHOICES[name].argument: CHOICES[name].variable for name in (*WIDTHS, "depth_range_px")}
-"""Variables of the word lengths and of the depth range, by argument of `td.Pipeline`."""
-DEFAULT_WIDTHS: dict[str, int] = {name: getattr(Configuration, name) for name in WIDTHS}
+STORED, COEFFICIENT, GAIN = "data_width", "coefficient_width", "gain_width"
+WORDS = {CHOICES[name].argument: CHOICES[name].variable for name in (*NUMBERS, "depth_range_px")}
+"""Variables of the numbers and of the depth range, by argument of `td.Pipeline`."""
 
 
 class ExactConfiguration(Configuration):

@@ -10,7 +10,7 @@ from typing import Any, get_args
 import numpy as np
 
 from tactile_depth.base.errors import InputError
-from tactile_depth.chip.configuration import CHOICES, DEFAULT_WIDTHS, WIDTHS
+from tactile_depth.chip.configuration import CHOICES, DEFAULTS, NUMBERS
 from tactile_depth.chip.limits import BOUNDARIES, MODELS, Solver
 from tactile_depth.depth.pipeline import AREA_THRESHOLD_MM, ARITHMETICS, THRESHOLD_MM, Pipeline
 from tactile_depth.pictures.frames import read_stack
@@ -82,10 +82,10 @@ def add_build_arguments(parser: argparse.ArgumentParser) -> None:
     build = parser.add_argument_group("build of a device that has others than the defaults")
     build.add_argument("--solver", choices=get_args(Solver), default=SENSOR.solver, help=f"default {SENSOR.solver}")
     build.add_argument("--boundary", choices=BOUNDARIES, default=SENSOR.boundary, help=f"default {SENSOR.boundary}")
-    for name, width in WIDTHS.items():
-        bits = DEFAULT_WIDTHS[name]
-        help_text = f"bits of a {width.word} (default {bits})"
-        build.add_argument(width.option.split()[0], type=int, default=bits, metavar="BITS", help=help_text)
+    for name, number in NUMBERS.items():
+        usual, unit = DEFAULTS[name], number.meaning.split()[0].upper()
+        help_text = f"{number.meaning} (default {usual})"
+        build.add_argument(number.option.split()[0], type=int, default=usual, metavar=unit, help=help_text)
     build.add_argument("--depth-range-mm", type=float, metavar="MM", help="depth that the formats are sized for")
 
 

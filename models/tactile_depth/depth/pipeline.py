@@ -12,7 +12,7 @@ import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import WIDTHS, Configuration, ExactConfiguration, is_grid_of_hardware
+from tactile_depth.chip.configuration import Configuration, ExactConfiguration, is_grid_of_hardware
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.depth.zero_offset import exact_zero, no_zero
 from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gains, require_light
@@ -118,10 +118,10 @@ class Pipeline:
             raise InputError(Argument("sensor"), problem, accepted="a Sensor, as load(..) returns it")
         if grid is not None and not (len(np.shape(grid)) == 1 and len(grid) == 2 and all(map(is_whole, grid))):
             raise InputError(Argument("grid", grid), accepted=("(rows, columns)", "whole numbers"))
-        widths = dict(zip(WIDTHS, (data_width, coefficient_width, gain_width), strict=True))
-        for name, bits in widths.items():
-            if not is_whole(bits):
-                raise InputError(Argument(name, bits), accepted="a whole number, of type int")
+        numbers = {"data_width": data_width, "coefficient_width": coefficient_width, "gain_width": gain_width}
+        for name, number in numbers.items():
+            if not is_whole(number):
+                raise InputError(Argument(name, number), accepted="a whole number, of type int")
         one_of(Argument("arithmetic", arithmetic), ARITHMETICS)
         one_of(Argument("boundary", boundary), BOUNDARIES)
         sensor.require_reference(reference is not None)
@@ -139,7 +139,7 @@ class Pipeline:
             model,
             kind=kind,
             **shape,
-            **widths,
+            **numbers,
             depth_range_px=None if depth_range_mm is None else self.sensor.depth_range_px(depth_range_mm),
             zero_offset=zero_offset,
             light_gains=light_gains,

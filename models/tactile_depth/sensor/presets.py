@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import cast
 
-from tactile_depth.chip.configuration import WORDS, Configuration
+from tactile_depth.chip.configuration import COEFFICIENT, GAIN, STORED, Configuration
 from tactile_depth.chip.limits import Boundary, Model, Solver
 
 
@@ -23,7 +23,7 @@ class Preset:
     light_gains : bool
         A gain for each colour follows the light.
     words : dict
-        Word lengths and depth range, as arguments of `td.Pipeline`; by default those of `td.Pipeline`.
+        Numbers and depth range, as arguments of `td.Pipeline`; by default those of `td.Pipeline`.
     """
 
     solver: Solver
@@ -48,7 +48,7 @@ PUBLISHED = Preset(
 """The pipeline of the published design: colours as they are sent, and a table of slopes."""
 SENSOR = Preset("tridiagonal", "neumann", "cubic", "gelsight-mini", (96, 128), zero_offset=True, light_gains=True)
 """A real sensor: colours relative to a reference and to its light, and the whole picture of a camera of 4:3."""
-CHIP = replace(SENSOR, words=dict(zip(WORDS, (15, 10, 16, 2.0), strict=True)))
+CHIP = replace(SENSOR, words={STORED: 15, COEFFICIENT: 10, GAIN: 16, "depth_range_mm": 2.0})
 """A real sensor with the shortest words that add a tenth to the error of its calibration, as `make tune TOLERANCE=auto
 TARGET=ecp5` chose for 2 mm them on 45 presses of a GelSight Mini."""
 PRESETS = {"published": PUBLISHED, "sensor": SENSOR, "chip": CHIP}
