@@ -299,18 +299,33 @@ def sources(arguments: list[str]) -> str:
     return synthesis.sources(run_request.of_values(values, preset="sensor"))
 
 
-def run(request: run_request.Request, options: Options) -> int:
+def main(
+    request: Annotated[run_request.Request, run_request.chosen(preset="sensor")],
+    lib: Place = DEFAULT_LIB,
+    node_nm: Annotated[float, real(1, 1000)] | None = None,
+    clock_mhz: ClockMhz = 75.0,
+) -> int:
     """Run the flow and return the exit status."""
+    if lib == DEFAULT_LIB and not lib.exists():
+        raise InputError(f"LIB: {lib} is not installed: run `apt-get install qflow-tech-osu018`, or give a .lib")
+    if not lib.is_file():
+        raise InputError(f"LIB={lib}: no such file: give a Liberty file (.lib)")
+    library = read(lib)
+    if lib.resolve() != DEFAULT_LIB and node_nm is None:
+        raise InputError(f"NODE_NM is missing: LIB={lib} does not state its feature size, which memories need")
     for tool, package in TOOLS.items():
         if shutil.which(tool) is None:
             raise InputError(f"{tool} is not installed: run `apt-get install {package}`")
     shape = f"{request.rows}x{request.columns}"
-    name = f"{request.solver}-{request.boundary}-{shape}-{options.library.name}"
+    name = f"{request.solver}-{request.boundary}-{shape}-{library.name}"
     out = request.out or repository.ROOT / "build" / "asic" / name
     _, _, config = synthesis.design(request)  # refuses bad input before anything is made
     with synthesis.workspace(out, ["asic.json"]) as work:
         run_request.announce(request, config)
-        report = {"command": " ".join(["make", *sys.argv]), **measure(request, options, work)}
+        report = {
+            "command": " ".join(["make", *sys.argv]),
+            **measure(request, Options(lib, library, node_nm or DEFAULT_NODE_NM, clock_mhz), work),
+        }
         save(work / "asic.json", report)
         files.replace(work, ["asic.json"], out)
     print(text(report))
@@ -319,19 +334,3 @@ def run(request: run_request.Request, options: Options) -> int:
     recorded.record(recordable(report))
     print(f"results: {os.path.relpath(out)}")
     return variables.MISMATCH if wrong else variables.EQUAL
-
-
-def main(
-    request: Annotated[run_request.Request, run_request.chosen(preset="sensor")],
-    lib: Place = DEFAULT_LIB,
-    node_nm: Annotated[float, real(1, 1000)] | None = None,
-    clock_mhz: ClockMhz = 75.0,
-) -> int:
-    if lib == DEFAULT_LIB and not lib.exists():
-        raise InputError(f"LIB: {lib} is not installed: run `apt-get install qflow-tech-osu018`, or give a .lib")
-    if not lib.is_file():
-        raise InputError(f"LIB={lib}: no such file: give a Liberty file (.lib)")
-    library = read(lib)
-    if lib.resolve() != DEFAULT_LIB and node_nm is None:
-        raise InputError(f"NODE_NM is missing: LIB={lib} does not state its feature size, which memories need")
-    return run(request, Options(lib, library, node_nm or DEFAULT_NODE_NM, clock_mhz))

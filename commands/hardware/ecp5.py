@@ -9,6 +9,7 @@ the end of such a wire; behind it, logic and memories take time too. They read a
 """
 
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -53,13 +54,7 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
     cells: Cells = module["cells"]
     registers = {cell["connections"]["Q"][0]: name for name, cell in cells.items() if cell["type"] == REGISTER}
     behind = {cell["connections"]["DI"][0]: name for name, cell in cells.items() if cell["type"] == REGISTER}
-    readers: Counter[Bit] = Counter(
-        bit
-        for cell in cells.values()
-        for port, bits in cell["connections"].items()
-        if cell["port_directions"][port] == "input"
-        for bit in bits
-    )
+    readers: Counter[Bit] = Counter(bit for _, bit in _pins(cells, "input"))
     readers.update(bit for port in module["ports"].values() if port["direction"] != "input" for bit in port["bits"])
     near = _behind_memories(cells) | _read_elsewhere(cells)
     multipliers = [cell for cell in cells.values() if cell["type"] == MULTIPLIER]
@@ -97,16 +92,17 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
     return {"multipliers": len(multipliers), "operands": operands, "products": products, "registers": removed}
 
 
+def _pins(cells: Cells, direction: str) -> Iterator[tuple[str, Bit]]:
+    """Yield the type of a cell and the net of each pin with a direction."""
+    for cell in cells.values():
+        for port, bits in cell["connections"].items():
+            if cell["port_directions"][port] == direction:
+                yield from ((cell["type"], bit) for bit in bits)
+
+
 def _behind_memories(cells: Cells) -> set[Bit]:
     """Return the outputs of logic that has a word of a block memory at an input."""
-    read = {
-        bit
-        for cell in cells.values()
-        if cell["type"] == MEMORY
-        for port, bits in cell["connections"].items()
-        if cell["port_directions"][port] == "output"
-        for bit in bits
-    }
+    read = {bit for kind, bit in _pins(cells, "output") if kind == MEMORY}
     return {
         cell["connections"]["Z"][0]
         for cell in cells.values()
@@ -116,13 +112,8 @@ def _behind_memories(cells: Cells) -> set[Bit]:
 
 def _read_elsewhere(cells: Cells) -> set[Bit]:
     """Return the outputs of logic whose register is read by more than multipliers."""
-    computed, read = set[Bit](), set[Bit]()
-    for cell in cells.values():
-        for port, bits in cell["connections"].items():
-            if cell["port_directions"][port] == "input" and cell["type"] != MULTIPLIER:
-                read.update(bits)
-            elif cell["port_directions"][port] == "output" and cell["type"] not in (REGISTER, MEMORY, MULTIPLIER):
-                computed.update(bits)
+    read = {bit for kind, bit in _pins(cells, "input") if kind != MULTIPLIER}
+    computed = {bit for kind, bit in _pins(cells, "output") if kind not in (REGISTER, MEMORY, MULTIPLIER)}
     return {
         cell["connections"]["DI"][0]
         for cell in cells.values()
@@ -172,9 +163,8 @@ def _configure(multiplier: dict[str, Any], controls: dict[str, Control]) -> None
     pins |= {f"CLK{place}": "0" for place in range(1, CLOCKS)}
     pins["CLK0"] = next(iter(controls.values())).clock
     pins |= {f"CE{place}": enables[place] if place < len(enables) else "0" for place in range(CLOCKS)}
-    for pin, bit in pins.items():
-        multiplier["connections"][pin] = [bit]
-        multiplier["port_directions"][pin] = "input"
+    multiplier["connections"] |= {pin: [bit] for pin, bit in pins.items()}
+    multiplier["port_directions"] |= dict.fromkeys(pins, "input")
 
 
 def copy_enables(module: dict[str, Any]) -> None:

