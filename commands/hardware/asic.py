@@ -259,7 +259,7 @@ def measure(request: run_request.Request, options: Options, work: Path) -> dict[
         window=range(middle, min(middle + WINDOW_CLOCKS, size)),
     )
     with progress_bar(total=3, unit="step", desc="synthesis") as bar:
-        reading = synthesis.read(work, config, calibration=calibration, options="--keep-hierarchy")
+        reading = synthesis.read(work, config, calibration, options="--keep-hierarchy")
         netlist, macros, where = synthesise(work, reading, TOP, options.file, library, period_ns)
         bar.update()
         bar.set_description("timing")

@@ -52,8 +52,8 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
     that were removed
     """
     cells: Cells = module["cells"]
-    registers = {cell["connections"]["Q"][0]: name for name, cell in cells.items() if cell["type"] == REGISTER}
-    behind = {cell["connections"]["DI"][0]: name for name, cell in cells.items() if cell["type"] == REGISTER}
+    registers = {ports["Q"][0]: name for name, ports in _registers(cells).items()}
+    behind = {ports["DI"][0]: name for name, ports in _registers(cells).items()}
     readers: Counter[Bit] = Counter(bit for _, bit in _pins(cells, "input"))
     readers.update(bit for port in module["ports"].values() if port["direction"] != "input" for bit in port["bits"])
     near = _behind_memories(cells) | _read_elsewhere(cells)
@@ -92,6 +92,11 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
     return {"multipliers": len(multipliers), "operands": operands, "products": products, "registers": removed}
 
 
+def _registers(cells: Cells) -> dict[str, dict[str, list[Bit]]]:
+    """Return the nets at the ports of each register."""
+    return {name: cell["connections"] for name, cell in cells.items() if cell["type"] == REGISTER}
+
+
 def _pins(cells: Cells, direction: str) -> Iterator[tuple[str, Bit]]:
     """Yield the type of a cell and the net of each pin with a direction."""
     for cell in cells.values():
@@ -114,11 +119,8 @@ def _read_elsewhere(cells: Cells) -> set[Bit]:
     """Return the outputs of logic whose register is read by more than multipliers."""
     read = {bit for kind, bit in _pins(cells, "input") if kind != MULTIPLIER}
     computed = {bit for kind, bit in _pins(cells, "output") if kind not in (REGISTER, MEMORY, MULTIPLIER)}
-    return {
-        cell["connections"]["DI"][0]
-        for cell in cells.values()
-        if cell["type"] == REGISTER and cell["connections"]["DI"][0] in computed and cell["connections"]["Q"][0] in read
-    }
+    between = {ports["DI"][0] for ports in _registers(cells).values() if ports["Q"][0] in read}
+    return between & computed
 
 
 def _sources(
@@ -173,14 +175,9 @@ def copy_enables(module: dict[str, Any]) -> None:
     The module is flat, of Yosys' JSON after synth_ecp5.
     """
     cells: Cells = module["cells"]
-    enabled = Counter(
-        bit for cell in cells.values() if cell["type"] == REGISTER for bit in cell["connections"].get("CE", ())
-    )
-    wide = {
-        name: cell["connections"]["Q"][0]
-        for name, cell in cells.items()
-        if cell["type"] == REGISTER and enabled[cell["connections"]["Q"][0]] > READERS
-    }
+    registers = _registers(cells)
+    enabled = Counter(bit for ports in registers.values() for bit in ports.get("CE", ()))
+    wide = {name: ports["Q"][0] for name, ports in registers.items() if enabled[ports["Q"][0]] > READERS}
     used = {bit for cell in cells.values() for bits in cell["connections"].values() for bit in bits}
     free = 1 + max((bit for bit in used if isinstance(bit, int)), default=0)
     copies: dict[Bit, Bit] = {bit: free + number for number, bit in enumerate(wide.values())}

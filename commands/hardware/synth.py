@@ -124,7 +124,7 @@ def elaborate(
     config: Configuration,
     calibration: Sensor,
     folder: Path,
-    target: Target = TARGETS[DEFAULT_TARGET],
+    target: Target,
     camera: CameraConfiguration | None = None,
 ) -> tuple[list[str], list[str]]:
     """Return the lines of Yosys that read a design, and all its modules, <core>$<path>.
@@ -136,7 +136,7 @@ def elaborate(
     lines = synthesis.read(
         folder,
         config,
-        calibration=calibration,
+        calibration,
         top=top,
         parameters=parameters,
         extra=target.sources(),

@@ -11,7 +11,6 @@ from tactile_depth.base import files
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
 from tactile_depth.pictures.frames import REST_SCENE, Frames, flat_frames, load_frames, on_grid
-from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.sensor import Sensor
 
 SOLVERS = {"spectral_solver", "tridiagonal_solver", "wide_solver"}
@@ -64,8 +63,8 @@ def workspace(out: Path, names: Iterable[str]) -> AbstractContextManager[Path]:
 def read(
     folder: Path,
     config: Configuration,
+    calibration: Sensor,
     *,
-    calibration: str | Sensor = "synthetic",
     top: str = "tactile_depth",
     parameters: Mapping[str, int | str] | None = None,
     extra: Sequence[Path] = (),
@@ -80,7 +79,7 @@ def read(
     options : of the front end
     """
     folder.mkdir(parents=True, exist_ok=True)
-    write_roms(folder, load(calibration) if isinstance(calibration, str) else calibration, config)
+    write_roms(folder, calibration, config)
     names = list({source.name: shutil.copy(source, folder) for source in [*repository.sources(), *extra]})
     of_top = hdl_parameters(config) if parameters is None else parameters
     values = " ".join(f"-G {name}={value}" for name, value in of_top.items())

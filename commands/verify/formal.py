@@ -171,8 +171,7 @@ def run(proof: Proof | Cone, mode: str) -> Outcome:
     log = folder / f"{mode}.log"
     _, seconds = timed(["yowasp-sby", *tools, "-f", "-d", mode, f"{mode}.sby"], folder, log)
     text = log.read_text()
-    done = re.findall(r"DONE \((\w+)", text)
-    status = done[-1] if done else "ERROR"
+    *_, status = ["ERROR", *re.findall(r"DONE \((\w+)", text)]
     if (
         status == "ERROR" and "returned FAIL" in text
     ):  # refuted; the trace of a memory's initial content is not converted

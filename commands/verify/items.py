@@ -12,7 +12,8 @@ from commands.common import variables
 from commands.common.repository import ROOT
 from tb.settings import RunSettings
 
-WITHOUT = "no:cacheprovider"  # a command leaves no state for the next run of pytest
+# A command leaves no state for the next run of pytest.
+OPTIONS = (f"--rootdir={ROOT}", *["-p", "no:cacheprovider", "--dist", "worksteal", "--no-summary", "--timeout=3600"])
 STATUS = {
     pytest.ExitCode.OK: variables.EQUAL,
     pytest.ExitCode.TESTS_FAILED: variables.MISMATCH,
@@ -65,18 +66,8 @@ def run(
     """
     os.environ.update((settings or RunSettings()).environment | environment)  # its workers inherit it
     table = Table(text)
-    options = [
-        f"--rootdir={ROOT}",
-        "-p",
-        WITHOUT,
-        "-n",
-        str(workers),
-        "--dist",
-        "worksteal",
-        "--no-summary",
-        "--timeout=3600",
-    ]
-    status = pytest.main([*options, *["-vv"] * verbose, "-m", marks, *tests], plugins=[table])
+    arguments = [*OPTIONS, "-n", str(workers), *["-vv"] * verbose, "-m", marks, *tests]
+    status = pytest.main(arguments, plugins=[table])
     if status == pytest.ExitCode.INTERRUPTED:
         raise KeyboardInterrupt
     if status not in STATUS:

@@ -17,8 +17,6 @@ from functools import partial
 from itertools import product
 from pathlib import Path
 
-import numpy as np
-
 from commands.common import repository, wrapper
 from commands.common import simulator as simulation
 from commands.hardware import fpga
@@ -27,16 +25,8 @@ from commands.verify import items
 from tactile_depth.chip.camera.register_lists import pins, write_list
 from tactile_depth.chip.configuration import COLOURS, Configuration
 from tactile_depth.chip.depth.zero_offset import no_zero
-from tactile_depth.chip.gradient.flat_field import unit_gains
-from tactile_depth.chip.limits import COLUMNS, POLYNOMIAL
-from tactile_depth.chip.rom_files import (
-    write_gains,
-    write_nodes,
-    write_polynomials,
-    write_solver,
-    write_words,
-    write_zero,
-)
+from tactile_depth.chip.limits import COLUMNS
+from tactile_depth.chip.rom_files import write_nodes, write_solver, write_words
 from tactile_depth.chip.tactile_depth import default_parameters, hdl_parameters, write_roms
 from tactile_depth.sensor.built_in import load
 from tb.settings import RunSettings
@@ -110,9 +100,8 @@ def structures() -> list[Structure]:
 
 def output_of(command: Sequence[str | Path]) -> str:
     """Return everything that a command prints, or its exit status if it fails without output."""
-    words, pipe = [str(word) for word in command], subprocess.PIPE
     result = subprocess.run(
-        words, cwd=repository.ROOT, stdout=pipe, stderr=pipe, text=True, timeout=TIMEOUT_S, check=False
+        command, cwd=repository.ROOT, capture_output=True, text=True, timeout=TIMEOUT_S, check=False
     )
     text = (result.stdout + result.stderr).strip()
     return text or (f"exit status {result.returncode}" if result.returncode else "")
@@ -175,15 +164,12 @@ def yosys_cores(cores: Sequence[str]) -> str:
     """Check cores at their default parameters, which are those of the default configurations."""
     folder = FOLDER / "yosys"
     folder.mkdir(parents=True, exist_ok=True)
-    for solver in COLUMNS:
-        write_roms(folder, load("synthetic"), Configuration(solver=solver))
+    for config in (Configuration(**COLOURS, zero_offset=True), *(Configuration(solver=solver) for solver in COLUMNS)):
+        write_roms(folder, load("synthetic"), config)
     write_solver(folder, Configuration(solver="tridiagonal", lanes=8))
     words, width = DEFAULT_ROM
     write_words(folder / "rom.hex", range(words), width)
-    write_gains(folder, unit_gains(Configuration()), Configuration().gain.width)
-    write_zero(folder, no_zero(Configuration()), Configuration().depth.width)
     write_nodes(folder, "nodes", no_zero(Configuration())[..., None], 1)
-    write_polynomials(folder, np.zeros((2, 3, 10), np.int64), POLYNOMIAL.width)
     write_list(folder, [pins(False, True, 0)] * DEFAULT_ENTRIES)
     return yosys([Structure(name) for name in cores], repository.sources, folder)
 

@@ -71,19 +71,20 @@ def record(core: str, kind: str, figures: Mapping[str, int]) -> None:
 def row(core: str, results: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the row of a core."""
     proof, mutants = results.get("proof"), results.get("mutants")
+    same = {kind for kind, result in results.items() if unchanged(core, result)}
     cells, proven, covered = [core], False, False
     if proof:
         verdict = "FAILED" if proof["failed"] else "not all ended" if proof.get("not ended") else "hold"
-        proven = verdict == "hold" and unchanged(core, proof)
-        cells += [verdict, proof["commit"], "same" if unchanged(core, proof) else "changed"]
+        proven = verdict == "hold" and "proof" in same
+        cells += [verdict, proof["commit"], "same" if "proof" in same else "changed"]
     else:
         cells += ["-"] * 3
     if mutants:
         counted = sum(mutants[name] for name in COUNTED)
         score = 100 * mutants["killed"] / max(counted - mutants["equivalent"], 1)
-        covered = score == 100 and unchanged(core, mutants)
+        covered = score == 100 and "mutants" in same
         words = [f"{mutants[name]} {name}" for name in COUNTED if mutants[name] or name == "killed"]
-        since = "same" if unchanged(core, mutants) else "changed"
+        since = "same" if "mutants" in same else "changed"
         cells += [f"{', '.join(words)}, of {counted}", f"{score:.1f} %", mutants["commit"], since]
     else:
         cells += ["-"] * 4

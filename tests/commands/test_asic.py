@@ -19,6 +19,7 @@ from commands.hardware.gates import Instance, Netlist, clock_pin, from_yosys, ve
 from commands.hardware.liberty import Cell, Pin, functions, groups_of, read, truth
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.sensor.synthetic import synthetic_for
 
 LATENCY = 4  # of td_dot_product
 
@@ -330,7 +331,9 @@ def test_small_core_end_to_end(tmp_path: Any) -> None:
     widths = {"AWidth": 6, "BWidth": 5}
     cells = read(asic.DEFAULT_LIB)
     config = Configuration(columns=16)
-    reading = synthesis.read(tmp_path, config, top="td_dot_product", parameters=widths, options="--keep-hierarchy")
+    keep = "--keep-hierarchy"
+    sensor = synthetic_for(config)
+    reading = synthesis.read(tmp_path, config, sensor, top="td_dot_product", parameters=widths, options=keep)
     netlist, macros, where = asic.synthesise(tmp_path, reading, "td_dot_product", asic.DEFAULT_LIB, cells, 5.0)
     assert not macros
     assert where == {"": "td_dot_product", "u_product0": "td_multiply", "u_product1": "td_multiply"}

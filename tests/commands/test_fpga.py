@@ -16,6 +16,7 @@ from commands.common import simulator as simulation
 from commands.hardware import ecp5, fpga, nexus, synthesis, yosys
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.sensor.synthetic import synthetic_for
 
 A_WIDTH, B_WIDTH = 27, 18
 
@@ -31,9 +32,11 @@ endmodule
 
 def netlist_of(core: str, parameters: Any, folder: Path) -> Any:
     """Return Yosys' JSON of a core on the device, before packing."""
+    config = Configuration(columns=16, solver="tridiagonal")
     lines = synthesis.read(
         folder,
-        Configuration(columns=16, solver="tridiagonal"),
+        config,
+        synthetic_for(config),
         top=core,
         parameters=parameters,
         extra=repository.TECHNOLOGY,

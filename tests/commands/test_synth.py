@@ -31,7 +31,7 @@ def memory(depth: Any, width: Any, style: Any = "block") -> Any:
 )
 def test_memories_and_cores_are_those_of_the_rtl(tmp_path: Path, lanes: int, solver: set[str]) -> None:
     tiny = replace(TINY, lanes=lanes)
-    _, modules = synth.elaborate(tiny, synthetic(tiny.bits_per_channel), tmp_path)
+    _, modules = synth.elaborate(tiny, synthetic(tiny.bits_per_channel), tmp_path, XCZU7EV)
     arrays = memories(tmp_path / "design.json")
     behind_wrapper = Counter((memory.width, memory.depth) for memory in arrays if memory.style)
     assert behind_wrapper == Counter((memory.width, memory.words) for memory in cost(tiny).memories)

@@ -54,7 +54,7 @@ def test_accesses_are_known() -> None:
 def test_an_access_that_no_register_has_is_refused(tmp_path: Path) -> None:
     source = tmp_path / "other.rdl"
     source.write_text("addrmap a { reg { field { sw = rw; onread = rclr; } value[31:0] = 0; } R @ 0; };\n")
-    node = next(iter(registers.compiled(source).top.registers()))
+    node = next(iter(registers.compiled(source).registers()))
     with pytest.raises(ValueError, match=r"a\.R\.value: no register has sw, onwrite, onread"):
         registers.register_of(node)
 
@@ -146,7 +146,7 @@ def test_the_ip_xact(of: registers.Map, tmp_path: Path) -> None:
     compiler = RDLCompiler()
     Importer(compiler).import_file(str(registers.ip_xact(of, tmp_path)))
     imported = compiler.elaborate(f"{of.name}__{of.name}_mmap__{of.name}", inst_name=of.name).top
-    assert described(imported) == described(registers.compiled(of.source).top)
+    assert described(imported) == described(registers.compiled(of.source))
     assert [register["name"] for register in described(imported)] == [register.name for register in MAPS[of]]
 
 
