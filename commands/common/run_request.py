@@ -127,13 +127,13 @@ def of_values(
 
     return Request(
         preset=name,
-        rows=int(number("ROWS", 0, -math.inf, math.inf)),  # the configuration file sets the solver
-        columns=int(number("COLS", 0, -math.inf, math.inf)),
+        rows=number("ROWS", 0),  # the configuration file sets the solver
+        columns=number("COLS", 0),
         solver=choice("SOLVER", SOLVERS),
         boundary=choice("BOUNDARY", BOUNDARIES[::-1]),
-        lanes=int(number("LANES", 1, -math.inf, math.inf)),  # see rows
+        lanes=number("LANES", 1),  # see rows
         simulator=choice("SIM", simulation.SIMULATORS),
-        numbers={name: number(each.variable, DEFAULTS[name], -math.inf, math.inf) for name, each in NUMBERS.items()},
+        numbers={name: number(each.variable, DEFAULTS[name]) for name, each in NUMBERS.items()},
         deepest_mm=math.inf if values.get(DEPTH_RANGE) == WORST else number(DEPTH_RANGE, 0, 1e-6, 1e6, float) or None,
         frames=values["FRAMES"],
         press=Press(
@@ -147,8 +147,8 @@ def of_values(
         calibration=_calibration(values),
         camera_size=_camera_size(values),
         gradient=choice("GRADIENT", ("", *MODELS)),
-        repeat=int(number("REPEAT", 1, 1, 100_000)),
-        seed=int(number("SEED", 1, 0, 10**9)),
+        repeat=number("REPEAT", 1, 1, 100_000),
+        seed=number("SEED", 1, 0, 10**9),
         gaps=number("GAPS", 0, 0, 0.99, float),
         stalls=number("STALLS", 0, 0, 0.99, float),
         waves=bool(number("WAVES", 0, 0, 1)),
@@ -166,7 +166,7 @@ def preset_values(preset: Preset, values: Mapping[str, str]) -> dict[str, str]:
     chosen: dict[str, str] = {"SOLVER": preset.solver, "BOUNDARY": preset.boundary}
     rows, columns = map(str, preset.grid)
     if "N" in values:
-        rows = columns = str(variables.number(values, "N", 0, -math.inf, math.inf))
+        rows = columns = str(variables.number(values, "N", 0))
     elif rows != columns and values.get("SOLVER") == SOLVERS[0]:
         rows = columns = values.get("COLS") or values.get("ROWS") or columns
     chosen |= {"ROWS": rows, "COLS": columns}

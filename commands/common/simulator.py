@@ -6,8 +6,10 @@
 
 import contextlib
 import fcntl
+import hashlib
 import importlib.metadata
 import importlib.util
+import json
 import os
 import re
 import shutil
@@ -16,7 +18,7 @@ import sys
 import tempfile
 import time
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
 from unittest import mock
@@ -148,14 +150,13 @@ def build(
         arguments += ["--x-assign", "unique", "--x-initial", "unique", *["-O3"] * fast]
         if COVERAGE:
             arguments += COVERAGE_ARGUMENTS
-    else:
-        files = [file for file in files if file.suffix != ".vlt"]
-    if simulator == "verilator":
         flags = f"{zlib.crc32(repr((VERILATOR_MAKEFLAGS, RUNTIME_HEADERS)).encode()):08x}"
         kind = "-".join([*versions()[1].split(), *["waves"] * waves, *["coverage"] * COVERAGE, flags])
         runtime = RUNTIMES / kind
         headers = runtime / f"{RUNTIME}.gch" / level[1:]
         arguments += _take_runtime(folder, runtime)
+    else:
+        files = [file for file in files if file.suffix != ".vlt"]
     runner.build(
         sources=files,
         hdl_toplevel=toplevel,
@@ -172,12 +173,15 @@ def build(
         raise RuntimeError(f"{unknown.group()}: Icarus builds with its default")
 
 
-def built_once(key: str, what: str, make: Callable[[Path], None]) -> Path:
-    """Return the folder of a model that `make` builds in it, once for each key, a hash of the sources.
+def built_once(values: Sequence[object], sources: Iterable[Path], what: str, make: Callable[[Path], None]) -> Path:
+    """Return the folder of a model that `make` builds in it, once for each state of values, sources and tools.
 
     Raises RuntimeError if the build fails; its folder has the output in `LOG`.
     """
-    folder = BUILD / "simulators" / key[:16]
+    key = hashlib.sha256(json.dumps([*values, versions()]).encode())
+    for source in (*sources, Path(__file__)):
+        key.update(source.read_bytes())
+    folder = BUILD / "simulators" / key.hexdigest()[:16]
     complete = folder / "complete"
     folder.parent.mkdir(parents=True, exist_ok=True)
     with folder.with_suffix(".lock").open("w") as lock:
@@ -197,7 +201,6 @@ def built_once(key: str, what: str, make: Callable[[Path], None]) -> Path:
 
 def _take_runtime(folder: Path, runtime: Path) -> list[str]:
     """Copy the files of `_keep_runtime`, if any, to the folder of a model; return the arguments that use them."""
-    folder.mkdir(parents=True, exist_ok=True)
     if not runtime.exists():
         return []
     later = time.time() + 600  # newer than the makefile that Verilator is about to write, so make does not rebuild them

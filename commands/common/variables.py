@@ -165,7 +165,14 @@ def one(accepted: Sequence[str] | Mapping[str, Any]) -> Reader:
     return read_word
 
 
-def number(values: Mapping[str, str], name: str, default: Any, low: float, high: float, kind: type = int) -> Any:
+def number(
+    values: Mapping[str, str],
+    name: str,
+    default: Any,
+    low: float = -math.inf,
+    high: float = math.inf,
+    kind: type = int,
+) -> Any:
     """Return the number in the variable `name`, of kind int or float; `default` without it. Raises InputError."""
     return _checked(Argument(name, values[name]), kind, low, high) if values.get(name) else default
 

@@ -18,8 +18,8 @@ SOLVERS = {"spectral_solver", "tridiagonal_solver", "wide_solver"}
 SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
 
 
-def design(request: run_request.Request) -> tuple[Frames, Sensor, Configuration]:
-    """Return frames, calibration on their grid and configuration of a request.
+def design(request: run_request.Request, frames: Frames | None = None) -> tuple[Frames, Sensor, Configuration]:
+    """Return frames, by default those of a request, calibration on their grid and configuration.
 
     Without FRAMES the reference is the frame, because it gives the width of the camera's pixels on the grid.
 
@@ -29,9 +29,9 @@ def design(request: run_request.Request) -> tuple[Frames, Sensor, Configuration]
     run_request.check_grid(request)
     size = (request.rows, request.columns)
     flat = request.reference in (None, REST_SCENE)
-    if not request.frames and flat and calibration.camera is not None:
+    if frames is None and not request.frames and flat and calibration.camera is not None:
         frames = flat_frames(calibration, size, request.camera, with_reference=request.reference is not None)
-    else:
+    elif frames is None:
         source = request.frames or (run_request.DEFAULT_SCENE if flat else str(request.reference))
         frames = load_frames(source, size, request.reference, request.seed, request.press, request.camera)
     calibration = on_grid(calibration, frames)

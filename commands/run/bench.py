@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Input and recording of tb/frame_bench.sv, in which pixels move in bulk, without a step of Python per cycle."""
 
-import hashlib
 import json
 import shutil
 from collections.abc import Mapping, Sequence
@@ -115,10 +114,7 @@ def build(
     sources = [*repository.sources(), bench.with_suffix(".sv")]
     program = repository.ROOT / "tb" / "frame_main.cpp"
     parameters = top_parameters(config, camera=camera)
-    text = wrapper.wrapper("bench", parameters)
-    key = hashlib.sha256(json.dumps([simulator, waves, is_long, text, simulation.versions()]).encode())
-    for source in (*sources, program, Path(simulation.__file__)):
-        key.update(source.read_bytes())
+    values = [simulator, waves, is_long, wrapper.wrapper("bench", parameters)]
 
     def make(folder: Path) -> None:
         simulation.build(
@@ -133,7 +129,7 @@ def build(
             log=folder / simulation.LOG,
         )
 
-    return simulation.built_once(key.hexdigest(), f"the {simulator} model", make)
+    return simulation.built_once(values, [*sources, program], f"the {simulator} model", make)
 
 
 def play(

@@ -7,7 +7,6 @@ those of the device on its standard output (tb/device_main.cpp); `ready` on stan
 Each configuration is built once for each state of the sources. `tactile_depth.Device("sim", ..)` starts it.
 """
 
-import hashlib
 import json
 import os
 import sys
@@ -34,15 +33,12 @@ def build(fields: Mapping[str, int], pins: bool) -> Path:
     name = BOARD if pins else "device"
     top = BOARD if pins else BENCH
     bench = repository.BOARDS[BOARD] if pins else [repository.ROOT / "tb" / f"{BENCH}.sv"]
-    text = wrapper.wrapper(name, fields)
-    key = hashlib.sha256(json.dumps([top, text, simulation.versions()]).encode())
-    for source in (*repository.sources(), *bench, MAIN, Path(simulation.__file__), Path(__file__)):
-        key.update(source.read_bytes())
 
     def make(folder: Path) -> None:
         _verilate(folder, top, [*bench, wrapper.write(folder, name, fields)], fields, pins)
 
-    return simulation.built_once(key.hexdigest(), "the simulator", make) / top
+    sources = (*repository.sources(), *bench, MAIN, Path(__file__))
+    return simulation.built_once([top, wrapper.wrapper(name, fields)], sources, "the simulator", make) / top
 
 
 def _verilate(folder: Path, top: str, files: list[Path], fields: Mapping[str, int], pins: bool) -> None:

@@ -38,7 +38,6 @@ from tactile_depth.chip.latency import last_pixel_to_first_depth
 from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.chip.tactile_depth import tactile_depth
 from tactile_depth.sensor.scenes import SENSOR_WIDTH_MM
-from tactile_depth.sensor.sensor import Sensor
 
 RESULTS = ("reflex.json", "reflex.png")
 DEFAULT_OUT = ReflexRun.out
@@ -81,30 +80,15 @@ class Decision:
     deciding_to_contact: int
 
 
-@dataclass(frozen=True)
-class Loop:
-    """Trials of one solver through the RTL."""
-
-    config: Configuration
-    sent: list[Sent]
-    pixels: np.ndarray  # uint8 (frames, size, size, 3)
-    codes: np.ndarray  # int32 (frames, size, size), as they left
-    decisions: list[Decision]
-    faults: list[str]
-
-
 def entries(request: ReflexRun, sent: Sequence[Sent], pixels: np.ndarray) -> tuple[np.ndarray, int]:
     """Return the entries for the bench and the smallest number of cycles that they take."""
     gap, period = model.spacing(request)
-    parts: list[np.ndarray] = []
+    parts: list[Any] = []
     clocks = 0
     for one, frame in zip(sent, pixels, strict=True):
-        step = gap if one.slow else 1
-        left = period - gap * request.size**2 if one.slow else 0
-        parts.append(np.array([bench.entry("source", bench.turns(1, step - 1))], np.uint32))
-        parts.append(bench.frame_entries(frame[None]))
-        if left:
-            parts.append(np.array([bench.entry("idle", left)], np.uint32))
+        step, left = (gap, period - gap * request.size**2) if one.slow else (1, 0)
+        parts += [[bench.entry("source", bench.turns(1, step - 1))], bench.frame_entries(frame)]
+        parts += [[bench.entry("idle", left)]] * bool(left)
         clocks += step * request.size**2 + left
     return np.concatenate(parts), clocks
 
@@ -137,8 +121,8 @@ def decisions(played: bench.Played, sent: Sequence[Sent], config: Configuration)
     return contacts, faults
 
 
-def loop(request: ReflexRun, setup: Setup, draws: Draws) -> list[Loop]:
-    """Run the trials through the RTL of both solvers at the same time."""
+def loop(request: ReflexRun, setup: Setup, draws: Draws) -> dict[str, list[Decision]]:
+    """Run the trials through the RTL of both solvers at the same time; return their decisions. Raises Mismatch."""
     sent = [one for trial in range(request.trials) for one in sequence(setup, draws, trial)]
     pixels = np.stack(
         [
@@ -176,17 +160,15 @@ def loop(request: ReflexRun, setup: Setup, draws: Draws) -> list[Loop]:
 
         with following("RTL in the loop", len(sent) * len(configs), "frame", left):
             played = [run.result() for run in runs]
-    return [examine(config, one, sent, pixels, calibration) for config, one in zip(configs, played, strict=True)]
-
-
-def examine(
-    config: Configuration, played: bench.Played, sent: list[Sent], pixels: np.ndarray, calibration: Sensor
-) -> Loop:
-    codes = played.codes.reshape(len(sent), config.rows, config.columns)
-    decided, faults = decisions(played, sent, config)
-    if not (codes == tactile_depth(pixels, calibration, config)).all():
-        faults.append("RTL differs from the model")
-    return Loop(config, sent, pixels, codes, decided, [f"{config.solver}, {fault}" for fault in faults])
+    decided, faults = {}, []
+    for config, one in zip(configs, played, strict=True):
+        decided[config.solver], found = decisions(one, sent, config)
+        if not (one.codes == tactile_depth(pixels, calibration, config).ravel()).all():
+            found.append("RTL differs from the model")
+        faults += [f"{config.solver}, {fault}" for fault in found]
+    if faults:
+        raise variables.Mismatch("; ".join(faults[:5]) + (f"; and {len(faults) - 5} more" if len(faults) > 5 else ""))
+    return decided
 
 
 def described(path: Times) -> dict[str, Any]:
@@ -212,29 +194,26 @@ def measure(request: ReflexRun) -> dict[str, Any]:
     near_draws = model.draw(request.trials, request.seed, "near")
     host_draws = model.draw(request.host_trials, request.seed, "host")
     load = os.getloadavg()[0]
-    loops = loop(request, near, near_draws)
-    faults = [fault for one in loops for fault in one.faults]
-    if faults:
-        raise variables.Mismatch("; ".join(faults[:5]) + (f"; and {len(faults) - 5} more" if len(faults) > 5 else ""))
+    decided = loop(request, near, near_draws)
     host_base = model.in_software(host, host_draws, request.size, "host")
     host_times = model.times(host, host_draws, *host_base)
     solvers: dict[str, Any] = {}
     bases: dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
-    for one in loops:
-        frames = np.array([decision.frame for decision in one.decisions])
+    for solver, trials in decided.items():
+        frames = np.array([decision.frame for decision in trials])
         # The cycles count from the first pixel; `times` counts the read-out separately.
-        pipeline = np.array([d.first_pixel_to_contact for d in one.decisions]) / clocks_per_ms - read_out
-        base = bases[one.config.solver] = (frames, pipeline, np.zeros(request.trials))
+        pipeline = np.array([d.first_pixel_to_contact for d in trials]) / clocks_per_ms - read_out
+        base = bases[solver] = (frames, pipeline, np.zeros(request.trials))
         measured = model.times(near, near_draws, *base)
         stated = described(measured)
-        solvers[one.config.solver] = {
+        solvers[solver] = {
             **stated,
             "command_against_host": model.rank_sum(measured.command, host_times.command),
             "motion_against_host": model.rank_sum(measured.motion, host_times.motion),
             "within_published": model.within_published(stated["motion"]),
-            "trials": [asdict(d) | both for d, both in zip(one.decisions, stated["trials"], strict=True)],
+            "trials": [asdict(d) | both for d, both in zip(trials, stated["trials"], strict=True)],
         }
-    first = loops[0].config.solver
+    first = next(iter(decided))
     software, _, _ = model.in_software(near, near_draws, request.size, "near, in software")
     return {
         "grid": [request.size, request.size],
@@ -249,7 +228,7 @@ def measure(request: ReflexRun) -> dict[str, Any]:
         "delays": model.delays(request, near, host),
         "near": solvers,
         "host": described(host_times),
-        "sub_frame": sub_frame(loops, request),
+        "sub_frame": sub_frame(decided, request),
         "same_frame_by_double_precision": int((software == bases[first][0]).sum()),
         "difference": difference(solvers[first], near),
         "sensitivity": {
@@ -259,21 +238,19 @@ def measure(request: ReflexRun) -> dict[str, Any]:
     }
 
 
-def sub_frame(loops: Sequence[Loop], request: ReflexRun) -> dict[str, Any]:
+def sub_frame(decided: dict[str, list[Decision]], request: ReflexRun) -> dict[str, Any]:
     """Return the position of the deciding depth in its frame, and the time that the earlier solver saves."""
     rows: dict[str, Any] = {}
-    for one in loops:
-        rows[one.config.solver] = {
-            "last_pixel_to_first_depth": one.decisions[0].last_pixel_to_first_depth,
-            "place": model.statistics(np.array([d.place for d in one.decisions])),
-            "last_pixel_to_contact": model.statistics(np.array([d.last_pixel_to_contact for d in one.decisions])),
-            "deciding_to_contact": sorted({d.deciding_to_contact for d in one.decisions}),
+    contact: dict[str, np.ndarray] = {}
+    for solver, trials in decided.items():
+        contact[solver] = np.array([d.last_pixel_to_contact for d in trials])
+        rows[solver] = {
+            "last_pixel_to_first_depth": trials[0].last_pixel_to_first_depth,
+            "place": model.statistics(np.array([d.place for d in trials])),
+            "last_pixel_to_contact": model.statistics(contact[solver]),
+            "deciding_to_contact": sorted({d.deciding_to_contact for d in trials}),
         }
-    spectral, tridiagonal = (
-        np.array([d.last_pixel_to_contact for one in loops if one.config.solver == solver for d in one.decisions])
-        for solver in ("spectral", "tridiagonal")
-    )
-    earlier = model.statistics(spectral - tridiagonal)
+    earlier = model.statistics(contact["spectral"] - contact["tridiagonal"])
     earlier["mean_us"] = earlier["mean"] / request.clock_mhz
     return {"solvers": rows, "tridiagonal_earlier_clocks": earlier}
 

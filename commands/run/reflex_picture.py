@@ -4,11 +4,8 @@
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
-
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt
+from matplotlib.figure import Figure
 
 COLOURS = {"near": "#08306b", "host": "#e6550d"}
 MARKERS = {"near": "o", "host": "s"}
@@ -21,7 +18,8 @@ def plot(path: Path, document: dict[str, Any]) -> None:
         rows.append((f"near the sensor,\n{solver}", "near", result))
     rows += [("near the sensor,\npublished", "near", None), ("host", "host", document["host"])]
     rows.append(("host,\npublished", "host", None))
-    figure, axes = plt.subplots(1, 2, figsize=(12, 4.2), layout="constrained", sharex=True, sharey=True)
+    figure = Figure(figsize=(12, 4.2), layout="constrained")
+    axes = figure.subplots(1, 2, sharex=True, sharey=True)
     jitter = np.random.default_rng(0)
     for axis, key in zip(axes, ("command", "motion"), strict=True):
         for place, (_, kind, result) in enumerate(rows):
@@ -49,4 +47,3 @@ def plot(path: Path, document: dict[str, Any]) -> None:
     axes[0].set_ylim(len(rows) - 0.4, -0.7)
     axes[0].set_xlim(left=0)
     figure.savefig(path, dpi=110)
-    plt.close(figure)

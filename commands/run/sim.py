@@ -8,6 +8,7 @@ import math
 import os
 import shutil
 import sys
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -19,8 +20,9 @@ from commands.common import repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.common.progress import following
 from commands.common.results import save
-from commands.common.run_request import WITH_CAMERA, Request, announce, check_grid, chosen, configure, load_sensor
+from commands.common.run_request import WITH_CAMERA, Request, announce, chosen
 from commands.common.zero_offset import untouched
+from commands.hardware import synthesis
 from commands.run import bench
 from commands.run.compare import compare, doubts, warnings
 from commands.run.draw import draw_depth
@@ -34,23 +36,16 @@ from tactile_depth.chip.gradient.flat_field import reference_gains, require_ligh
 from tactile_depth.chip.registers.axil_registers import GAINS
 from tactile_depth.depth.result import steeper
 from tactile_depth.depth.twin import Twin
-from tactile_depth.pictures.frames import Frames, load_frames, on_grid
+from tactile_depth.pictures.frames import Frames
 from tactile_depth.sensor.sensor import Sensor
 
 RESULTS = ("depth.npy", "depth.png", "report.json")
 DUMPS = (".vcd", ".fst")
 
 
-def simulate(
-    request: Request,
-    config: Configuration,
-    frames: Frames,
-    calibration: Sensor,
-    folder: Path,
-    zero: np.ndarray | None = None,
-    light: np.ndarray | None = None,
-) -> bench.Played:
+def simulate(request: Request, twin: Twin, frames: Frames, folder: Path, light: np.ndarray | None) -> bench.Played:
     """Run the bench in `folder` with a progress bar; `light` is that of `Twin.light_of_stream`."""
+    config = twin.config
     total = len(frames.pixels) * request.repeat
     pixels = config.rows * config.columns
     if frames.camera is None or frames.words is None:
@@ -70,8 +65,8 @@ def simulate(
         return bench.play(
             request.simulator,
             config,
-            calibration,
-            np.concatenate([np.array(profiles, np.uint32), entries]),
+            twin.sensor,
+            np.concatenate([profiles, entries]),
             folder,
             clocks=clocks,
             passes=request.repeat,
@@ -79,9 +74,25 @@ def simulate(
             registers={"THRESHOLD": run_request.threshold_code(config), **first},
             seed=request.seed,
             waves=request.waves,
-            zero=zero,
+            zero=twin.zero,
             camera=frames.camera,
         )
+
+
+def stream(
+    request: Request, twin: Twin, frames: np.ndarray, light: np.ndarray | None, clipped: Mapping[str, int]
+) -> tuple[np.ndarray, dict[str, int], list[str]]:
+    """Send uint8 frames (frames, rows, columns, 3) through the RTL as often as the request says.
+
+    Returns
+    -------
+    Codes (repeat, frames, rows, columns) in the order of the input, the registers, and a line for each counter of the
+    hardware that differs from what was seen from outside
+    """
+    with files.temporary() as folder:
+        played = simulate(request, twin, Frames(frames, 1.0, "", tuple(map(str, range(len(frames))))), folder, light)
+    codes = twin.upright(played.codes.reshape(request.repeat, *frames.shape[:-1]))
+    return codes, played.registers, check_registers(played, codes.shape[0] * len(frames), clipped, not request.stalls)
 
 
 def run(request: Request, frames: Frames | None = None) -> int:
@@ -90,13 +101,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
     `frames` replaces those that the request names.
     """
     simulation.check(request.simulator)
-    calibration = load_sensor(request)
-    check_grid(request)
-    grid = (request.rows, request.columns)
-    if frames is None:
-        frames = load_frames(request.frames, grid, request.reference, request.seed, request.press, request.camera)
-    calibration = on_grid(calibration, frames)
-    config = configure(request, calibration)
+    frames, calibration, config = synthesis.design(request, frames)
     twin = Twin(calibration, config, untouched(request, frames))
     codes, light, clips = twin.played(frames.pixels, request.repeat)
     light_once = None if light is None else light[0]
@@ -107,7 +112,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
     outside = steeper(slopes, calibration.fitted_slope.get(config.gradient_model, math.inf), dark)
     out = request.out or default_folder(request, config)
     with files.workspace(out, RESULTS) as work:
-        played = simulate(request, config, frames, calibration, work, twin.zero, light)
+        played = simulate(request, twin, frames, work, light)
         reference_px = twin.exact_px(frames.pixels, light_once)
         rtl_codes = twin.upright(played.codes.reshape(request.repeat, *codes.shape[-3:]))
         difference = compare(rtl_codes, codes)
@@ -132,7 +137,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
         report["registers_agree"] = not differences
         report["warnings"] = [] if difference.count else warnings(config, report["rms_percent_of_peak"], clips)
         report["warnings"] += doubts(dark, outside)
-        np.save(result / "depth.npy", rtl_codes.reshape(-1, *grid).astype(np.int32))
+        np.save(result / "depth.npy", rtl_codes.reshape(-1, config.rows, config.columns).astype(np.int32))
         save(result / "report.json", report)
         pitch = calibration.pixel_pitch_mm
         draw_depth(
@@ -204,9 +209,8 @@ def camera_report(request: Request, config: Configuration, frames: Frames, codes
     if camera is None:
         return {}
     plain = replace(request, camera=CameraChoice("rgb888", window=camera.crop))
-    size = (config.rows, config.columns)
-    as_rgb = load_frames(request.frames, size, request.reference, request.seed, request.press, plain.camera)
-    twin = Twin(on_grid(load_sensor(request), as_rgb), config, untouched(plain, as_rgb))
+    as_rgb, sensor, _ = synthesis.design(plain)
+    twin = Twin(sensor, config, untouched(plain, as_rgb))
     light = twin.light_of_stream(as_rgb.pixels)
     reference_px = twin.exact_px(as_rgb.pixels, None if light is None else light[0])
     percent = errors(codes * config.depth_lsb_px, reference_px)

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of a run of `make sim`: latencies, the hardware's own counters, and the table that is printed."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
+from commands.common.tabular import counts
 from commands.run import bench
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.spectral_divide import reciprocal_rom
@@ -17,16 +19,19 @@ def latencies(played: bench.Played) -> dict[str, list[int | None]]:
     """Return the latencies of each frame in cycles, from the events of the bench."""
     taken, depth, end = (played.clocks(letter) for letter in "tde")
     first, last = taken[::2], taken[1::2]
-    contact = played.by_frame("c")
-    frames = range(len(end))
+    contact = [*map(played.by_frame("c").get, range(len(end)))]
+
+    def between(start: Sequence[int | None], stop: Sequence[int | None]) -> list[int | None]:
+        return [None if a is None or b is None else b - a for a, b in zip(start, stop, strict=True)]
+
     return {
-        "first_depth_latency_cycles": [depth[i] - first[i] for i in frames],
-        "last_depth_latency_cycles": [end[i] - first[i] for i in frames],
-        "last_pixel_to_first_depth_cycles": [depth[i] - last[i] for i in frames],
-        "last_pixel_to_last_depth_cycles": [end[i] - last[i] for i in frames],
-        "frame_interval_cycles": [depth[i] - depth[i - 1] if i else None for i in frames],
-        "contact_latency_cycles": [contact[i] - first[i] if i in contact else None for i in frames],
-        "last_pixel_to_contact_cycles": [contact[i] - last[i] if i in contact else None for i in frames],
+        "first_depth_latency_cycles": between(first, depth),
+        "last_depth_latency_cycles": between(first, end),
+        "last_pixel_to_first_depth_cycles": between(last, depth),
+        "last_pixel_to_last_depth_cycles": between(last, end),
+        "frame_interval_cycles": between([None, *depth[:-1]], depth),
+        "contact_latency_cycles": between(first, contact),
+        "last_pixel_to_contact_cycles": between(last, contact),
     }
 
 
@@ -57,6 +62,9 @@ def coefficient_words(config: Configuration) -> int:
 def table(report: dict, labels: tuple[str, ...]) -> str:
     """Return the printed table: one line per frame of the sequence, then the lines about all frames."""
 
+    def known(column: str) -> list[Any]:
+        return [value for value in report[column] if value is not None]
+
     def cell(value: float | None, digits: int = 5) -> str:
         return "-" if value is None else f"{value:,}" if isinstance(value, int) else f"{value:.{digits}f}"
 
@@ -76,25 +84,19 @@ def table(report: dict, labels: tuple[str, ...]) -> str:
         lines.append(f"{labels[i][:19]:<20}{cells}")
     if report["frames"] > shown:
         lines.append(f"and {report['frames'] - shown:,} frames more: report.json")
-    rms = [value for value in report["rms_percent_of_peak"] if value is not None]
-    if rms:
+    if rms := known("rms_percent_of_peak"):
         lines.append(f"mean RMS {np.mean(rms):.5f} % of peak, worst {max(rms):.5f} %")
     if camera := report.get("camera"):
-        lost = [value for value in report["camera_rms_percent_of_peak"] if value is not None]
+        lost = known("camera_rms_percent_of_peak")
         height, width = camera["picture"]
         lines.append(
             f"{camera['pixel_format']} of {width} x {height} against RGB of the grid: "
             + (f"mean RMS {np.mean(lost):.3f} % of peak, worst {max(lost):.3f} %" if lost else "no contact")
         )
     for column in list(columns)[:4]:
-        values = {value for value in report[column] if value is not None}
-        if values:
-            spread = f"{min(values):,}" if len(values) == 1 else f"{min(values):,} to {max(values):,}"
+        if values := known(column):
+            spread = f"{min(values):,}" if min(values) == max(values) else f"{min(values):,} to {max(values):,}"
             lines.append(f"{column.removesuffix('_cycles').replace('_', ' ')}: {spread} cycles, all frames")
     clipped = report["saturations"]
-    lines.append(
-        f"saturated: {', '.join(f'{node} {count:,}' for node, count in clipped.items())}"
-        if clipped
-        else "no saturation"
-    )
+    lines.append(f"saturated: {counts(clipped)}" if clipped else "no saturation")
     return "\n".join(lines)

@@ -5,23 +5,20 @@ from __future__ import annotations
 
 import ctypes
 import importlib.metadata
-import importlib.util
 import shutil
 import subprocess
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
 import scipy.fft
 
 from tactile_depth.base import files
 from tactile_depth.depth import reference
 from tactile_depth.sensor.synthetic import synthetic
-
-matplotlib.use("Agg")
 
 Solve = Callable[[Any], Any]
 
@@ -248,10 +245,6 @@ def with_torch_matmul(size: int, threads: int, device: str = "cpu") -> Prepared:
     return Prepared(torch.inference_mode()(solve), give, take, synchronise)
 
 
-def _on_cuda(prepare: Callable[..., Prepared]) -> Callable[[int, int], Prepared]:
-    return lambda size, threads: prepare(size, threads, "cuda")
-
-
 METHODS = (
     Method("scipy, dstn", with_scipy, ("scipy",)),
     Method("ducc0, dst", with_ducc0, ("ducc0",)),
@@ -262,25 +255,20 @@ METHODS = (
     Method("C with SIMD, tridiagonal", with_c, (), program="cc", one_core=True),
     Method(
         "C with SIMD, from the pixels",
-        lambda size, threads: with_c(size, threads, from_pixels=True),
+        partial(with_c, from_pixels=True),
         (),
         program="cc",
         one_core=True,
         from_pixels=True,
     ),
-    Method("PyTorch, rfft, CUDA", _on_cuda(with_torch_fft), ("torch",), device=True),
-    Method("PyTorch, products of matrices, CUDA", _on_cuda(with_torch_matmul), ("torch",), device=True),
+    Method("PyTorch, rfft, CUDA", partial(with_torch_fft, device="cuda"), ("torch",), device=True),
+    Method("PyTorch, products of matrices, CUDA", partial(with_torch_matmul, device="cuda"), ("torch",), device=True),
 )
 
 
 def missing(method: Method) -> str:
     """Return the reason why a method cannot run here, empty if it can."""
-    absent = []
-    for package in method.packages:
-        try:
-            importlib.metadata.version(package)
-        except importlib.metadata.PackageNotFoundError:
-            absent.append(package)
+    absent = [package for package in method.packages if not any(importlib.metadata.distributions(name=package))]
     if method.program and not shutil.which(method.program):
         absent.append(method.program)
     return f"{', '.join(absent)} not installed" if absent else ""

@@ -32,8 +32,9 @@ from pathlib import Path
 from typing import Annotated, Any
 from unittest import mock
 
-import matplotlib
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from commands.common import published, recorded, repository
 from commands.common.machine import machine
@@ -41,6 +42,9 @@ from commands.common.progress import progress_bar
 from commands.common.results import save, written
 from commands.common.tabular import Table
 from commands.common.variables import ClockMhz, Mismatch, Place, numbers, real, whole
+from commands.study import baseline_throughput
+from commands.study.baseline_methods import COMPILER, METHODS, SIMD_SOLVER, missing
+from commands.study.baseline_throughput import FEWEST_RUNS, WARM_UPS, timed
 from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
@@ -49,14 +53,6 @@ from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.depth import reference
 from tactile_depth.sensor.scenes import render
 from tactile_depth.sensor.synthetic import synthetic
-
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt
-from matplotlib.lines import Line2D
-
-from commands.study import baseline_throughput
-from commands.study.baseline_methods import COMPILER, METHODS, SIMD_SOLVER, missing
-from commands.study.baseline_throughput import FEWEST_RUNS, WARM_UPS, timed
 
 RESULTS = ("baselines.json", "baselines.png")
 DEFAULT_OUT = repository.ROOT / "build" / "baselines"
@@ -387,7 +383,8 @@ def plot(path: Path, document: dict[str, Any], rows: Sequence[dict[str, Any]]) -
     across = min(2, len(sizes))
     down = -(-len(sizes) // across)
     shape = (6.6 * across, 1.2 + down * (0.9 + 0.24 * len(names)))
-    figure, axes = plt.subplots(down, across, figsize=shape, layout="constrained", squeeze=False, sharey=True)
+    figure = Figure(figsize=shape, layout="constrained")
+    axes = figure.subplots(down, across, squeeze=False, sharey=True)
     jitter = np.random.default_rng(0)
     colours = {"spectral": "#08306b", "tridiagonal": "#e6550d"}
     for axis, size in zip(axes.flat, sizes, strict=False):
@@ -424,7 +421,6 @@ def plot(path: Path, document: dict[str, Any], rows: Sequence[dict[str, Any]]) -
     handles, _ = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles=[*handles, *marks], loc="outside lower center", ncols=4, fontsize=8)
     figure.savefig(path, dpi=110)
-    plt.close(figure)
 
 
 def show(document: dict[str, Any]) -> str:

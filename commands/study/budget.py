@@ -23,18 +23,18 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
-import matplotlib
 import numpy as np
+from matplotlib.figure import Figure
 from scipy.ndimage import distance_transform_edt
 
 import tactile_depth as td
 from commands.common import recorded, repository, variables
-from commands.common.press_data import data_folder
+from commands.common.press_data import data_folder, pixels
 from commands.common.progress import progress_bar
 from commands.common.results import save, written
 from commands.common.run_request import camera_choice
 from commands.common.tabular import Table
-from commands.common.variables import Place, Several, one, real, whole
+from commands.common.variables import Place, Several, one, real
 from commands.study.budget_steps import (
     BACK,
     BESIDE,
@@ -50,18 +50,14 @@ from commands.study.budget_steps import (
 )
 from commands.study.drawn_sensor import PLACES, DrawnSensor, heights
 from commands.study.study import VERSION
-from tactile_depth.base.errors import Argument, InputError
+from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate.fitting import Fit, fit_presses
 from tactile_depth.calibrate.presses import AT_REST, GridPresses, PressPictures, camera_pitch_mm, gather, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.configuration import COEFFICIENT, DEFAULTS, SOLVER_NUMBERS, STORED
 from tactile_depth.chip.limits import BOUNDARIES
-from tactile_depth.pictures.frames import read_picture
 from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
 from tactile_depth.sensor.scenes import BENCH
-
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt
 
 AREAS = {"contact": "contact", "untouched": "untouched gel"}  # of the table of shares, by measure
 NUMBERS = tuple(number.variable for number in SOLVER_NUMBERS.values())
@@ -82,9 +78,11 @@ def _camera(values: Mapping[str, str]) -> CameraChoice:
 
 
 def _numbers(values: Mapping[str, str]) -> dict[str, Any]:
-    given = {name: number for name, number in SOLVER_NUMBERS.items() if number.variable in values}
-    read = {name: whole(*each.accepted)(Argument(each.variable, values[each.variable])) for name, each in given.items()}
-    return DEFAULTS | read
+    given = {
+        name: variables.number(values, each.variable, DEFAULTS[name], *each.accepted)
+        for name, each in SOLVER_NUMBERS.items()
+    }
+    return DEFAULTS | given
 
 
 @dataclass(frozen=True)
@@ -160,13 +158,12 @@ def real_presses(request: BudgetRun, pictures: PressPictures) -> Iterator[tuple[
     fit = fitted(presses)
     camera, chance = Camera.of(presses, request.choice), np.random.default_rng(1)
     rest = presses.background_on_grid, camera.rounded(presses.background), camera.average(presses.background)
-    images = {press.name: press.image for press in pictures.presses}
+    by_name = {press.name: press for press in pictures.presses}
     for view in presses.views:
         press = view.press
         if press.name not in fit.without:
             continue
-        image = images[press.name]
-        steady = image if isinstance(image, np.ndarray) else read_picture(Path(image))
+        steady = pixels(by_name[press.name])
         levels = steady * request.drawn.light(chance)
         pipeline = request.pipeline(replace(fit.without[press.name], camera=fit.sensor.camera), rest[0])
         distance, height = press.distance, press.depth
@@ -339,9 +336,8 @@ def plot(path: Path, document: dict[str, Any]) -> None:
     """Draw the RMS of each part as bars, by source and measure."""
     colours = dict(zip(PLACES, ("#08519c", "#e6550d", "#969696"), strict=True))
     sources, measures = document["sources"], ("contact", "untouched")
-    figure, axes = plt.subplots(
-        len(sources), len(measures), figsize=(11, 0.7 + 3.6 * len(sources)), layout="constrained", squeeze=False
-    )
+    figure = Figure(figsize=(11, 0.7 + 3.6 * len(sources)), layout="constrained")
+    axes = figure.subplots(len(sources), len(measures), squeeze=False)
     for row, each in zip(axes, sources, strict=True):
         names = [*each["parts"], "whole error"]
         for axis, measure in zip(row, measures, strict=True):
@@ -360,7 +356,6 @@ def plot(path: Path, document: dict[str, Any]) -> None:
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
     figure.savefig(path, dpi=110)
-    plt.close(figure)
 
 
 def run(request: BudgetRun) -> None:

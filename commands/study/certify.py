@@ -20,7 +20,7 @@ from commands.common.results import save, written
 from commands.common.slopes import slope_response
 from commands.common.tabular import Column, shown
 from commands.common.variables import Flag
-from commands.run import sim, sim_table
+from commands.run import sim
 from commands.study.node_bounds import Node, node_bounds
 from tactile_depth.base import files
 from tactile_depth.chip.common.td_round_saturate import Monitor
@@ -29,7 +29,7 @@ from tactile_depth.chip.gradient.gradient_lookup import gradient_codes
 from tactile_depth.chip.limits import MODELS
 from tactile_depth.chip.tactile_depth import tactile_depth
 from tactile_depth.depth.twin import Twin
-from tactile_depth.pictures.frames import Frames, camera_scale
+from tactile_depth.pictures.frames import camera_scale
 from tactile_depth.sensor.sensor import Sensor
 
 RESULTS = ("worst.npy", "certificate.json")
@@ -108,10 +108,13 @@ def check_model(frames: np.ndarray, attempts: list[Attempt], nodes: list[Node], 
     # The solve amplifies the lowest mode by pixels / (2 pi^2).
     rounding = ROUNDING_STEPS * frames[0, ..., 0].size / (2 * math.pi**2)
     faults = []
+
+    def clipped_before(name: str, frame: int) -> bool:
+        return any(peaks.clips[node][frame] for node in order[: order.index(name)])
+
     for attempt in attempts:
         name, frame = attempt.node.name, attempt.frame
-        before = order[: order.index(name)]
-        if any(peaks.clips[node][frame] for node in before):
+        if clipped_before(name, frame):
             continue  # the input of this frame did not reach the node
         peak, bound = int(peaks.peaks[name][frame]), attempt.node.slopes / attempt.node.form.lsb
         full = attempt.node.form.limit / attempt.node.form.lsb  # a recursion that clips goes on from there
@@ -119,8 +122,7 @@ def check_model(frames: np.ndarray, attempts: list[Attempt], nodes: list[Node], 
             faults.append(f"{name} reached {peak:,}, expected {attempt.expected:,.1f} of {bound:,.1f}")
     for node in nodes:
         for frame in np.flatnonzero(peaks.clips[node.name]).tolist():
-            upstream = any(peaks.clips[name][frame] for name in order[: order.index(node.name)])
-            if node.slopes_headroom_bits >= 0 and not upstream:
+            if node.slopes_headroom_bits >= 0 and not clipped_before(node.name, frame):
                 faults.append(f"{node.name} saturated, which the certificate excludes")
     return faults
 
@@ -159,17 +161,14 @@ def summary(nodes: list[Node], config: Configuration, pixel_pitch_mm: float) -> 
     steep = [node for node in nodes if node.slopes_headroom_bits < 0]
     deep = [node for node in nodes if node.depths_headroom_bits < 0]
     lines = [
-        f"depth range {mm:.4g} mm, slopes up to {config.gradient_limit:g}; headroom in bits, negative: it saturates"
+        f"depth range {mm:.4g} mm, slopes up to {config.gradient_limit:g}; headroom in bits, negative: it saturates",
+        f"a depth within the range can saturate {', '.join(node.name for node in deep)}"
+        if deep
+        else "no depth within the range saturates a node",
+        f"{len(steep)} of {len(nodes)} nodes saturate for some slopes, {steep[0].name} first in the stream"
+        if steep
+        else "no slopes at all saturate a node",
     ]
-    if deep:
-        lines.append(f"a depth within the range can saturate {', '.join(node.name for node in deep)}")
-    else:
-        lines.append("no depth within the range saturates a node")
-    if steep:
-        first = steep[0].name
-        lines.append(f"{len(steep)} of {len(nodes)} nodes saturate for some slopes, {first} first in the stream")
-    else:
-        lines.append("no slopes at all saturate a node")
     loose = [node for node in nodes if node.reached < (1 - 1e-9) * node.slopes]
     if loose:
         lowest = min(loose, key=lambda node: node.reached / node.slopes)
@@ -189,29 +188,6 @@ def cost_of_worst(config: Configuration, pixel_pitch_mm: float) -> str:
     bits = math.log2(config.depth_lsb_px / default.depth_lsb_px)
     nm = [1e6 * pixel_pitch_mm * each.depth_lsb_px for each in (config, default)]
     return f"depth comes in steps of {nm[0]:.3g} nm, by default {nm[1]:.3g} nm: {bits:.2f} bits of resolution"
-
-
-@dataclass(frozen=True)
-class Streamed:
-    """Codes of the RTL for the frames, and those of the model."""
-
-    codes: np.ndarray  # int32 (repeat, frames, rows, columns), in the order of the input
-    saturations: dict[str, int]  # node to number of values clipped, in all repetitions, by the model
-    registers: dict[str, int]
-    bit_exact: bool  # every code is the model's
-    differences: list[str]  # counters of the hardware that differ from what was seen from outside
-
-
-def stream(request: run_request.Request, config: Configuration, calibration: Sensor, frames: np.ndarray) -> Streamed:
-    """Send uint8 frames (frames, rows, columns, 3) through the RTL as often as the request says."""
-    labels = tuple(str(index) for index in range(len(frames)))
-    twin = Twin(calibration, config)
-    model, _, clipped = twin.played(frames, request.repeat)
-    with files.temporary() as folder:
-        played = sim.simulate(request, config, Frames(frames, 1.0, "", labels), calibration, folder)
-    codes = twin.upright(played.codes.reshape(request.repeat, *model.shape[1:]))
-    differences = sim_table.check_registers(played, request.repeat * len(frames), clipped, not request.stalls)
-    return Streamed(codes, clipped, played.registers, bool((codes == model).all()), differences)
 
 
 def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag = True) -> int:
@@ -253,12 +229,14 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
     faults = check_model(frames, attempts, nodes, peaks)
     clipping = sorted(node for node, clips in peaks.clips.items() if clips.any())
     if rtl:
-        streamed = stream(dataclasses.replace(request, repeat=1), config, calibration, frames)
-        if not streamed.bit_exact:
+        twin = Twin(calibration, config)
+        model, light, clipped = twin.played(frames)
+        codes, _, differences = sim.stream(dataclasses.replace(request, repeat=1), twin, frames, light, clipped)
+        if (codes != model).any():
             faults.append("RTL differs from the model")
-        if sorted(streamed.saturations) != clipping:
-            faults.append(f"saturated: {', '.join(streamed.saturations) or 'nothing'}; expected {clipping}")
-        faults += streamed.differences
+        if sorted(clipped) != clipping:
+            faults.append(f"saturated: {', '.join(clipped) or 'nothing'}; expected {clipping}")
+        faults += differences
     saturate = f"{'model and RTL saturate' if rtl else 'the model saturates'} {', '.join(clipping) or 'nothing'}"
     print(f"{len(frames)} frames that drive every node furthest, in the colours of {calibration.name}: {saturate}")
     document = {

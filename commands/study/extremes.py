@@ -21,6 +21,7 @@ from commands.common.progress import progress_bar
 from commands.common.results import save, written
 from commands.common.tabular import Column
 from commands.common.variables import Flag, Several
+from commands.run import sim
 from commands.study import certify, sensor_extremes
 from commands.study.accuracy import errors
 from commands.study.node_bounds import node_bounds
@@ -188,13 +189,13 @@ def measure(extreme: Extreme, solver: str, size: int, simulator: str) -> Row:
     calibration = load(CALIBRATION)
     config = run_request.configure(request, calibration)
     frames = np.ascontiguousarray(extreme.draw(config))
-    streamed = certify.stream(request, config, calibration, frames)
-    codes = streamed.codes
+    twin = Twin(calibration, config)
+    model, light, clipped = twin.played(frames, request.repeat)
+    codes, registers, differences = sim.stream(request, twin, frames, light, clipped)
     exact = reference.depth(frames, calibration, config.neumann)
     want = exact / config.depth_lsb_px
     error = codes[0] - want
     percent = errors(codes[0] * config.depth_lsb_px, exact)
-    bit = next(field for field in REGISTERS["STATUS"].fields if field.name == "saturation")
     full_scale = 2.0 ** (config.depth.width - 1)
     grid = f"{config.rows}x{config.columns}"
     return Row(
@@ -203,17 +204,16 @@ def measure(extreme: Extreme, solver: str, size: int, simulator: str) -> Row:
         _largest(percent["max_percent_of_peak"]),
         float(np.sqrt((error**2).mean(axis=(1, 2))).max()),
         float(np.abs(error).max()),
-        streamed.saturations,
-        bool(streamed.registers["status"] & bit.mask),
+        clipped,
+        bool(registers["status"] & REGISTERS["STATUS"].field("saturation").mask),
         int(np.count_nonzero((np.abs(want) > full_scale / 2) & (codes * np.sign(want) < 0))),
-        streamed.bit_exact,
-        not streamed.differences,
+        bool((codes == model).all()),
+        not differences,
     )
 
 
 def _largest(values: list[float | None]) -> float | None:
-    present = [value for value in values if value is not None]
-    return max(present, default=None)
+    return max((value for value in values if value is not None), default=None)
 
 
 def faults(extreme: Extreme, row: Row) -> list[str]:

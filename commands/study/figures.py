@@ -12,6 +12,7 @@ import re
 import subprocess
 import sysconfig
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -350,29 +351,21 @@ def software_methods() -> Table:
     return Table(head, rows)
 
 
-def sensor(solver: str) -> Callable[[], Table]:
-    return lambda: configurations("PRESET=sensor", f"SOLVER={solver}")
-
-
-def as_sent(solver: str) -> Callable[[], Table]:
-    return lambda: configurations(f"SOLVER={solver}", neumann=True)
-
-
 TABLES: dict[str, Callable[[], Table | Iterable[Table]]] = {
     "numbers": numbers,
     "cycles": cycles_by_core,
     "formats": number_formats,
     "costs": costs_by_build,
     "cores": costs_by_core,
-    "real sensor, tridiagonal": sensor("tridiagonal"),
-    "real sensor, spectral": sensor("spectral"),
-    "colours as sent, tridiagonal": as_sent("tridiagonal"),
-    "colours as sent, spectral": as_sent("spectral"),
+    "real sensor, tridiagonal": partial(configurations, "PRESET=sensor", "SOLVER=tridiagonal"),
+    "real sensor, spectral": partial(configurations, "PRESET=sensor", "SOLVER=spectral"),
+    "colours as sent, tridiagonal": partial(configurations, "SOLVER=tridiagonal", neumann=True),
+    "colours as sent, spectral": partial(configurations, "SOLVER=spectral", neumann=True),
     "lanes": lanes,
     "published design": published_design,
-    "make synth over grids": lambda: synthesized(True),
-    "make synth": lambda: synthesized(False),
-    "make synth TARGET=ecp5": lambda: synthesized(False, "ecp5"),
+    "make synth over grids": partial(synthesized, True),
+    "make synth": partial(synthesized, False),
+    "make synth TARGET=ecp5": partial(synthesized, False, "ecp5"),
     "make fpga": routed,
     "make fpga TARGET=nexus": routed_alone,
     "make asic": in_cells,

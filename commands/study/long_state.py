@@ -123,14 +123,11 @@ def counts(config: Configuration, clipped_per_frame: int, clocks_per_frame: int)
         "DARK_PIXELS": config.rows * config.columns,
         "DEPTH_DROPPED": config.rows * config.columns,
     }
-    rows = [_count(name, each.get(name, 1), model.values[name]) for name in COUNTERS]
+    rows = [(name, each.get(name, 1), model.values[name]) for name in COUNTERS]
     contact = ContactEvents(config.rows, config.columns, config.depth.width, bottom_first=True)
     contact.frames = largest
     codes = np.zeros((config.rows, config.columns), np.int64)
     record = contact.whole_frame(codes, Settings(1, 1, 1, 1, 1), time=largest)
     after = (largest + clocks_per_frame) % (largest + 1)
-    return [*rows, _count("RECORD_FRAME", 1, record.frame), _count("RECORD_TIME", clocks_per_frame, after)]
-
-
-def _count(name: str, per_frame: int, after: int) -> LongCount:
-    return LongCount(name, 100 * FRAMES * per_frame / 2.0**WORD_BITS, after)
+    rows += [("RECORD_FRAME", 1, record.frame), ("RECORD_TIME", clocks_per_frame, after)]
+    return [LongCount(name, 100 * FRAMES * per_frame / 2.0**WORD_BITS, end) for name, per_frame, end in rows]

@@ -160,11 +160,8 @@ class _Survey:
         unit = np.eye(config.columns)
         self.modes = stages.row_forward(unit, config, forward)  # (column, mode's position)
         # (mode's position, column); a row alone in its pair
-        self.to_row = (
-            stages.row_inverse(unit[:, None], config, inverse)[:, 0]
-            if self.wide
-            else stages.row_inverse(unit, config, inverse)
-        )
+        lone = unit[:, None] if self.wide else unit
+        self.to_row = stages.row_inverse(lone, config, inverse).reshape(unit.shape)
         self.forward, self.inverse = forward.nodes, inverse.nodes
         self.from_row = np.linalg.inv(self.to_row)  # (column, mode's position): modes of a row of depth codes
         self.mode_l1, self.mode_variation = l1(self.modes), _variation(self.modes, self.neumann)
@@ -403,10 +400,8 @@ class _Tridiagonal(_Survey):
 
         lone = np.zeros((stop - first, rows, size))
         lone[np.arange(stop - first), np.arange(first, stop)] = 1
-        if self.wide:
-            wide_substitution(frame_stack(wide_elimination(lone, self.config, Told())), self.config, Told())
-            return
-        back_substitution(frame_stack(forward_elimination(lone, self.config, Told())), self.config, Told())
+        down, back = (wide_elimination, wide_substitution) if self.wide else (forward_elimination, back_substitution)
+        back(frame_stack(down(lone, self.config, Told())), self.config, Told())
 
     def in_depths(self, node: str, row: int) -> np.ndarray:
         """Return the largest words over all depths: d[i] is z[i] + c[i] z[i+1], and c[i] multiplies d[i] / c[i].

@@ -10,14 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 
 import tactile_depth as td
 from commands.common import simulator as simulation
-from commands.common.press_data import data_folder
+from commands.common.press_data import data_folder, pixels
 from commands.common.progress import progress_bar
 from commands.common.tabular import Table
 from commands.common.variables import EQUAL, MISMATCH, Place, one, real
@@ -27,7 +26,6 @@ from tactile_depth.calibrate.fitting import DRAWN_OUT, errors_by_number, fit_pre
 from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
 from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.registers.axil_registers import GAINS
-from tactile_depth.pictures.frames import read_picture
 from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
 
 NUMBERS = (8, 12, 18, 24, 36)  # presses of a fit
@@ -83,18 +81,12 @@ def codes_differ(simulator: str, pipeline: td.Pipeline, picture: np.ndarray, res
     config, rows = pipeline.config, len(result.codes)
     assert result.light_gains is not None
     gains = np.rint(result.light_gains / LIGHT_GAIN.lsb).astype(int)
-    entries = np.concatenate(
-        [
-            np.array([bench.entry(side, bench.chance(0)) for side in ("sink", "source")], np.uint32),
-            bench.frame_entries(picture[None]),
-        ]
-    )
     with files.temporary() as folder:
         played = bench.play(
             simulator,
             config,
             pipeline.sensor,
-            entries,
+            bench.frame_entries(picture[None]),
             folder,
             clocks=20 * picture.shape[0] * picture.shape[1],
             total_frames=1,
@@ -132,13 +124,12 @@ def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
     """Print the tables; return the exit status. `simulator` None: no RTL."""
     presses = to_grid(pictures, pitch_mm)
     fit = fit_presses(presses, ("cubic",))
-    images = {press.name: press.image for press in pictures.presses}
+    by_name = {press.name: press for press in pictures.presses}
     views = [view for view in presses.views if view.press.name in fit.without]
     same, lit, differing = list[Measured](), {light: list[Measured]() for light in LIGHTS}, 0
     for view in progress_bar(views, "presses"):
         name = view.press.name
-        image = images[name]
-        picture = image if isinstance(image, np.ndarray) else read_picture(Path(image))
+        picture = pixels(by_name[name])
         sensor = replace(fit.without[name], camera=fit.sensor.camera)
         pipeline = td.Pipeline(sensor, presses.background)
         result = pipeline(picture)

@@ -14,8 +14,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from commands.common import run_request, variables
 from commands.common.progress import duration
@@ -25,6 +26,9 @@ from commands.common.tabular import Table, shown
 from commands.hardware import asic, synth
 from commands.run import reflex, reflex_tables, sim
 from commands.study import baselines, budget, extremes, study, sweep, trade, trade_front
+from commands.study.report_lanes import lanes_section
+from commands.study.report_page import LOOKS, PUBLISHED_LOOK, Section, page, results, saved
+from commands.study.transform_noise import Compliance
 from tactile_depth.base import files
 from tactile_depth.chip.configuration import COEFFICIENT, STORED, Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth
@@ -32,14 +36,6 @@ from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.depth import reference
 from tactile_depth.sensor.scenes import BENCH, SENSOR_WIDTH_MM, render
 from tactile_depth.sensor.synthetic import synthetic
-
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt
-from matplotlib.ticker import MaxNLocator
-
-from commands.study.report_lanes import lanes_section
-from commands.study.report_page import LOOKS, PUBLISHED_LOOK, Section, page, results, saved
-from commands.study.transform_noise import Compliance
 
 DEFAULT_OUT = ROOT / "build" / "report"
 INTERRUPTED = "the rows of the sweep are kept, run it again to go on"
@@ -124,7 +120,8 @@ def headline(runs: dict[str, Run]) -> Section:
 
 
 def latency_section(runs: dict[str, Run], folder: Path) -> Section:
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 3.6), layout="constrained")
+    figure = Figure(figsize=(11, 3.6), layout="constrained")
+    left, right = figure.subplots(1, 2)
     for solver, run in runs.items():
         look = LOOKS[solver] | {"marker": "", "label": solver}
         left.plot(run.report["first_depth_latency_cycles"], **look)
@@ -147,7 +144,8 @@ def latency_section(runs: dict[str, Run], folder: Path) -> Section:
 
 
 def grid_section(folder: Path) -> Section:
-    figure, axis = plt.subplots(figsize=(6.5, 4.2), layout="constrained")
+    figure = Figure(figsize=(6.5, 4.2), layout="constrained")
+    axis = figure.subplots()
     for solver, (low, high) in COLUMNS.items():
         grids = [1 << bits for bits in range(low.bit_length() - 1, high.bit_length())]
         configs = [Configuration(columns=columns, solver=solver) for columns in grids]
@@ -176,8 +174,8 @@ def depth_sections(runs: dict[str, Run], folder: Path) -> list[Section]:
     want = reference.depth(frames, synthetic()) * SENSOR_WIDTH_MM / SIZE
     sections = []
     for solver, run in runs.items():
-        shape = (3 * 2, 5)
-        figure, axes = plt.subplots(*shape, figsize=(11, 12), layout="constrained")
+        figure = Figure(figsize=(11, 12), layout="constrained")
+        axes = figure.subplots(3 * 2, 5)
         residual = (run.depth_mm - want) * UM_PER_MM
         limit = float(np.abs(residual).max())
         top = float(want.max())
@@ -198,7 +196,8 @@ def depth_sections(runs: dict[str, Run], folder: Path) -> list[Section]:
 
 
 def error_section(runs: dict[str, Run], folder: Path) -> Section:
-    figure, axis = plt.subplots(figsize=(11, 3.8), layout="constrained")
+    figure = Figure(figsize=(11, 3.8), layout="constrained")
+    axis = figure.subplots()
     places, hatches = np.arange(len(BENCH)), ("", "///")
     for index, (solver, run) in enumerate(runs.items()):
         rms = run.report["rms_percent_of_peak"][: len(BENCH)]
@@ -226,7 +225,8 @@ def curve(
 
 
 def word_section(rows: Sequence[sweep.Row], folder: Path) -> Section:
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4), layout="constrained", sharey=True)
+    figure = Figure(figsize=(11, 4), layout="constrained")
+    left, right = figure.subplots(1, 2, sharey=True)
     default = Configuration()
     for solver in COLUMNS:
         look, point = LOOKS[solver], sweep.square(solver=solver)

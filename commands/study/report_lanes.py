@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from matplotlib import pyplot as plt
+from matplotlib.figure import Figure
 
 from commands.common import run_request
 from commands.common.published import CLOCK_MHZ
@@ -45,7 +45,8 @@ def cells(row: Row, designs: Sequence[dict[str, Any]], routed: Sequence[dict[str
 
 def lanes_section(rows: Sequence[Row], folder: Path, build: Path = ROOT / "build") -> Section:
     """Plot the whole map's latency against multipliers and memory, a point for each number of lanes."""
-    figure, axes = plt.subplots(1, 2, figsize=(11, 4), layout="constrained", sharey=True)
+    figure = Figure(figsize=(11, 4), layout="constrained")
+    axes = figure.subplots(1, 2, sharey=True)
     designs = [design for document in results("synth", build) for design in document["designs"]]
     routed = results("fpga", build)
     lines = []

@@ -9,13 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import matplotlib
+from matplotlib.figure import Figure
 
 from commands.common.repository import ROOT
 from commands.common.tabular import Table
-
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt
 
 DOCUMENTS = {"synth": "resources.json", "fpga": "fpga.json", "asic": "asic.json"}  # by flow
 
@@ -51,11 +48,10 @@ class Section:
         )
 
 
-def saved(figure: Any, folder: Path, name: str) -> Path:
+def saved(figure: Figure, folder: Path, name: str) -> Path:
     """Save a figure as PNG; return its path."""
     path = folder / f"{name}.png"
     figure.savefig(path, dpi=110)
-    plt.close(figure)
     return path
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from commands.common import run_request, tabular
 from commands.common.progress import progress_bar
 from commands.common.results import save, written
-from commands.run import sim, sim_table
+from commands.run import sim
 from commands.study import long_state
 from commands.study.drawn_light import DrawnLight, exact
 from commands.study.drawn_sensor import Height, flat
@@ -24,7 +24,7 @@ from tactile_depth.chip.configuration import STORED, WIDTHS, WORDS, Configuratio
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.depth.pipeline import THRESHOLD_MM, Pipeline
 from tactile_depth.depth.twin import Twin
-from tactile_depth.pictures.frames import Frames, camera_scale
+from tactile_depth.pictures.frames import camera_scale
 from tactile_depth.sensor.presets import CHIP
 from tactile_depth.sensor.sensor import Sensor
 
@@ -40,6 +40,10 @@ OFF: Colours = (0.0, 0.0, 0.0)
 DIM = 0.6  # exposure that leaves room for twice the light
 FOLLOWING = 16  # frames after a change of the light
 DRIFT = 1.01  # of the light from frame to frame
+
+
+def untouched(drawn: DrawnLight) -> Height:
+    return flat
 
 
 @dataclass(frozen=True)
@@ -59,15 +63,11 @@ class Case:
     name: str
     height: Callable[[DrawnLight], Height] | None
     lights: tuple[Colours, ...] = (EVEN,) * 3
-    reference: Callable[[DrawnLight], Height] = lambda drawn: flat
+    reference: Callable[[DrawnLight], Height] = untouched
     exposure: float = 1.0
     tilt: float = 0.0
     paint: Callable[[np.ndarray, np.ndarray], None] = lambda reference, frames: None
     saturates: bool | None = False
-
-
-def untouched(drawn: DrawnLight) -> Height:
-    return flat
 
 
 def ball(drawn: DrawnLight) -> Height:
@@ -265,14 +265,10 @@ def measure(case: Case, request: run_request.Request, drawn: DrawnLight, rtl: bo
     config = run_request.configure(request, sensor)
     twin = Twin(sensor, config, reference[None])
     codes, light, clipped = twin.played(frames)
-    bit_exact, differences, status = True, [], 0
+    bit_exact, differences, status = True, list[str](), 0
     if rtl:
-        with files.temporary() as folder:
-            labels = tuple(map(str, range(len(frames))))
-            played = sim.simulate(request, config, Frames(frames, 1.0, "", labels), sensor, folder, twin.zero, light)
-        bit_exact = bool((twin.upright(played.codes.reshape(codes.shape)) == codes).all())
-        differences = sim_table.check_registers(played, len(frames), clipped, not request.stalls)
-        status = played.registers["status"]
+        of_rtl, registers, differences = sim.stream(request, twin, frames, light, clipped)
+        bit_exact, status = bool((of_rtl == codes).all()), registers["status"]
     assert light is not None
     is_set = (bool(clipped), twin.dark(frames).any())
     expected = tuple(bit for bit, is_one in zip(STATUS_BITS, is_set, strict=True) if is_one)
@@ -351,8 +347,7 @@ def _alone(
 ) -> tuple[Errors | None, str]:
     """Return the errors of a picture by itself, and the refusal or the warnings of the package."""
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", InputWarning)
+        with warnings.catch_warnings(action="ignore", category=InputWarning):
             pipeline = Pipeline(
                 drawn.sensor, reference, grid=drawn.grid, depth_range_mm=request.deepest_mm, **request.numbers
             )
@@ -390,8 +385,7 @@ def cells(row: SensorRow) -> tuple[str, ...]:
         *(row.case, f"{row.frames}", *map(height, (row.first, row.worst, last)), at_rest),
         *("-" if last is None else f"{last.largest:.3f}", "-" if row.right_after is None else f"{row.right_after}"),
         *(height(row.alone), f"{row.chip_mm:.4f}"),
-        ", ".join(f"{node} {count:,}" for node, count in row.saturations.items()) or "-",
-        *(", ".join(row.status) or "-", row.python or "-"),
+        *(tabular.counts(row.saturations), ", ".join(row.status) or "-", row.python or "-"),
     )
 
 

@@ -175,26 +175,29 @@ class Study(Generic[P, R]):
 
         Raises InputError: the rows are not of these columns and these models.
         """
-        mend = "move it away, or give another folder with OUT="
+
+        def refused(what: str) -> InputError:
+            return InputError(f"{path}: {what}: move it away, or give another folder with OUT=")
+
         complete = content[: content.rfind(b"\n") + 1]
         if not complete and line(self.header).startswith(content):
             return {}, 0
         try:
             lines = [*csv.reader(io.StringIO(complete.decode()), strict=True)]
         except (UnicodeDecodeError, csv.Error) as error:
-            raise InputError(f"{path}: not a readable table ({error}): {mend}") from error
+            raise refused(f"not a readable table ({error})") from error
         if lines[:1] != [self.header]:
-            raise InputError(f"{path}: its columns are not those of this version: {mend}")
+            raise refused("its columns are not those of this version")
         rows = {}
         for number, cells in enumerate(lines[1:], start=2):
             if len(cells) != len(self.header):
-                raise InputError(f"{path}: line {number} has {len(cells)} cells in place of {len(self.header)}: {mend}")
+                raise refused(f"line {number} has {len(cells)} cells in place of {len(self.header)}")
             if cells[self.header.index("models")] != self.models:
-                raise InputError(f"{path}: line {number} was measured with another version of the models: {mend}")
+                raise refused(f"line {number} was measured with another version of the models")
             try:
                 row = _row(self.row, cells)
             except ValueError as error:
-                raise InputError(f"{path}: line {number} is not readable ({error}): {mend}") from error
+                raise refused(f"line {number} is not readable ({error})") from error
             rows[point_of(self.point, row)] = row
         return rows, len(complete)
 
@@ -207,8 +210,9 @@ class Study(Generic[P, R]):
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except OSError as error:
-                mend = "wait for it, or give another OUT="
-                raise InputError(f"{path}: another {self.name} is writing it: {mend}") from error
+                raise InputError(
+                    f"{path}: another {self.name} is writing it: wait for it, or give another OUT="
+                ) from error
             file.seek(0)
             content = file.read()
             rows, length = self.kept(path, content)

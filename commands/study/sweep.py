@@ -123,18 +123,12 @@ def lane_counts(columns: int) -> list[int]:
     return [1 << log2 for log2 in range(most_lanes(columns).bit_length())]
 
 
-@dataclass(frozen=True)
-class _Bench:
-    frames: np.ndarray
-    height: np.ndarray
-    reference: np.ndarray
-
-
 @lru_cache(maxsize=2)
-def _bench(size: int, neumann: bool) -> _Bench:
+def _bench(size: int, neumann: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return frames, true height in pixels, and depth in double precision."""
     scene = render(SCENE, size, seed=SEED)
     height = scene.height - scene.height.mean(axis=(1, 2), keepdims=True) if neumann else scene.height
-    return _Bench(scene.frames, height, reference.depth(scene.frames, synthetic(), neumann))
+    return scene.frames, height, reference.depth(scene.frames, synthetic(), neumann)
 
 
 def measure(point: Point) -> dict[str, Any]:
@@ -145,16 +139,16 @@ def measure(point: Point) -> dict[str, Any]:
     )
     same = {name: getattr(point, name) for name in ("solver", "rows", "columns", "lanes", *SOLVER_NUMBERS)}
     config = Configuration(neumann=neumann, depth_range_px=deep, **same)
-    bench, pitch = _bench(config.columns, neumann), scene_pixel_pitch_mm(config.columns)
+    (frames, height, exact), pitch = _bench(config.columns, neumann), scene_pixel_pitch_mm(config.columns)
     monitor = Monitor()
-    depth = Twin(synthetic(), config).depth_px(bench.frames, monitor)
-    rms, largest = (np.array(percent, float) for percent in errors(depth, bench.reference).values())
-    true = np.abs(depth - bench.height) * pitch
+    depth = Twin(synthetic(), config).depth_px(frames, monitor)
+    rms, largest = (np.array(percent, float) for percent in errors(depth, exact).values())
+    true = np.abs(depth - height) * pitch
     true_rms = np.sqrt((true**2).mean(axis=(1, 2)))
     counted = cost(config)
     return {
         "depth_range_mm": config.deepest_px * pitch,
-        "frames": len(bench.frames),
+        "frames": len(frames),
         "rms_percent_mean": rms.mean(),
         "rms_percent_worst": rms.max(),
         "max_percent_mean": largest.mean(),

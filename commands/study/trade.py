@@ -27,7 +27,7 @@ from PIL import Image
 import tactile_depth as td
 from commands.common import recorded, run_request, variables
 from commands.common import simulator as simulation
-from commands.common.press_data import data_folder
+from commands.common.press_data import data_folder, pixels
 from commands.common.progress import progress_bar
 from commands.common.repository import ROOT
 from commands.common.results import written
@@ -40,7 +40,6 @@ from commands.study.study import INTERRUPTED as INTERRUPTED
 from commands.study.study import VERSION, Study, built
 from commands.study.trade_front import DEFAULT, LUT, Point, Row, draw, front_of, summary, write_beaten
 from tactile_depth.base import files
-from tactile_depth.calibrate.ball_press import BallPress
 from tactile_depth.calibrate.fitting import fit_folds
 from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
@@ -53,7 +52,7 @@ from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.depth.pipeline import AREA_THRESHOLD_MM, THRESHOLD_MM
 from tactile_depth.depth.result import Recorder
 from tactile_depth.depth.twin import Twin
-from tactile_depth.pictures.frames import Frames, load_frames, on_grid, read_picture
+from tactile_depth.pictures.frames import Frames, load_frames, on_grid
 from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
 from tactile_depth.sensor.sensor import Sensor
 
@@ -171,7 +170,7 @@ def prepare(folder: Path, source: Path, pitch_mm: float | None) -> Prepared:
         shutil.rmtree(folder / f"presses-{fold}", ignore_errors=True)
         (folder / f"presses-{fold}").mkdir()
     for index, press in enumerate(pictures.presses):
-        Image.fromarray(_pixels(press)).save(folder / f"presses-{index % FOLDS}" / f"{index:03}.png")
+        Image.fromarray(pixels(press)).save(folder / f"presses-{index % FOLDS}" / f"{index:03}.png")
     jobs = [joblib.delayed(_calibrate)(study, pictures, pixel_format) for pixel_format in FORMATS]
     fitted = joblib.Parallel(n_jobs=-1, return_as="generator_unordered")(jobs)
     for _ in progress_bar(fitted, "calibrations", len(jobs), unit=" pixel formats"):
@@ -180,14 +179,10 @@ def prepare(folder: Path, source: Path, pitch_mm: float | None) -> Prepared:
     return study
 
 
-def _pixels(press: BallPress) -> np.ndarray:
-    return press.image if isinstance(press.image, np.ndarray) else read_picture(Path(press.image))
-
-
 def _digest(pictures: PressPictures, pitch_mm: float) -> str:
     digest = hashlib.sha256(f"{VERSION} {FOLDS} {FORMATS} {pitch_mm}".encode() + pictures.background.tobytes())
     for press in pictures.presses:
-        digest.update(f"{press.name} {press.diameter_mm} {press.circle}".encode() + _pixels(press).tobytes())
+        digest.update(f"{press.name} {press.diameter_mm} {press.circle}".encode() + pixels(press).tobytes())
     return digest.hexdigest()[:12]
 
 
@@ -264,9 +259,9 @@ def _measured(
     study: Prepared, request: run_request.Request, config: Configuration, data: Fold, monitor: Monitor
 ) -> list[tuple[Measured, bool, float]]:
     """Return what was measured of each press, if it is in the middle, and the cycles from last pixel to contact."""
-    sensor, pixels = data.sensor, data.frames.pixels
+    sensor = data.sensor
     twin = Twin(sensor, config, untouched(request, data.frames), fastest())
-    every = twin.codes(pixels, monitor)
+    every = twin.codes(data.frames.pixels, monitor)
     pitch = sensor.pixel_pitch_mm
     lsb = config.depth_lsb_px * pitch
     threshold, area = (round(depth / lsb) for depth in (THRESHOLD_MM, AREA_THRESHOLD_MM))
@@ -286,13 +281,11 @@ def _measured(
 
 
 def study_of(prepared: Prepared) -> Study[Point, Row]:
-    noted = partial(_noted, prepared)
+    def noted(of: Point) -> dict[str, Any]:
+        return {"command": prepared.command(of)}
+
     seconds = SECONDS * len(prepared.middle | prepared.sides)
     return Study("trade", Point, Row, partial(measure, prepared), seconds, noted, prepared.digest)
-
-
-def _noted(study: Prepared, of: Point) -> dict[str, Any]:
-    return {"command": study.command(of)}
 
 
 def in_rtl(study: Prepared, rows: Sequence[Row], count: int, seed: int, simulator: str) -> int:

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
+from matplotlib.figure import Figure
 
 from commands.common.published import CLOCK_MHZ
 from commands.common.tabular import Table
@@ -22,9 +22,6 @@ from commands.hardware.targets import TARGETS
 from commands.study import study
 from commands.study.study import built
 from tactile_depth.chip.configuration import COEFFICIENT, DEFAULTS, GAIN, NUMBERS, SOLVER_WIDTHS, STORED
-
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt
 
 
 @dataclass(frozen=True)
@@ -151,8 +148,8 @@ HEAD = (
 )
 
 
-def _words(data: int, coefficient: int, gain: int = 16) -> Point:
-    return DEFAULT.but(**{STORED: data, COEFFICIENT: coefficient, GAIN: gain})
+def _words(data: int, coefficient: int) -> Point:
+    return DEFAULT.but(**{STORED: data, COEFFICIENT: coefficient, GAIN: 16})
 
 
 SQUARE = DEFAULT.but(rows=128, columns=128)
@@ -268,7 +265,8 @@ def draw(rows: Sequence[Row], path: Path) -> None:
     among, found = whole_picture(built(rows)), changed(rows)
     best = knee(among)
     smallest = min(map(depth_error, among))
-    figure, both = plt.subplots(1, 2, figsize=(11, 4.4), layout="constrained", sharey=True)
+    figure = Figure(figsize=(11, 4.4), layout="constrained")
+    both = figure.subplots(1, 2, sharey=True)
     default, *lanes, published = (found[name] for name in LABELS)
     default_label, *lanes_labels, published_label = LABELS.values()
     knee_label = f"knee: {best.rows} x {best.columns}, {getattr(best, STORED)} bits, {{:.1f}} \u00b5m"
@@ -305,4 +303,3 @@ def draw(rows: Sequence[Row], path: Path) -> None:
     both[0].set_ylabel("depth error on real presses, \u00b5m RMS")
     both[1].legend(fontsize=8, loc="upper right")
     figure.savefig(path, dpi=110)
-    plt.close(figure)
