@@ -125,6 +125,7 @@ def of_values(
             raise InputError(f"{key}={values[key]}: accepted is x,y in mm from the middle of the frame, as 2.5,-1")
         return x, y
 
+    by_preset = None if PRESETS[name].light_gains else False
     return Request(
         preset=name,
         rows=number("ROWS", 0),  # the configuration file sets the solver
@@ -143,7 +144,7 @@ def of_values(
         ),
         reference=values.get("REFERENCE"),
         zero=values.get("ZERO"),
-        light_gains=_light_gains(values, PRESETS[name]),
+        light_gains=bool(number("LIGHT_GAINS", 0, 0, 1)) if "LIGHT_GAINS" in values else by_preset,
         calibration=_calibration(values),
         camera_size=_camera_size(values),
         gradient=choice("GRADIENT", ("", *MODELS)),
@@ -205,13 +206,6 @@ def camera_choice(values: Mapping[str, str]) -> CameraChoice | None:
         x, y, width, height = map(int, numbers.groups())
         window = (x, y, width, height)
     return CameraChoice(values["CAMERA"], values.get("BAYER") or PHASES[0], window)
-
-
-def _light_gains(values: dict[str, str], preset: Preset) -> bool | None:
-    """Return LIGHT_GAINS, else the choice of the preset: none, or unless the model is `lut` (None)."""
-    if "LIGHT_GAINS" in values:
-        return bool(variables.number(values, "LIGHT_GAINS", 0, 0, 1))
-    return None if preset.light_gains else False
 
 
 def _calibration(values: dict[str, str]) -> str:

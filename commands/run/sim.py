@@ -152,7 +152,8 @@ def run(request: Request, frames: Frames | None = None) -> int:
             outside,
             dark,
         )
-        files.replace(result, (*RESULTS, *dumps), out, earlier_dumps(out))
+        earlier = [name for name in files.listed(out / "report.json", "waves") if name.endswith(DUMPS)]
+        files.replace(result, (*RESULTS, *dumps), out, earlier)
 
     announce(request, config)
     print(table(report, frames.labels))
@@ -224,11 +225,6 @@ def take_dumps(request: Request, config: Configuration, frames: Frames, work: Pa
         return []
     built = bench.build(request.simulator, config, 0, True, frames.camera)  # Icarus writes there, Verilator into `work`
     return [Path(shutil.move(dump, result / dump.name)).name for dump in (*work.glob("*.vcd"), *built.glob("*.fst"))]
-
-
-def earlier_dumps(out: Path) -> list[str]:
-    """Return the waveforms that the report in `out` lists, which new results replace."""
-    return [name for name in files.listed(out / "report.json", "waves") if name.endswith(DUMPS)]
 
 
 def main(request: Annotated[Request, chosen(WITH_CAMERA)]) -> int:

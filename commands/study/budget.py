@@ -237,14 +237,6 @@ def source(
 # Results.
 
 
-def read(out: Path = DEFAULT_OUT) -> dict[str, Any]:
-    """Return the document of budget.json; measure it first if there is none."""
-    if not (out / RESULTS[0]).exists():
-        run(BudgetRun(out=out))
-    document: dict[str, Any] = json.loads((out / RESULTS[0]).read_text())
-    return document
-
-
 def setting(document: dict[str, Any]) -> str:
     """Return what was measured, in a sentence."""
     used = document["setting"]
@@ -391,6 +383,6 @@ def run(request: BudgetRun) -> None:
 
 def main(request: BudgetRun) -> None:
     run(request)
-    document = read(request.out)
+    document = json.loads((request.out / RESULTS[0]).read_text())
     if not document["without"]:
         recorded.record(_rounded(document))

@@ -75,7 +75,7 @@ def run_extremes(folder: Path) -> None:
 
 
 def document_of(command: Any, name: str) -> dict[str, Any]:
-    """Return the results of make reflex or make baselines; run the command first if it left none."""
+    """Return the results of make budget, make reflex or make baselines; run the command first if it left none."""
     file = command.DEFAULT_OUT / f"{name}.json"
     if not file.exists():
         words = [
@@ -252,7 +252,7 @@ def word_section(rows: Sequence[sweep.Row], folder: Path) -> Section:
 
 
 def budget_section() -> Section:
-    document = budget.read()
+    document = document_of(budget, "budget")
     text = (
         "What a user gets, in mm, and what it is made of: one cause after the other is switched off, or replaced by "
         "the truth. Quantisation is the part of the arithmetic; all others are those of the sensor."

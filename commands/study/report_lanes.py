@@ -13,7 +13,6 @@ from matplotlib.figure import Figure
 
 from commands.common import run_request
 from commands.common.published import CLOCK_MHZ
-from commands.common.repository import ROOT
 from commands.common.tabular import Table
 from commands.study import sweep
 from commands.study.report_page import Section, results, saved
@@ -43,12 +42,12 @@ def cells(row: Row, designs: Sequence[dict[str, Any]], routed: Sequence[dict[str
     )
 
 
-def lanes_section(rows: Sequence[Row], folder: Path, build: Path = ROOT / "build") -> Section:
+def lanes_section(rows: Sequence[Row], folder: Path) -> Section:
     """Plot the whole map's latency against multipliers and memory, a point for each number of lanes."""
     figure = Figure(figsize=(11, 4), layout="constrained")
     axes = figure.subplots(1, 2, sharey=True)
-    designs = [design for document in results("synth", build) for design in document["designs"]]
-    routed = results("fpga", build)
+    designs = [design for document in results("synth") for design in document["designs"]]
+    routed = results("fpga")
     lines = []
     for columns, colour in zip(sweep.LANE_GRIDS, ("#08306b", "#e6550d"), strict=True):
         points = sweep.with_lanes(rows, columns)

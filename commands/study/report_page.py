@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from commands.common.repository import ROOT
 from commands.common.tabular import Table
 
+BUILD = ROOT / "build"
 DOCUMENTS = {"synth": "resources.json", "fpga": "fpga.json", "asic": "asic.json"}  # by flow
 
 LOOKS: dict[str, dict[str, Any]] = {
@@ -55,9 +56,9 @@ def saved(figure: Figure, folder: Path, name: str) -> Path:
     return path
 
 
-def results(flow: str, build: Path = ROOT / "build") -> list[dict[str, Any]]:
-    """Return the documents that a flow left below a folder, for any configuration, the latest last."""
-    paths = sorted(build.glob(f"{flow}/*/{DOCUMENTS[flow]}"), key=lambda path: path.stat().st_mtime)
+def results(flow: str) -> list[dict[str, Any]]:
+    """Return the documents that a flow left in build/, for any configuration, the latest last."""
+    paths = sorted(BUILD.glob(f"{flow}/*/{DOCUMENTS[flow]}"), key=lambda path: path.stat().st_mtime)
     return [json.loads(path.read_text()) for path in paths]
 
 

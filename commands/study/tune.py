@@ -13,6 +13,7 @@ import math
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -197,17 +198,15 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
     shape = (request.rows, request.columns)
     frames = load_frames(request.frames, shape, request.reference, request.seed, request.press)
     calibration = on_grid(calibration, frames)
-    built: dict[Widths, Configuration | None] = {}
     refusals: list[InputError] = []
 
+    @cache
     def build(at: Widths) -> Configuration | None:
-        if at not in built:
-            try:
-                built[at] = run_request.configure(shaped(at), calibration)
-            except InputError as error:
-                built[at] = None
-                refusals.append(error)
-        return built[at]
+        try:
+            return run_request.configure(shaped(at), calibration)
+        except InputError as error:
+            refusals.append(error)
+            return None
 
     lanes = {solver: lanes_within(build, request, limits, solver) for solver in solvers}
     solvers = [s for s in solvers if build(Widths(s, DATA_BITS[1], COEFFICIENT_BITS[1], lanes[s])) is not None]

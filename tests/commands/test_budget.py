@@ -96,7 +96,7 @@ def test_the_tables_the_picture_and_what_is_missing(
     budget.run(replace(SMALL, out=tmp_path / "out"))
     out = capsys.readouterr().out
     assert "no real presses were measured: no presses: " in out
-    document = budget.read(tmp_path / "out")
+    document = json.loads((tmp_path / "out" / "budget.json").read_text())
     assert (tmp_path / "out" / "budget.png").exists()
     (source,) = document["sources"]
     assert list(source["places"]) == list(PLACES)

@@ -6,9 +6,11 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from commands.common import run_request
 from commands.cost.cost import cost
-from commands.study import report_lanes, sweep
+from commands.study import report_lanes, report_page, sweep
 from commands.study.sweep import Row
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
@@ -28,7 +30,7 @@ def row(columns: int, lanes: int) -> Row:
     return Row(**(every | cells))
 
 
-def test_every_number_of_lanes_has_a_line(tmp_path: Path) -> None:
+def test_every_number_of_lanes_has_a_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rows = [row(columns, lanes) for columns in sweep.LANE_GRIDS for lanes in sweep.lane_counts(columns)]
     described = run_request.described(Configuration(columns=128, solver="tridiagonal", lanes=8))
     totals = {"DSP48E2": 151, "LUT": 45678, "FF": 23456, "BRAM36": 77.5, "UltraRAM": 0}
@@ -40,7 +42,8 @@ def test_every_number_of_lanes_has_a_line(tmp_path: Path) -> None:
         folder = tmp_path / flow / "one"
         folder.mkdir(parents=True)
         (folder / name).write_text(json.dumps(content))
-    html = report_lanes.lanes_section(list(reversed(rows)), tmp_path, tmp_path).html()
+    monkeypatch.setattr(report_page, "BUILD", tmp_path)
+    html = report_lanes.lanes_section(list(reversed(rows)), tmp_path).html()
     lines = html.split("<tr>")[2:]
     assert len(lines) == len(rows)
     for expected, line in zip(rows, lines, strict=True):
