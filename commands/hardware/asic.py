@@ -135,8 +135,14 @@ def timing(folder: Path, netlist: Netlist, period_ns: float, node_nm: float) -> 
     gates = netlist.instances
     path = [gates[int(end[1:])].path or netlist.name if re.fullmatch(r"c\d+", end) else end for end in ends]
     worst_ns = float(slack[1])
-    report = {"clock_mhz": 1000 / period_ns, "period_ns": period_ns, "worst_slack_ns": worst_ns}
-    return {**report, "fastest_mhz": 1000 / (period_ns - worst_ns), "path": path}, delays(sdf.read_text())
+    report = {
+        "clock_mhz": 1000 / period_ns,
+        "period_ns": period_ns,
+        "worst_slack_ns": worst_ns,
+        "fastest_mhz": 1000 / (period_ns - worst_ns),
+        "path": path,
+    }
+    return report, delays(sdf.read_text())
 
 
 def delays(text: str) -> dict[int, dict[tuple[str, str], tuple[float, float]]]:

@@ -49,7 +49,7 @@ def truth(function: str, inputs: Sequence[str]) -> int:
     rows = 1 << len(inputs)
     ones = (1 << rows) - 1
     tokens = re.findall(rf"{PIN}|\S", function)
-    if len(inputs) > LARGEST_GATE or not {*re.findall(PIN, function)} <= {*inputs}:
+    if len(inputs) > LARGEST_GATE or not {*pins_of(function)} <= {*inputs}:
         raise wrong
     tables = [sum(1 << i for i in range(rows) if i >> k & 1) for k in range(len(inputs))]
     names = {name: f"v{k}" for k, name in enumerate((*inputs, "0", "1"))}
@@ -255,10 +255,9 @@ def _cell(group: Group, templates: dict[str, Group]) -> Cell:
 
 
 def _unit(text: str) -> float:
-    match = UNIT.match(text.strip())
-    if match is None:
-        raise ValueError(f"{text} is no unit")
-    return float(match[1] or 1) * PREFIX[match[2]]
+    if match := UNIT.match(text.strip()):
+        return float(match[1] or 1) * PREFIX[match[2]]
+    raise ValueError(f"{text} is no unit")
 
 
 def read(path: Path) -> Library:

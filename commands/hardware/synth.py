@@ -151,11 +151,9 @@ def kept(modules: Sequence[str]) -> list[str]:
     """Return the modules that keep their boundary: the cores in the units and in the solver, and the registers."""
     containers = {"", *UNITS, SOLVER}
     paths = {module: path_of(module) for module in modules}
-
-    def container(path: str) -> str:
-        return re.sub(r"\.g_\w+\[\d+\]$", "", path.rpartition(".")[0])  # a lane of the solver is no container
-
-    return [m for m, path in paths.items() if path not in containers and container(path) in containers]
+    # A lane of the solver is no container.
+    inside = {path: re.sub(r"\.g_\w+\[\d+\]$", "", path.rpartition(".")[0]) for path in paths.values()}
+    return [m for m, path in paths.items() if path not in containers and inside[path] in containers]
 
 
 def tally(stat: Path) -> dict[str, Counter[str]]:
@@ -211,9 +209,9 @@ def logic_depth(report: Path) -> dict[str, Any]:
 def misfit(totals: Mapping[str, float], target: Target) -> str:
     """Return the resources that are not enough; empty when all fits."""
     short = [
-        f"{name} {totals[name]:,g} of {target.has[name]:,}, {totals[name] - target.has[name]:,g} too many"
-        for name in target.has
-        if totals.get(name, 0) > target.has[name]
+        f"{name} {totals[name]:,g} of {has:,}, {totals[name] - has:,g} too many"
+        for name, has in target.has.items()
+        if totals.get(name, 0) > has
     ]
     return "; ".join(short)
 
@@ -325,16 +323,12 @@ def text(design: Design, target: Target) -> str:
         for memory in design.memories
     ]
     d = design.details
-    use = ", ".join(f"{name} {100 * design.totals[name] / target.has[name]:.1f} %" for name in target.has)
-    stores = (
-        []
-        if not target.plain
-        else [
-            f"memory by the plain rule, {BLOCKS_PER_ULTRA} BRAM36 as one: {d['memory in UltraRAM']:,.1f} UltraRAM; "
-            + "mapped: "
-            + ", ".join(f"{d[f'mapped {name}']:,g} {name}" for name in target.plain)
-        ]
-    )
+    use = ", ".join(f"{name} {100 * design.totals[name] / has:.1f} %" for name, has in target.has.items())
+    stores = []
+    if target.plain:
+        maps = ", ".join(f"{d[f'mapped {name}']:,g} {name}" for name in target.plain)
+        plain = f"{BLOCKS_PER_ULTRA} BRAM36 as one: {d['memory in UltraRAM']:,.1f} UltraRAM"
+        stores = [f"memory by the plain rule, {plain}; mapped: {maps}"]
     return "\n".join(
         [
             str(Table(("core", *target.has), by_core)),

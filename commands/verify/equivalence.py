@@ -113,8 +113,8 @@ def environment(core: str, folder: Path, protocol: str, parameters: Mapping[str,
     declared = [f"input wire {across(bits)}any_{name}" for name, bits in inputs.items()]
     declared += [f"output wire [{bits - 1}:0] {name}" for name, bits in outputs.items()]
     wide = {name: rules.get(f"counts_{name}", ("", 1))[1] for name in outputs}
-    declared += [f"output wire {across(wide[name])}looked_at_{name}" for name in outputs] + [f"output wire {HOLDS}"]
-    declared += [f"input wire [11:0] {SELECTOR}", "input wire clk"]
+    declared += [f"output wire {across(bits)}looked_at_{name}" for name, bits in wide.items()]
+    declared += [f"output wire {HOLDS}", f"input wire [11:0] {SELECTOR}", "input wire clk"]
     lines = [f"module environment ({', '.join(declared)});"]
     lines += [f"  wire [{bits - 1}:0] {name};" for name, bits in inputs.items()]
     wires = {name: f"any_{name}" if name in inputs else name for name, (side, _) in rules.items() if side == "input"}

@@ -141,8 +141,7 @@ def make(
         folder,
         "mutants",
     )
-    numbers = (int(line.split()[line.split().index("-ctrl") + 3]) for line in lines)
-    made = [Mutant(number, described(line)) for number, line in zip(numbers, lines, strict=True)]
+    made = [Mutant(int(line.partition(" -ctrl ")[2].split()[2]), described(line)) for line in lines]
     return made, len(made) < count and len(every) < 2 * count
 
 
