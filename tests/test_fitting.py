@@ -27,7 +27,7 @@ from tactile_depth.chip.depth.zero_offset import zero_offset
 from tactile_depth.chip.gradient.flat_field import captured_gains
 from tactile_depth.chip.limits import MODELS
 from tactile_depth.chip.poisson.divergence import divergence
-from tactile_depth.chip.tactile_depth import slope_codes, solve
+from tactile_depth.chip.tactile_depth import slope_tables, slopes_and_light, solve
 from tactile_depth.depth.reference import pixel_terms, polynomials_at_pixels, weighted
 from tactile_depth.pictures.frames import read_picture
 from tactile_depth.sensor.scenes import LIGHTS
@@ -493,7 +493,8 @@ def test_captures_bring_the_zero_of_a_real_gel_back_when_its_light_has_drifted(r
         return np.clip(np.rint(frame * drift), 0, 255).astype(np.uint8)
 
     def depth_codes(frame: Any, gains: np.ndarray) -> Any:
-        return solve(divergence(slope_codes(frame, sensor, config, gains=gains), config.neumann), config)
+        slopes, _ = slopes_and_light(frame, config, slope_tables(sensor, config, gains))
+        return solve(divergence(slopes, config.neumann), config)
 
     def depth_mm(frame: Any, gains: np.ndarray, zero: np.ndarray | None = None) -> Any:
         codes = depth_codes(frame, gains)

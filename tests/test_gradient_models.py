@@ -33,7 +33,7 @@ from tactile_depth.chip.gradient.polynomial_gradient import (
 )
 from tactile_depth.chip.limits import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIAL
 from tactile_depth.chip.poisson.divergence import divergence
-from tactile_depth.chip.tactile_depth import slope_codes, slope_tables, solve
+from tactile_depth.chip.tactile_depth import slope_tables, solve, tactile_depth
 from tactile_depth.depth import reference
 from tactile_depth.sensor.sensor import CORRECTIONS, Sensor
 from tactile_depth.sensor.synthetic import synthetic
@@ -81,8 +81,8 @@ def test_depth_of_prepared_tables_is_that_of_the_calibration(choices: Any) -> No
     calibration = calibration.scaled(4.0, frames[0] if choices else None)
     tables = slope_tables(calibration, config)
     for level in (0, 90):
-        want = slope_codes(frames, calibration, config, dark_level=level)
-        result = slope_codes(frames, calibration, config, dark_level=level, tables=tables)
+        want = tactile_depth(frames, calibration, config, dark_level=level)
+        result = tactile_depth(frames, calibration, config, dark_level=level, tables=tables)
         np.testing.assert_array_equal(result, want)
 
 

@@ -17,7 +17,7 @@ from tactile_depth.chip.gradient.light_gains import Light, LightFilter
 from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.chip.tactile_depth import slope_codes, solve, zeroed
+from tactile_depth.chip.tactile_depth import slopes_and_light, solve, zeroed
 from tactile_depth.chip.video.frame_guard import Frame, frame_guard
 from tactile_depth.sensor.synthetic import synthetic
 from tb.axil import RegisterClient
@@ -101,7 +101,7 @@ class Scoreboard:
         `light` are their light gains (frames, 3), by default those of a filter at reset.
         """
         rgb = unpack(words).reshape(-1, self.rows, self.columns, 3)
-        slopes = slope_codes(rgb, self.sensor, self.config, monitor, None, self.dark_level, content.slopes, light)
+        slopes, _ = slopes_and_light(rgb, self.config, content.slopes, monitor, self.dark_level, light)
         return solve(divergence(slopes, self.config.neumann), self.config, monitor)
 
     def model(

@@ -37,7 +37,7 @@ from tactile_depth.chip.registers.axil_registers import AxilRegisters, Build, Ev
 from tactile_depth.chip.registers.register_map import TABLES
 from tactile_depth.chip.registers.table_banks import CAPTURES
 from tactile_depth.chip.table_entries import one_word, reference_entries
-from tactile_depth.chip.tactile_depth import Tables, slope_codes, solve, top_parameters, zeroed
+from tactile_depth.chip.tactile_depth import Tables, slopes_and_light, solve, top_parameters, zeroed
 from tactile_depth.chip.video.frame_guard import Word
 
 SETTINGS = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
@@ -184,7 +184,7 @@ class ModelDevice:
         if self.light is not None:
             light = self.registers.values["LIGHT"]
             self.light.follow, self.light.rate = bool(light & 1), light >> 4 & 7
-        slopes = slope_codes(picture[None], None, config, monitor, tables=tables, light=self.light)  # type: ignore[arg-type]
+        slopes, _ = slopes_and_light(picture[None], config, tables, monitor, light=self.light)
         depth = solve(divergence(slopes, config.neumann), config, monitor)
         self._capture("reference", picture)
         self._capture("zero", depth[0])

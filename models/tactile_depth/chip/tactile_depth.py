@@ -152,7 +152,8 @@ def tactile_depth(
     -------
     int64 array (..., rows, columns); depth_px = code * config.depth_lsb_px
     """
-    slopes = slope_codes(frames, calibration, config, monitor, gains, dark_level, tables, light)
+    tables = slope_tables(calibration, config, gains) if tables is None else tables
+    slopes, _ = slopes_and_light(frames, config, tables, monitor, dark_level, light)
     return zeroed(solve(divergence(slopes, config.neumann), config, monitor), config, monitor, zero)
 
 
@@ -163,21 +164,6 @@ def zeroed(
     if not config.zero_offset:
         return codes
     return zero_offset(codes, no_zero(config) if zero is None else zero, config, monitor)
-
-
-def slope_codes(
-    frames: np.ndarray,
-    calibration: Calibration,
-    config: Configuration,
-    monitor: Monitor | None = None,
-    gains: np.ndarray | None = None,
-    dark_level: int = 0,
-    tables: Tables | None = None,
-    light: np.ndarray | LightFilter | None = None,
-) -> np.ndarray:
-    """Return the slope codes of frames, int64 (..., rows, columns, 2), by the gradient model of the configuration."""
-    tables = slope_tables(calibration, config, gains) if tables is None else tables
-    return slopes_and_light(frames, config, tables, monitor, dark_level, light)[0]
 
 
 def slopes_and_light(
