@@ -19,7 +19,6 @@ from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.tactile_depth import slopes_and_light, solve, zeroed
 from tactile_depth.chip.video.frame_guard import Frame, frame_guard
-from tactile_depth.sensor.synthetic import synthetic
 from tb.axil import RegisterClient
 from tb.axis import AxisMonitor
 from tb.pixels import unpack
@@ -75,7 +74,6 @@ class Scoreboard:
         self.config, self.watch = config, watch
         self.rows, self.columns = config.rows, config.columns
         self.pixels = self.rows * self.columns
-        self.sensor = synthetic(config.bits_per_channel)
         self.reset()
 
     def reset(self) -> None:

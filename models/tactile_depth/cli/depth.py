@@ -47,6 +47,11 @@ UNITS = {
     "contact",
     "volume_mm3": "sum of the depths in the area times the area of a pixel",
 }
+CONTACT = (
+    *("touching", "peak_mm", "peak_px", "peak_position_mm", "area_threshold_mm", "area_mm2", "volume_mm3"),
+    *("centroid_px", "centroid_mm", "is_central"),
+)
+"""What a report says of a contact."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -165,20 +170,12 @@ def _describe_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> dict[
 
 def _describe(result: Result) -> dict[str, Any]:
     contact = result.contact
+    described = {name: getattr(contact, name) for name in CONTACT}
+    if not contact.touching:
+        described |= {"area_threshold_mm": None, "is_central": None}
     return {
         "peak_height_mm": float(result.height_mm.max()),
-        "contact": {
-            "touching": contact.touching,
-            "peak_mm": contact.peak_mm,
-            "peak_px": list(contact.peak_px),
-            "peak_position_mm": contact.peak_position_mm,
-            "area_threshold_mm": contact.area_threshold_mm if contact.touching else None,
-            "area_mm2": contact.area_mm2,
-            "volume_mm3": contact.volume_mm3,
-            "centroid_px": list(contact.centroid_px),
-            "centroid_mm": contact.centroid_mm,
-            "is_central": contact.is_central if contact.touching else None,
-        },
+        "contact": described,
         "warnings": list(*result.warnings),
         "light_gains": None if result.light_gains is None else result.light_gains.tolist(),
         "saturations": result.saturations,

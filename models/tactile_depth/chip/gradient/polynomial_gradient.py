@@ -112,24 +112,19 @@ def coefficients(words: np.ndarray, rows: int, columns: int, word_width: int, fi
     """Return the upper `width` bits of the polynomials modulo 2**(word_width + fine_bits): (2, 3, rows, columns)."""
     total = word_width + fine_bits
     half = np.int64(1) << (total - 1)
-    wrapped = ((_evaluate(words, rows, columns, fine_bits) + half) & (2 * half - 1)) - half  # as in the registers
-    return wrapped >> (total - width)
-
-
-def _evaluate(words: np.ndarray, rows: int, columns: int, fine_bits: int) -> np.ndarray:
-    """Return the values of the polynomials over the grid modulo 2**64: (2, 3, rows, columns)."""
     aligned = np.where(IS_FINE, words, words << fine_bits)
     c, r = np.arange(columns), np.arange(rows)[:, None]
     c2, r2 = c * (c - 1) // 2, r * (r - 1) // 2
     falling_c, falling_r = (1, c, c2, c2 * (c - 2) // 3), (1, r, r2, r2 * (r - 2) // 3)
-    with np.errstate(over="ignore"):
-        return np.sum(
+    with np.errstate(over="ignore"):  # as in the registers
+        values = np.sum(
             [
                 aligned[..., n, None, None] * (falling_c[across] * falling_r[down] * np.ones((rows, columns), np.int64))
                 for n, (across, down) in enumerate(DEGREES)
             ],
             axis=0,
         )
+        return (((values + half) & (2 * half - 1)) - half) >> (total - width)
 
 
 def correction_codes(deviation: np.ndarray) -> np.ndarray:

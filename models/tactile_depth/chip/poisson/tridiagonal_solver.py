@@ -101,8 +101,3 @@ def latency_by_core(size: int) -> list[tuple[str, int]]:
         ("dst_inverse, of the first row out", inverse_latency(size)),
         ("row_reorder, waits for the whole row", size - 1 + ROW_REORDER),
     ]
-
-
-def latency(size: int) -> int:
-    """Return the cycles from the last divergence word of a frame to its first depth, for any gaps; rows of `size`."""
-    return sum(cycles for _, cycles in latency_by_core(size))
