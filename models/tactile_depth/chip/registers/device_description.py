@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.registers.register_map import REGISTERS
 
-DEPTH_UNIT, SLOPE_UNIT = REGISTERS["DEPTH_UNIT"], REGISTERS["SLOPE_UNIT"]
+DEPTH_UNIT = REGISTERS["DEPTH_UNIT"]  # SLOPE_UNIT has the same fields
 MANTISSA_BITS = DEPTH_UNIT.field("mantissa").width
 NM_PER_MM = 1_000_000
 
