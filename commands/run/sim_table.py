@@ -41,8 +41,12 @@ def check_registers(played: bench.Played, total: int, clips: Mapping[str, int], 
     `timed`: there are no stalls, and no camera, with which the latency counts from the first pixel of the grid.
     """
     clipped = min(sum(clips.values()), 2**32 - 1)
-    expected: dict[str, int | None]
-    expected = {"frames_in": total, "frames_out": total, "frames_dropped": 0, "saturations": clipped}
+    expected: dict[str, int | None] = {
+        "frames_in": total,
+        "frames_out": total,
+        "frames_dropped": 0,
+        "saturations": clipped,
+    }
     if timed:
         expected["first_depth_latency"] = latencies(played)["first_depth_latency_cycles"][-1]
     return [

@@ -17,7 +17,6 @@ requirements-baselines.txt.
 
 import gc
 import importlib.metadata
-import importlib.util
 import math
 import multiprocessing
 import os

@@ -290,12 +290,11 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
     ]
     rows: list[Row] = []
     broken: list[str] = []
-    with progress_bar(total=len(plan)) as bar:
-        for extreme, solver in plan:
+    with progress_bar(plan) as bar:
+        for extreme, solver in bar:
             bar.set_description(f"{extreme.name}, {solver}")
             rows.append(measure(extreme, solver, size, simulator))
             broken += faults(extreme, rows[-1])
-            bar.update()
     count = SHORT_MODEL if short else LONG_MODEL
     for solver in COLUMNS:
         with progress_bar(total=count, desc=f"model, {solver}", unit="frame") as bar:

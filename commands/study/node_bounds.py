@@ -14,6 +14,7 @@ range. An input within the formats lies in both boxes, so a word never exceeds t
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -150,7 +151,7 @@ class _Survey:
         self.config = config
         self.neumann = config.neumann
         self.progress = progress
-        self.worst: dict[str, _Worst] = {}
+        self.worst: defaultdict[str, _Worst] = defaultdict(_Worst)
         self.slope = config.gradient_limit / config.gradient_lsb  # largest slope and depths, in codes
         self.depth_in = config.deepest_px / config.gradient_lsb  # depth field whose Laplacian enters
         self.depth_out = config.deepest_px / config.depth_lsb_px
@@ -166,9 +167,6 @@ class _Survey:
         self.from_row = np.linalg.inv(self.to_row)  # (column, mode's position): modes of a row of depth codes
         self.mode_l1, self.mode_variation = l1(self.modes), _variation(self.modes, self.neumann)
         self.mode_depth = l1(self.from_row) * self.depth_out  # largest words at the input of the inverse row transform
-
-    def at(self, node: str) -> _Worst:
-        return self.worst.setdefault(node, _Worst())
 
     def outer(self, column: np.ndarray, mode: int) -> np.ndarray:
         return np.outer(column, self.modes[:, mode])
@@ -188,7 +186,7 @@ class _Survey:
             def alone(word: int, response: np.ndarray = response) -> np.ndarray:
                 return np.outer(middle, response[:, word])
 
-            self.at(name).see(slopes * self.slope, depths * self.depth_in, alone)
+            self.worst[name].see(slopes * self.slope, depths * self.depth_in, alone)
 
     def column_norm(self, response: np.ndarray, mode: int | slice | np.ndarray) -> np.ndarray:
         """Return the norms over slopes of words, from their responses to the column of a row mode: (rows, words)."""
@@ -235,7 +233,7 @@ class _Survey:
         modes = {row: self.column_norm(source.T, slice(None)) for row, source in sources.items()}
         most = max(1, TRIED // (self.config.rows * size * size))
         for name, words in self.inverse.items():
-            worst = self.at(name)
+            worst = self.worst[name]
             if name == output:
                 worst.depths = float((l1(self.from_row @ words) * self.depth_out).max())
                 row = max(sources, key=lambda row: float(deepest[row].max()))
@@ -293,7 +291,7 @@ class _Spectral(_Survey):
                 word, mode = divmod(index, size)
                 return self.outer(response[:, word], mode)
 
-            self.at(name).see(slopes.ravel(), depths.ravel() * self.depth_in, of_column)
+            self.worst[name].see(slopes.ravel(), depths.ravel() * self.depth_in, of_column)
 
         inverse = Responses()
         # (mode's position, row in Makhoul order)
@@ -316,7 +314,7 @@ class _Spectral(_Survey):
                 def of_mode(word: int, response: np.ndarray = response, mode: int = mode) -> np.ndarray:
                     return self.outer(response[:, word], mode)
 
-                self.at(name).see(self.column_norm(response, mode), lengths[name] * self.mode_depth[mode], of_mode)
+                self.worst[name].see(self.column_norm(response, mode), lengths[name] * self.mode_depth[mode], of_mode)
             for row in rows:
                 sources[row][mode] = column[:, position[row]]
             self.progress(1 / size)
@@ -358,7 +356,7 @@ class _Tridiagonal(_Survey):
                 wanted[node] = row, mode
                 return columns[node]
 
-            self.at(node).see(slopes, self.in_depths(node, row), later)
+            self.worst[node].see(slopes, self.in_depths(node, row), later)
 
         sources = {row: np.empty((size, rows)) for group in self.groups() for row in group}
         for first in starts:
@@ -374,7 +372,7 @@ class _Tridiagonal(_Survey):
             self.run(first, min(first + block, rows), collect)
             self.progress(1 / len(starts) / 2)
         for node, (_, mode) in wanted.items():
-            self.at(node).response = self.outer(columns[node], mode)
+            self.worst[node].response = self.outer(columns[node], mode)
         return sources
 
     def run(self, first: int, stop: int, hear: Callable[[str, int, np.ndarray], None]) -> None:

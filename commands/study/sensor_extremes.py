@@ -7,6 +7,7 @@ Each row is a stream through the RTL, and its worst picture by itself through `t
 import warnings
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -393,16 +394,13 @@ def run(request: run_request.Request, out: Path, rtl: bool) -> int:
     """Run every row at the words of the request and at the narrowest ones, write the results, return the status."""
     files.check(out, RESULTS)
     drawn = draw(request)
-    every = configurations(request, drawn)
     rows: list[SensorRow] = []
     broken: list[str] = []
-    with progress_bar(total=len(every) * len(CASES)) as bar:
-        for each in every:
-            for case in CASES:
-                bar.set_description(case.name)
-                rows.append(measure(case, each, drawn, rtl))
-                broken += faults(case, rows[-1])
-                bar.update()
+    with progress_bar([*product(configurations(request, drawn), CASES)]) as bar:
+        for each, case in bar:
+            bar.set_description(case.name)
+            rows.append(measure(case, each, drawn, rtl))
+            broken += faults(case, rows[-1])
     sensor = on_grid(drawn, untouched_picture(drawn, DIM))
     config = run_request.configure(request, sensor)
     lights = long_state.light_states(drawn, sensor, config, DIM)
