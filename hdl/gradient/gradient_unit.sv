@@ -8,7 +8,7 @@
 // the light; with Corrections of slopes by colour. Without FlatField colours are as the camera sent them. Stream in:
 // pixels R in 23:16, B in 15:8, G in 7:0, raster order. Stream out: slopes gx along the row and gy down the column,
 // signed codes of GradientWidth bits; the tables say how many are fraction bits. Latency:
-// models/tactile_depth/chip/latency.py; a gap in, a gap out. Model: slope_codes in
+// models/tactile_depth/chip/latency.py; a gap in, a gap out. Model: slopes_and_light in
 // models/tactile_depth/chip/tactile_depth.py.
 
 `default_nettype none
