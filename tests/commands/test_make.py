@@ -82,7 +82,7 @@ def test_the_makefile_has_a_target_for_every_command() -> None:
 
 
 def test_help_lists_every_target_in_groups_and_begins_with_five() -> None:
-    printed = subprocess.run(["make", "-C", str(ROOT), "help"], capture_output=True, text=True, check=True).stdout
+    printed = make(ROOT, "help").stdout
     names = re.findall(r"^  ([a-z-]+) ", printed, re.MULTILINE)
     assert sorted(names) == targets()
     assert names[:5] == ["sim", "test", "report", "calibrate", "wrap"]
