@@ -17,12 +17,13 @@ from tb.settings import RunSettings
 
 REPORTS = ("--junitxml=build/junit.xml", "--durations=10", "--durations-min=20")
 WIDE = {"COLUMNS": "200"}  # so that the summary shows the whole message
+WORKERS = str(len(os.sched_getaffinity(0)) + 1)  # one more than cores, because tests of lines and signals wait
 WITH_LINT = "not regress and not codes and not netlist"
 
 
 def pytest(tests: Sequence[str] = ()) -> list[str]:
     """Return the command that runs these tests, or the whole suite, and lint if it is among them."""
-    return [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", *REPORTS, "-m", WITH_LINT, *tests]
+    return [sys.executable, "-m", "pytest", "-n", WORKERS, "--dist", "worksteal", *REPORTS, "-m", WITH_LINT, *tests]
 
 
 def tests_of(cores: Sequence[str]) -> list[str]:
