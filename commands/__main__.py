@@ -16,7 +16,7 @@ from tactile_depth.base.errors import InputError
 COMMANDS = {
     begins[1]: path.parent.name
     for path in sorted(Path(__file__).parent.glob("*/*.py"))
-    if (begins := re.match(r'# SPDX.*\n"""`make ([a-z-]+)', path.read_text()))
+    if (begins := re.match(r'# SPDX.*\n"""`make ([a-z-]+)', path.open().read(99)))
 }
 """Commands and their folders: modules whose docstring begins with `make <command>`."""
 

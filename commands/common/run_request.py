@@ -14,7 +14,6 @@ from typing import Any
 
 from commands.common import simulator as simulation
 from commands.common import variables
-from commands.common.slopes import deepest
 from commands.common.variables import Several
 from tactile_depth.base.errors import InputError
 from tactile_depth.base.npy import is_file
@@ -319,6 +318,8 @@ def configure(request: Request, calibration: Sensor) -> Configuration:
     depth_range = request.deepest_mm
     depth_range_px: float | None
     if depth_range == math.inf:
+        from commands.common.slopes import deepest  # scipy's transforms, which few requests need
+
         check_grid(request)
         depth_range_px = deepest(request.rows, request.columns, neumann) * calibration.gradient_limit
     else:
