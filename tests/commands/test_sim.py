@@ -64,6 +64,7 @@ def test_every_grid_on_every_simulator(tmp_path: Path, simulator: str, size: int
 )
 def test_rectangles(tmp_path: Path, rows: int, columns: int, boundary: str, chosen: Any) -> None:
     words = ["FRAMES=contacts", f"ROWS={rows}", f"COLS={columns}", f"SIM={chosen}"]
+    words.append("DATA_WIDTH=22")  # of a length that no preset and no study has
     report = run(tmp_path, *words, f"BOUNDARY={boundary}", "SOLVER=tridiagonal")
     assert report["grid"] == [rows, columns]
     assert only(report["frame_interval_cycles"][1:]) == rows * columns
