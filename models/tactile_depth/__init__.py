@@ -14,11 +14,13 @@ subpackage for each folder of hdl/; a wheel leaves out those that nothing public
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
 
 from tactile_depth.base.moved import refuse_old_paths
 
+TYPE_CHECKING = False  # true for type checkers; typing takes half of the time of this import
 if TYPE_CHECKING:
+    from typing import Any
+
     __version__: str
     from tactile_depth.base.errors import InputError, InputWarning
     from tactile_depth.calibrate.ball_press import BallPress

@@ -4,9 +4,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
-from importlib.abc import MetaPathFinder
-from types import ModuleType
 
 ROOMS = {
     "base": "by_value errors files interruption npy",
@@ -24,10 +21,10 @@ GONE = ("accuracy", "certificate", "cost", "devices", "luts", "parts")
 """Modules that only commands of the repository used: they lie in commands/ now."""
 
 
-class Moved(MetaPathFinder):
+class Moved:
     """Finder that comes after all others, and refuses old paths."""
 
-    def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> None:
+    def find_spec(self, name: str, path: object, target: object = None) -> None:
         package, _, inside = name.partition(".")
         old, dot, rest = inside.partition(".")
         if package == __package__.partition(".")[0] and old in (*NEW, *GONE):
