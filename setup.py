@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What pyproject.toml cannot say: the modules of a wheel, and its description, README.md with absolute links.
+"""Modules of a wheel, and its description, README.md with absolute links; pyproject.toml has all else.
 
 A wheel holds the modules that the public ones reach: those that `tactile_depth` names, the command, and each whose path
 stands in README.md, in pages or in examples. The other modules model cores for testbenches and commands of the

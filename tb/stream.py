@@ -474,13 +474,9 @@ async def check_frame_memory(dut: Any, words: Any, model: Any, latency: Any, *, 
 
 
 async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any:
-    """Drive the pins with one dict of values per cycle; return the values of all pins at the end of each cycle.
+    """Drive the pins with one dict of values per cycle; return lists of the values of all pins at the cycles' ends.
 
     Use it for cores without a stream. A pin `en` pauses at random, and only cycles with `en` count.
-
-    Returns
-    -------
-    dict of pin to list of LogicArray
     """
     chance = random.Random(cocotb.RANDOM_SEED)
     edge, write, has_en = RisingEdge(dut.clk), pins.Driver(dut), hasattr(dut, "en")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a dataclass declares beside the type of a field, in `Annotated`."""
+"""Declarations of a dataclass beside the type of a field, in `Annotated`."""
 
 from collections.abc import Mapping
 from functools import cache

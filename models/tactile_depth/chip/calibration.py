@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Calibration(Protocol):
-    """What models, tables and headers take of a `tactile_depth.sensor.sensor.Sensor`, whose docstring describes it."""
+    """Part of a `tactile_depth.sensor.sensor.Sensor`, described there, that models, tables and headers take."""
 
     @property
     def name(self) -> str: ...

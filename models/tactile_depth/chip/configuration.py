@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The configuration of a pipeline, the only source of its numbers.
 
-Every fixed-point format, HDL parameter and expected latency is derived here from a few choices. Formats
-follow from two bounds: no slope exceeds `gradient_limit`, no depth exceeds `depth_range_px`. Every step from
-slope to depth is linear, so the largest value of a node is an L1 norm. The norm is computed by the
-bit-accurate model, run on unit vectors of floats (models/tactile_depth/chip/common/td_round_saturate.py).
+Every fixed-point format, HDL parameter and expected latency is derived here from a few choices. Formats follow from two
+bounds: no slope exceeds `gradient_limit`, no depth exceeds `depth_range_px`. Every step between them is linear, so the
+largest value of a node is an L1 norm, computed by the bit-accurate model on unit vectors of floats (bounds.py).
 """
 
 from __future__ import annotations
@@ -221,8 +220,6 @@ class Configuration:
     def bin_levels(self) -> int:
         """Grey levels of a colour that one entry of the gradient table holds for."""
         return 256 >> self.bits_per_channel
-
-    # Widths.
 
     @property
     def coefficient(self) -> Format:
@@ -480,12 +477,9 @@ class Configuration:
         }
 
 
-COLOURS: dict[str, Any] = {"flat_field": True, "gradient_model": "cubic", "light_gains": True}
-"""Choices for colours of a real sensor, which are relative to a reference and to its light."""
-CHOICES = {name: choice.of(name) for name, choice in declared(Configuration, Choice).items()}
-"""Choices that users name, by field."""
-NUMBERS = {name: number for name, number in CHOICES.items() if isinstance(number, Number)}
-"""Whole numbers that are declared with a range, by field."""
+COLOURS: dict[str, Any] = {"flat_field": True, "gradient_model": "cubic", "light_gains": True}  # of a real sensor
+CHOICES = {name: choice.of(name) for name, choice in declared(Configuration, Choice).items()}  # that users name
+NUMBERS = {name: number for name, number in CHOICES.items() if isinstance(number, Number)}  # with a range
 SOLVER_NUMBERS = {name: number for name, number in NUMBERS.items() if not number.colours}
 DEFAULTS: dict[str, int] = {name: getattr(Configuration, name) for name in NUMBERS}
 WIDTHS = {name: number for name, number in NUMBERS.items() if isinstance(number, Width)}
@@ -504,9 +498,3 @@ class ExactConfiguration(Configuration):
 
     def _check_formats(self, columns: Argument, data_width: Argument) -> None:
         """Accept all: there are none."""
-
-
-def is_grid_of_hardware(rows: int, columns: int, solver: str) -> bool:
-    """Return True for a grid that the hardware can have with a solver."""
-    fewest, most = COLUMNS.get(solver, (1, 0))
-    return fewest <= columns <= most and columns.bit_count() == 1 and ROWS[0] <= rows <= ROWS[1]

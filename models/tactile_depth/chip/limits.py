@@ -67,3 +67,9 @@ COEFFICIENTS, CUBIC = (2, 3, 6), (2, 3, 10)
 """Coefficients of the models `quadratic` and `cubic`: slope, colour, term."""
 SAMPLES = 16
 """Positions along a side of a grid: what is true of polynomials there is true of the whole grid."""
+
+
+def is_grid_of_hardware(rows: int, columns: int, solver: str) -> bool:
+    """Return True for a grid that the hardware can have with a solver."""
+    fewest, most = COLUMNS.get(solver, (1, 0))
+    return fewest <= columns <= most and columns.bit_count() == 1 and ROWS[0] <= rows <= ROWS[1]

@@ -51,7 +51,7 @@ CONTACT = (
     *("touching", "peak_mm", "peak_px", "peak_position_mm", "area_threshold_mm", "area_mm2", "volume_mm3"),
     *("centroid_px", "centroid_mm", "is_central"),
 )
-"""What a report says of a contact."""
+"""Entries of a contact in a report."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

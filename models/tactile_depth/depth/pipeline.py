@@ -12,14 +12,14 @@ import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import Configuration, ExactConfiguration, is_grid_of_hardware
+from tactile_depth.chip.configuration import Configuration, ExactConfiguration
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.depth.zero_offset import exact_zero, no_zero
 from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gains, require_light
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.hardware_files import write_hardware
-from tactile_depth.chip.limits import BOUNDARIES, LIGHT_GAIN, Boundary, Model, Solver
+from tactile_depth.chip.limits import BOUNDARIES, LIGHT_GAIN, Boundary, Model, Solver, is_grid_of_hardware
 from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.chip.tactile_depth import zeroed
 from tactile_depth.depth.result import Recorder, Result
