@@ -84,7 +84,7 @@ def test_the_arrays_of_a_copied_sensor_cannot_be_written() -> None:
 def test_the_arrays_of_a_sensor_cannot_be_written() -> None:
     mine = np.zeros((2, 3, 6))
     sensor = replace(td.load("gelsight-mini"), coefficients=mine, reference=np.zeros((24, 32, 3), np.uint8))
-    for name in ("gradient", "coefficients", "cubic", "corrections", "reference", "lighting"):
+    for name in ("gradient", "coefficients", "cubic", "corrections", "reference", "lighting", "untouched"):
         with pytest.raises(ValueError, match="read-only"):
             getattr(sensor, name)[0] = 1
     mine[:] = 1  # the array of the caller stays as it was

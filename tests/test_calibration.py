@@ -203,7 +203,7 @@ def test_a_file_that_is_no_calibration_is_named(tmp_path: Path, case: str) -> No
         ({"pixel_pitch_mm": "0.1"}, "<U3"),
         ({"pixel_pitch_mm": 1e-300}, "accepted are 1e-06 to 1000"),
         ({"pixel_pitch_mm": 1e300}, "accepted are 1e-06 to 1000"),
-        ({"format_version": 4}, "`format_version` is 4: accepted are 2, 3: a newer file needs a newer package"),
+        ({"format_version": 5}, "`format_version` is 5: accepted are 2, 3, 4: a newer file needs a newer package"),
         ({"format_version": 2.0}, "`format_version` is float64"),
         ({"camera_size": np.array((0, 320))}, "(0, 320): accepted are rows and columns"),
         ({"camera_size": np.array((240.0, 320.0))}, "(240.0, 320.0): accepted"),
@@ -216,6 +216,9 @@ def test_a_file_that_is_no_calibration_is_named(tmp_path: Path, case: str) -> No
         ({"cap_height_lut": np.zeros(2)}, "`cap_height_lut` is float64 (2,)"),
         ({"cap_height_lut": np.array([-1.0, 0, 9])}, "`cap_height_lut` has negative values"),
         ({"lighting": np.zeros((2, 2, 3))}, "`lighting` is float64 (2, 2, 3)"),
+        ({"view": np.array((0.7, 1.2))}, "`view` is 0.7, 1.2: accepted are shares of the full picture's width"),
+        ({"view": np.array(0.7)}, "`view` is float64 ()"),
+        ({"untouched": np.full((24, 32, 3), 300.0)}, "`untouched` reaches from 300 to 300: accepted are grey levels"),
         ({"lighting": np.full((4, 4, 3), np.nan)}, "`lighting` holds NaN"),
     ],
 )

@@ -53,7 +53,7 @@ from tactile_depth.depth import reference
 from tactile_depth.depth.reference import pixel_terms
 from tactile_depth.pictures.pictures import Picture
 from tactile_depth.sensor.calibration_file import LONGEST_EXPOSURE_US, PIXEL_ASPECTS, PIXEL_PITCHES_MM
-from tactile_depth.sensor.sensor import CORRECTIONS, TABLE_BITS, Camera, Sensor, lighting
+from tactile_depth.sensor.sensor import CORRECTIONS, TABLE_BITS, Camera, Sensor, equal_areas, lighting
 
 FEWEST, FEWEST_MEASURED = 8, 2  # presses; those that lie completely in the middle square
 DRAWS, DRAWN_OUT = 12, 6  # choices of presses for each number of them, and presses that are measured in each
@@ -222,6 +222,7 @@ def fit_presses(
         camera=Camera(rows, columns, presses.pixel_format, exposure_us=exposure_us),
         height_errors={model: evaluation.height_error(model) for model in models},
         lighting=lighting(presses.background),
+        untouched=equal_areas(presses.background),
     )
     return Fit(sensor, evaluation, without)
 

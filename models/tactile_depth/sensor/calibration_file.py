@@ -21,10 +21,12 @@ from tactile_depth.sensor.sensor import (
     PIXEL_FORMATS,
     ROUNDING,
     TABLE_BITS,
+    UNTOUCHED_AREAS,
     Camera,
     HeightError,
     Sensor,
 )
+from tactile_depth.sensor.view import SMALLEST_VIEW, is_share
 
 FOLDER = Path(__file__).resolve().parent / "calibrations"
 BUILT_IN = ("synthetic", "gelsight-mini")
@@ -41,13 +43,15 @@ KEYS = (
     *OLD_KEYS,
     *CAMERA_KEYS,
     "lighting",
+    "untouched",
+    "view",
     "cubic",
     "corrections",
     "pixel_aspect",
     *(f"{what}_{model}" for what in ("fitted_slope", "cap_height") for model in MODELS),
 )
 
-READ_VERSIONS = (2, FORMAT_VERSION)
+READ_VERSIONS = tuple(range(2, FORMAT_VERSION + 1))
 
 Arrays = dict[str, np.ndarray]
 
@@ -101,7 +105,25 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
         pixel_aspect=_limited(path, arrays, "pixel_aspect", PIXEL_ASPECTS, "width over height")
         if "pixel_aspect" in arrays
         else 1.0,
+        view=_view(path, arrays) if "view" in arrays else None,
+        untouched=_untouched(path, arrays) if "untouched" in arrays else None,
     )
+
+
+def _view(path: Path, arrays: Arrays) -> tuple[float, float]:
+    width, height = map(float, _finite(path, arrays, "view", (2,)))
+    if not (is_share(width) and is_share(height)):
+        accepted = f"shares of the full picture's width and height, {SMALLEST_VIEW:g} to 1"
+        raise InputError(f"{path}: `view` is {width:g}, {height:g}: accepted are {accepted}")
+    return width, height
+
+
+def _untouched(path: Path, arrays: Arrays) -> np.ndarray:
+    untouched = _finite(path, arrays, "untouched", (*UNTOUCHED_AREAS, 3))
+    if untouched.min() < 0 or untouched.max() > 255:
+        reach = f"{untouched.min():.3g} to {untouched.max():.3g}"
+        raise InputError(f"{path}: `untouched` reaches from {reach}: accepted are grey levels, 0 to 255")
+    return untouched
 
 
 def _arrays(path: Path) -> Arrays:
@@ -120,9 +142,8 @@ def _arrays(path: Path) -> Arrays:
 def _version(path: Path, version: np.ndarray) -> None:
     if version.shape != () or version.dtype.kind not in "iu" or int(version) not in READ_VERSIONS:
         shown = int(version) if version.shape == () and version.dtype.kind in "iu" else version.dtype
-        raise InputError(
-            f"{path}: `format_version` is {shown}: accepted are 2, {FORMAT_VERSION}: a newer file needs a newer package"
-        )
+        accepted = f"accepted are {', '.join(map(str, READ_VERSIONS))}: a newer file needs a newer package"
+        raise InputError(f"{path}: `format_version` is {shown}: {accepted}")
 
 
 def _old_camera(path: Path, camera_size: tuple[int, int] | None) -> Camera:

@@ -27,13 +27,14 @@ from tactile_depth.chip.limits import (
 if TYPE_CHECKING:
     from tactile_depth.chip.configuration import Configuration
 
-FORMAT_VERSION = 3
+FORMAT_VERSION = 4
 PIXEL_FORMATS = tuple(FORMATS)
 TABLE_BITS = (1, 6)
 CORRECTIONS = (*(1 << CORRECTION_BITS,) * 3, 2)  # red, green, blue; slope
 ROUNDING = 2.0**-8  # largest relative increase of a slope by rounding to a table's format
 ASPECTS_AGREE = 0.005  # largest relative difference between the aspect ratios of a picture and of the calibrated camera
 LIGHTING_BLOCKS = (4, 4)  # rows and columns of `Sensor.lighting`
+UNTOUCHED_AREAS = (24, 32)  # rows and columns of `Sensor.untouched`
 # Largest RMS difference between two lightings of one sensor. On the presses of gelslam a contact changes it by 0.06
 # at most; exchanged colours change it by 0.14 to 0.31, an upside-down picture by 0.18, a uniform grey picture by 0.25.
 LIGHTING_AGREES = 0.12
@@ -129,6 +130,11 @@ class Sensor(ByValue):
     pixel_aspect : float
         Width of a pixel over its height. The models give the change of depth from pixel to pixel, in heights of a
         pixel: dz/dx times this, and dz/dy.
+    view : (float, float), or None
+        Shares of the width and of the height of the sensor's full picture that the camera's pictures show, around its
+        middle; None: unknown.
+    untouched : float64 array (`UNTOUCHED_AREAS`, 3), or None
+        Grey levels of the calibration's own picture without contact, as means of equal areas.
     """
 
     name: str
@@ -146,9 +152,11 @@ class Sensor(ByValue):
     cubic: Floats | None = None
     corrections: Floats | None = None
     pixel_aspect: float = 1.0
+    view: tuple[float, float] | None = None
+    untouched: Floats | None = None
 
     def __post_init__(self) -> None:
-        for name in ("gradient", "coefficients", "reference", "lighting", "cubic", "corrections"):
+        for name in ("gradient", "coefficients", "reference", "lighting", "cubic", "corrections", "untouched"):
             if (array := getattr(self, name)) is not None:
                 view = np.asarray(array).view()
                 view.flags.writeable = False
@@ -355,7 +363,7 @@ class Sensor(ByValue):
         return 2.0 ** math.ceil(math.log2(largest)) if largest > 0 else 1.0
 
     def save(self, path: str | Path) -> None:
-        """Write the calibration to an `.npz` of format version 3, without the reference; `load` reads it.
+        """Write the calibration to an `.npz` of format version 4, without the reference; `load` reads it.
 
         Raises
         ------
@@ -387,6 +395,8 @@ class Sensor(ByValue):
             "corrections": None if self.corrections is None else self.corrections.astype(np.float32),
             "largest_slope": self.largest_slope if self.models != ("lut",) else None,
             "lighting": self.lighting,
+            "untouched": None if self.untouched is None else self.untouched.astype(np.float32),
+            "view": None if self.view is None else np.array(self.view),
             "pixel_aspect": self.pixel_aspect if self.pixel_aspect != 1 else None,
         }
         for model, slope in self.fitted_slope.items():
@@ -435,6 +445,19 @@ def lighting(picture: np.ndarray) -> np.ndarray:
     whole = picture[: rows * height, : columns * width].astype(np.float64)
     blocks = whole.reshape(rows, height, columns, width, 3).mean(axis=(1, 3))
     return blocks / max(float(blocks.mean()), 1.0)
+
+
+def equal_areas(picture: np.ndarray, areas: tuple[int, int] = UNTOUCHED_AREAS) -> np.ndarray:
+    """Return means of a picture (rows, columns, 3) over equal areas, float64 (area rows, area columns, 3)."""
+    down, across = (_overlaps(length, count) for length, count in zip(picture.shape[:2], areas, strict=True))
+    means: np.ndarray = np.einsum("ir,rcn,jc->ijn", down, picture.astype(np.float64), across, optimize=True)
+    return means
+
+
+def _overlaps(length: int, count: int) -> np.ndarray:
+    """Return the share of each of `length` pixels in the mean over each of `count` equal parts."""
+    edges, pixels = np.linspace(0, length, count + 1)[:, None], np.arange(length)
+    return np.clip(np.minimum(edges[1:], pixels + 1) - np.maximum(edges[:-1], pixels), 0, None) * (count / length)
 
 
 def _refuse(argument: Argument, problem: str) -> None:
