@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from tactile_depth.device.errors import DeviceError
     from tactile_depth.device.frame import DeviceFrame
     from tactile_depth.pictures.identify import identify
-    from tactile_depth.sensor.built_in import load
-    from tactile_depth.sensor.samples import Sample, sample
+    from tactile_depth.sensor.built_in import calibrations, load
+    from tactile_depth.sensor.samples import Sample, sample, samples
     from tactile_depth.sensor.sensor import Camera, HeightError, Sensor
 
 __all__ = [
@@ -51,17 +51,19 @@ __all__ = [
     "Result",
     "Sample",
     "Sensor",
+    "calibrations",
     "evaluate",
     "fit",
     "identify",
     "load",
     "sample",
+    "samples",
 ]
 
 _MODULES = {
     "calibrate.ball_press": ("BallPress",),
     "pictures.identify": ("identify",),
-    "sensor.built_in": ("load",),
+    "sensor.built_in": ("calibrations", "load"),
     "device.device": ("Device",),
     "device.errors": ("DeviceError",),
     "device.frame": ("DeviceFrame",),
@@ -70,7 +72,7 @@ _MODULES = {
     "calibrate.fitting": ("fit",),
     "depth.pipeline": ("Pipeline",),
     "depth.result": ("Contact", "Result"),
-    "sensor.samples": ("Sample", "sample"),
+    "sensor.samples": ("Sample", "sample", "samples"),
     "sensor.sensor": ("Camera", "HeightError", "Sensor"),
 }
 _PLACES = {name: module for module, names in _MODULES.items() for name in names}

@@ -159,7 +159,13 @@ class Pipeline:
         if zero_offset and rest is not None:
             self._use_zero(rest)
 
-    def __call__(self, pictures: Pictures, stream: Stream | None = None, name: str = "") -> Result:
+    def __call__(
+        self,
+        pictures: Pictures,
+        stream: Stream | None = None,
+        name: str = "",
+        captured_at: float | Sequence[float] | np.ndarray | None = None,
+    ) -> Result:
         """Return the depth of pictures.
 
         Parameters
@@ -173,6 +179,8 @@ class Pipeline:
             itself.
         name : str
             Names the pictures in errors and warnings.
+        captured_at : float, or one for each picture, optional
+            When they were captured, in seconds since the epoch, for `Result.captured_at`.
 
         Returns
         -------
@@ -185,6 +193,7 @@ class Pipeline:
             The heights of a picture are uncertain.
         """
         frames, checked, single = self._checked(pictures, name or PICTURES)
+        captured = None if captured_at is None else _times(captured_at, len(frames))
         monitor, twin, followed = Monitor(), self._twin, None if stream is None else stream.light
         if self.arithmetic == "chip":
             slope_codes, streamed_codes, gains = twin.chip(frames, monitor, followed)
@@ -213,10 +222,13 @@ class Pipeline:
             streamed,
             self._warned(checked, gains, depth_mm, None if stream is None else stream.warned),
             self.sensor.pixel_aspect,
+            captured,
         )
         return result[0] if single else result
 
-    def stream(self, pictures: Iterable[Picture], stream: Stream | None = None) -> Iterator[Result]:
+    def stream(
+        self, pictures: Iterable[Picture | tuple[Picture, float]], stream: Stream | None = None
+    ) -> Iterator[Result]:
         """Give the depth of the pictures of a stream, as the hardware does.
 
         Light gains act on the next picture, and half the peak of a contact bounds the area of the next. A picture that
@@ -224,7 +236,7 @@ class Pipeline:
 
         Parameters
         ----------
-        pictures : iterable of pictures, each as for a call
+        pictures : iterable of pictures, each as for a call, or of pairs of a picture and its `captured_at`
         stream : Stream, optional
             The stream, `new_stream`, that the pictures continue.
 
@@ -239,10 +251,11 @@ class Pipeline:
             Once for each kind of doubt, and for the first picture that is left out.
         """
         stream = self.new_stream() if stream is None else stream
-        for picture in pictures:
+        for item in pictures:
+            picture, captured_at = _timed(item)
             stream.taken += 1
             try:
-                result = self(picture, stream, f"picture {stream.taken - 1}")
+                result = self(picture, stream, f"picture {stream.taken - 1}", captured_at)
             except UnusablePicture as error:
                 stream.failed += 1
                 if stream.failed == 1:
@@ -431,3 +444,21 @@ def require_zero_offset(config: Configuration) -> None:
 def is_whole(number: object) -> bool:
     """Return True for a whole number."""
     return isinstance(number, int | np.integer) and not isinstance(number, bool)
+
+
+def _timed(item: Picture | tuple[Picture, float]) -> tuple[Picture, float | None]:
+    """Return a picture of a stream and when it was captured."""
+    if isinstance(item, tuple):
+        if len(item) != 2 or not is_number(item[1]):
+            raise InputError(PICTURES, " have a tuple", accepted="a picture, or a picture and its seconds")
+        return item
+    return item, None
+
+
+def _times(captured_at: float | Sequence[float] | np.ndarray, frames: int) -> np.ndarray:
+    """Return the capture time of each frame, float64 (frames,)."""
+    times = np.asarray(captured_at)
+    if times.dtype.kind not in "iuf" or times.shape not in ((), (frames,)):
+        accepted = "seconds since the epoch, one number or one for each picture"
+        raise InputError(Argument("captured_at", captured_at), accepted=accepted)
+    return np.full(frames, times, np.float64)

@@ -207,6 +207,8 @@ class Result(ByValue):
         For each frame why its heights are uncertain.
     pixel_aspect : float
         Width of a grid pixel over its height, `pixel_pitch_mm`.
+    captured_at : float, float64 array (frames,) or None
+        When the picture was captured, in seconds since the epoch, if the call or the stream was told.
     """
 
     codes: Codes
@@ -223,6 +225,7 @@ class Result(ByValue):
     streamed: tuple[Record, ...] | None = None
     warnings: tuple[tuple[str, ...], ...] = ()
     pixel_aspect: float = 1.0
+    captured_at: float | Floats | None = None
 
     def __repr__(self) -> str:
         *frames, rows, columns = self.codes.shape
@@ -248,10 +251,11 @@ class Result(ByValue):
         self._require_frames()
         arrays = {name: getattr(self, name)[index] for name in ("codes", "depth_mm", "slopes", "dark")}
         gains = None if self.light_gains is None else self.light_gains[index]
+        captured = self.captured_at[index] if isinstance(self.captured_at, np.ndarray) else None
         frames = range(len(self))[index] if isinstance(index, slice) else (index,)
         streamed = None if self.streamed is None else tuple(self.streamed[frame] for frame in frames)
         warned = tuple(self.warnings[frame] for frame in frames) if self.warnings else ()
-        return replace(self, streamed=streamed, warnings=warned, light_gains=gains, **arrays)
+        return replace(self, streamed=streamed, warnings=warned, light_gains=gains, captured_at=captured, **arrays)
 
     def _require_frames(self) -> None:
         if self.codes.ndim == 2:

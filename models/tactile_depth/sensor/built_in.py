@@ -10,8 +10,13 @@ from tactile_depth.sensor.calibration_file import BUILT_IN, FOLDER, read_calibra
 from tactile_depth.sensor.sensor import Sensor
 
 
+def calibrations() -> tuple[str, ...]:
+    """Return the names of the built-in calibrations that `load` takes."""
+    return BUILT_IN
+
+
 def load(name_or_path: str | Path, camera_size: tuple[int, int] | None = None) -> Sensor:
-    """Return a built-in calibration by its name, or one from an `.npz` file.
+    """Return a built-in calibration by its name, one of `calibrations()`, or one from an `.npz` file.
 
     docs/calibration-file.md describes the format of the file. Files of version 0.1 hold only a pitch, `gradient` or
     `coefficients`, and `largest_slope`; they are read with a warning.

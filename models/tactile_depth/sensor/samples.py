@@ -38,13 +38,18 @@ class Sample(ByValue):
         return f"Sample({columns}x{rows}, height up to {self.height_mm.max():.3g} mm)"
 
 
+def samples() -> tuple[str, ...]:
+    """Return the names of the drawn contacts that `sample` takes."""
+    return tuple(BENCH)
+
+
 def sample(name: str = "ball", seed: int = 1) -> Sample:
     """Return a drawn contact.
 
     Parameters
     ----------
     name : str
-        A contact of the bench: ball, cylinder, cone, punch, ring, edge, two_balls, pyramid, seal, ..
+        One of `samples()`.
     seed : int
         Seed of the camera's noise.
 
