@@ -106,7 +106,7 @@ def summary(result: Result) -> str:
         peak, error = float(result.height_mm.max()), result.height_error
         spread = "" if error is None else f" +- {peak * error.relative:.2f}"
         parts = [f"peak height {peak:.2f}{spread} mm, contact area {contact.area_mm2:.1f} mm2"]
-        if any(result.warnings):
+        if result.warnings:
             parts.append("uncertain, as the warnings say")
         elif error is None:
             parts.append("error of the calibration not measured")
@@ -176,7 +176,7 @@ def _describe(result: Result) -> dict[str, Any]:
     return {
         "peak_height_mm": float(result.height_mm.max()),
         "contact": described,
-        "warnings": list(*result.warnings),
+        "warnings": list(result.warnings),
         "light_gains": None if result.light_gains is None else result.light_gains.tolist(),
         "saturations": result.saturations,
         "dark_pixels": int(result.dark.sum()),

@@ -122,6 +122,9 @@ class Pipeline:
         for name, number in numbers.items():
             if not is_whole(number):
                 raise InputError(Argument(name, number), accepted="a whole number, of type int")
+        require_flag(Argument("zero_offset", zero_offset))
+        if light_gains is not None:
+            require_flag(Argument("light_gains", light_gains))
         one_of(Argument("arithmetic", arithmetic), ARITHMETICS)
         one_of(Argument("boundary", boundary), BOUNDARIES)
         sensor.require_reference(reference is not None)
@@ -462,3 +465,9 @@ def _times(captured_at: float | Sequence[float] | np.ndarray, frames: int) -> np
         accepted = "seconds since the epoch, one number or one for each picture"
         raise InputError(Argument("captured_at", captured_at), accepted=accepted)
     return np.full(frames, times, np.float64)
+
+
+def require_flag(argument: Argument) -> None:
+    """Raise InputError unless the value is True or False: a word such as "no" would count as True."""
+    if not isinstance(argument.value, bool | np.bool_):
+        raise InputError(argument, accepted=("True", "False"))

@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -203,8 +204,8 @@ class Result(ByValue):
         square; None if not measured. It holds for contacts that are central (`Contact.is_central`).
     streamed : tuple of Record, or None
         Records of the frames of a stream, which depend on the frames before.
-    warnings : tuple of tuples of str
-        For each frame why its heights are uncertain.
+    warnings : tuple of str, or tuple of such tuples
+        Texts that say why the heights are uncertain; for several frames a tuple for each.
     pixel_aspect : float
         Width of a grid pixel over its height, `pixel_pitch_mm`.
     captured_at : float, float64 array (frames,) or None
@@ -223,7 +224,7 @@ class Result(ByValue):
     fitted_slope: float
     calibration_error: HeightError | None
     streamed: tuple[Record, ...] | None = None
-    warnings: tuple[tuple[str, ...], ...] = ()
+    warnings: tuple[str, ...] | tuple[tuple[str, ...], ...] = ()
     pixel_aspect: float = 1.0
     captured_at: float | Floats | None = None
 
@@ -254,7 +255,7 @@ class Result(ByValue):
         captured = self.captured_at[index] if isinstance(self.captured_at, np.ndarray) else None
         frames = range(len(self))[index] if isinstance(index, slice) else (index,)
         streamed = None if self.streamed is None else tuple(self.streamed[frame] for frame in frames)
-        warned = tuple(self.warnings[frame] for frame in frames) if self.warnings else ()
+        warned: Any = self.warnings and self.warnings[index]
         return replace(self, streamed=streamed, warnings=warned, light_gains=gains, captured_at=captured, **arrays)
 
     def _require_frames(self) -> None:

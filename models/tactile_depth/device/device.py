@@ -17,7 +17,7 @@ from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gai
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.depth.pipeline import PICTURES, Pipeline, require_flat_field, require_zero_offset
+from tactile_depth.depth.pipeline import PICTURES, Pipeline, require_flag, require_flat_field, require_zero_offset
 from tactile_depth.depth.result import Recorder
 from tactile_depth.device import captures
 from tactile_depth.device.addresses import open_channel
@@ -251,6 +251,7 @@ class Device(AbstractContextManager["Device"]):
             A picture is not accepted.
         DeviceError
         """
+        require_flag(Argument("stream", stream))
         has_gains = self.pipeline.config.light_gains
         if not stream and (pictures is None or (has_gains and self._reference_gains is None)):
             problem = ": without pictures" if pictures is None else ": the reference of the device is not known"
