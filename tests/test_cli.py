@@ -18,6 +18,7 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
+from tactile_depth.base.files import RECORD
 from tactile_depth.base.interruption import SIGNALS
 from tactile_depth.cli.drawing import DARK, OUTSIDE, Scale, round_number
 from tactile_depth.cli.main import main
@@ -85,7 +86,7 @@ def test_the_files_hold_the_height_of_the_pipeline(tmp_path: Path, inputs: Any, 
     np.testing.assert_array_equal(depth_mm, height.astype(np.float32))
     with Image.open(tmp_path / "depth_um.png") as picture:
         assert (tmp_path / "depth_um.png").read_bytes()[24:26] == bytes([16, 0]), "16 bits of grey"
-        assert picture.text["Description"].endswith("in micrometres")  # type: ignore[attr-defined]
+        assert picture.text["Description"].endswith("in micrometres, which viewers show black")  # type: ignore[attr-defined]
         np.testing.assert_array_equal(np.array(picture), np.maximum(np.rint(1000 * height), 0))
     vertices, faces = read_ply(tmp_path / "depth.ply")
     np.testing.assert_array_equal(vertices[:, 2].reshape(24, 32), depth_mm)
@@ -95,7 +96,7 @@ def test_the_files_hold_the_height_of_the_pipeline(tmp_path: Path, inputs: Any, 
     with Image.open(tmp_path / "overview.png") as picture:
         assert picture.size[0] > 1000
     files = {path.name for path in tmp_path.iterdir()}
-    assert files == {"depth_mm.npy", "depth_um.png", "depth.ply", "overview.png", "report.json"}
+    assert files == {RECORD, "depth_mm.npy", "depth_um.png", "depth.ply", "overview.png", "report.json"}
 
 
 def test_the_report_describes_the_result(tmp_path: Path, inputs: Any, depth: Any) -> None:
@@ -113,7 +114,7 @@ def test_the_report_describes_the_result(tmp_path: Path, inputs: Any, depth: Any
     assert contact["volume_mm3"] == result.contact.volume_mm3
     assert contact["centroid_px"] == list(result.contact.centroid_px)
     assert (picture["dark_pixels"], picture["outside_pixels"], picture["saturations"]) == (0, 0, {})
-    assert sorted(report["files"]) == sorted(path.name for path in tmp_path.iterdir())
+    assert sorted(report["files"]) == sorted(path.name for path in tmp_path.iterdir() if path.name != RECORD)
     assert "grid: 32 x 24 pixels of 0.6" in printed
     assert f"peak height {result.height_mm.max():.2f} mm, contact area {result.contact.area_mm2:.1f} mm2" in printed
     assert "error of the calibration not measured" in printed
@@ -146,7 +147,7 @@ def test_several_pictures_share_one_array(tmp_path: Path, inputs: Any, depth: An
     report = json.loads((tmp_path / "report.json").read_text())
     assert [picture["contact"]["touching"] for picture in report["pictures"]] == [True, False]
     assert report["pictures"][1]["files"] == ["depth_um_1.png", "depth_1.ply", "overview_1.png"]
-    assert sorted(report["files"]) == sorted(path.name for path in tmp_path.iterdir())
+    assert sorted(report["files"]) == sorted(path.name for path in tmp_path.iterdir() if path.name != RECORD)
 
 
 def test_a_second_run_removes_the_files_of_the_first_and_nothing_else(tmp_path: Path, inputs: Any, depth: Any) -> None:
@@ -154,8 +155,15 @@ def test_a_second_run_removes_the_files_of_the_first_and_nothing_else(tmp_path: 
     depth(pictures=[f"{inputs}/press.png"] * 2)
     depth()
     assert {path.name for path in tmp_path.iterdir()} == {
-        "notes.txt", "depth_mm.npy", "depth_um.png", "depth.ply", "overview.png", "report.json"
+        RECORD, "notes.txt", "depth_mm.npy", "depth_um.png", "depth.ply", "overview.png", "report.json"
     }  # fmt: skip
+
+
+def test_a_file_of_others_is_not_replaced(tmp_path: Path, inputs: Any, depth: Any) -> None:
+    (tmp_path / "depth.ply").write_text("mine")
+    reason = "depth.ply is there and was not written by an earlier run, or was changed since"
+    assert depth(status=2).err == f"tactile-depth: --out {tmp_path}: {reason}: move it away or give another name\n"
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["mine"]
 
 
 def test_a_folder_with_the_name_of_a_result_is_not_replaced(tmp_path: Path, depth: Any) -> None:

@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
+from tactile_depth.base.files import RECORD
 from tactile_depth.chip.c_header import FILE, c_header
 from tactile_depth.chip.contact.contact_events import ContactEvents, Settings
 from tactile_depth.chip.resampling import resampling
@@ -422,7 +423,9 @@ def test_hardware_writes_what_the_pipeline_computes_with(tmp_path: Path, small: 
     tables[described["c_header"]] = c_header(
         small.sensor, small.config, small._zero, small._gains, described["registers"]
     )
-    assert {path.name: path.read_text() for path in (tmp_path / "hw").iterdir() if path != index} == tables
+    written = {path.name: path.read_text() for path in (tmp_path / "hw").iterdir()}
+    assert written.keys() == {*tables, index.name, RECORD}
+    assert written.items() > tables.items()
 
 
 def test_hardware_removes_the_tables_of_an_earlier_pipeline_and_nothing_else(
@@ -434,7 +437,7 @@ def test_hardware_removes_the_tables_of_an_earlier_pipeline_and_nothing_else(
     td.Pipeline(ball.sensor, ball.reference, grid=(32, 32), solver="spectral", model="lut").hardware(tmp_path)
     tables = json.loads((tmp_path / "parameters.json").read_text())["tables"]
     left = sorted(path.name for path in tmp_path.iterdir())
-    assert left == sorted([*tables, "notes.txt", "other.hex", "parameters.json", FILE])
+    assert left == sorted([*tables, RECORD, "notes.txt", "other.hex", "parameters.json", FILE])
     assert "thomas.hex" not in tables
 
 

@@ -24,6 +24,7 @@ from PIL import Image
 import tactile_depth as td
 from commands.common.repository import ROOT
 from commands.run import bench
+from tactile_depth.base.files import RECORD
 from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.registers.axil_registers import GAINS
 from tactile_depth.chip.resampling import resampling
@@ -294,7 +295,7 @@ def test_the_command_writes_its_files(environment: Any, pictures: Any, tmp_path:
     printed = run(command, tmp_path, "depth", pictures / "press.png", *options)
     assert printed.startswith("calibration: gelsight-mini: the reference looks like it")
     assert {path.name for path in tmp_path.iterdir()} == {
-        "depth_mm.npy", "depth_um.png", "depth.ply", "overview.png", "report.json"
+        RECORD, "depth_mm.npy", "depth_um.png", "depth.ply", "overview.png", "report.json"
     }  # fmt: skip
 
 

@@ -57,6 +57,15 @@ def since(line: str, entry: Mapping[str, Any]) -> str:
     return "same" if entry.get("sources") == sources(line) else "changed"
 
 
+def rounded(value: Any) -> Any:
+    """Return a document with five digits of each number."""
+    if isinstance(value, dict):
+        return {name: rounded(each) for name, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [rounded(each) for each in value]
+    return float(f"{value:.5g}") if isinstance(value, float) else value
+
+
 def record(figures: Any) -> None:
     """Write the figures of this run if its line is in the file and its sources are committed."""
     results, line = load(), command_line(sys.argv[0], sys.argv[1:])

@@ -44,6 +44,7 @@ from tactile_depth.chip.tactile_depth import hdl_parameters
 from tactile_depth.sensor.sensor import Sensor
 
 OUT = repository.ROOT / "build" / "synth"
+ROMS, PARAMETERS = "td_rom", "parameters.txt"
 UNITS = ("u_video", "u_gradient", "u_poisson", "u_depth", "u_contact")  # of hdl/tactile_depth.sv
 SOLVER = "u_poisson.u_solver"
 CAMERA_UNIT, CAMERA_PATH = "camera_unit", "u_camera"
@@ -368,15 +369,13 @@ def resources_of(document: Mapping[str, Any]) -> Table:
 
 
 def keep_sources(folder: Path, config: Configuration, out: Path) -> None:
-    """Write ROMs and parameters, which constraints/xczu7ev_ooc.tcl reads beside hdl/."""
-    kept_files = out / "td_rom"
-    kept_files.mkdir(exist_ok=True)
-    for old in kept_files.glob("*.hex"):
-        old.unlink()
-    for rom in folder.glob("*.hex"):
-        shutil.copy(rom, kept_files)
+    """Move ROMs and parameters, which constraints/xczu7ev_ooc.tcl reads beside hdl/, from a folder to `out`."""
+    roms, earlier = ([path.name for path in each.glob("*.hex")] for each in (folder, out / ROMS))
+    files.make(out / ROMS)
+    files.replace(folder, roms, out / ROMS, {*earlier} - {*roms})
     parameters = " ".join(f"{name}={value}" for name, value in hdl_parameters(config).items())
-    (out / "parameters.txt").write_text(parameters + "\n")
+    (folder / PARAMETERS).write_text(parameters + "\n")
+    files.replace(folder, [PARAMETERS], out)
 
 
 def sources(arguments: list[str]) -> str:

@@ -315,15 +315,6 @@ def sources(arguments: Sequence[str]) -> str:
     return recorded.digest(files_of, VERSION)
 
 
-def _rounded(value: Any) -> Any:
-    """Return a document with five digits of each number."""
-    if isinstance(value, dict):
-        return {name: _rounded(each) for name, each in value.items()}
-    if isinstance(value, list):
-        return [_rounded(each) for each in value]
-    return float(f"{value:.5g}") if isinstance(value, float) else value
-
-
 def plot(path: Path, document: dict[str, Any]) -> None:
     """Draw the RMS of each part as bars, by source and measure."""
     colours = dict(zip(PLACES, ("#08519c", "#e6550d", "#969696"), strict=True))
@@ -385,4 +376,4 @@ def main(request: BudgetRun) -> None:
     run(request)
     document = json.loads((request.out / RESULTS[0]).read_text())
     if not document["without"]:
-        recorded.record(_rounded(document))
+        recorded.record(recorded.rounded(document))

@@ -27,7 +27,7 @@ from commands.cost.cost import CAMERAS, KINDS, cost
 from commands.hardware import estimate, lut_runs, memory_model, synth, synthesis
 from commands.hardware.targets import DEFAULT_TARGET, TARGETS
 from commands.run.sim_table import coefficient_words
-from commands.study import baselines, budget, trade_front
+from commands.study import baselines, budget, presses, trade_front
 from commands.study.accuracy import errors
 from tactile_depth.chip import latency
 from tactile_depth.chip.configuration import COLOURS, DEFAULTS, NUMBERS, STORED, Configuration
@@ -325,6 +325,12 @@ def camera_front_end() -> Table:
     return Table(("camera front end", *(n for d in devices for n in (d.multiplier, d.block, "LUT"))), rows)
 
 
+def accuracy() -> Iterator[Table]:
+    for _, document, (commit, since) in runs("presses"):
+        table = presses.accuracy_table(document)
+        yield table._replace(title=f"{table.title} Commit {commit}, {SOURCE[1]}: {since}.")
+
+
 def depth_error() -> Iterator[Table]:
     for _, document, (commit, since) in runs("budget"):
         line = f"{budget.setting(document)}. Commit {commit}, {SOURCE[1]}: {since}."
@@ -375,6 +381,7 @@ TABLES: dict[str, Callable[[], Table | Iterable[Table]]] = {
     "cost model": lut_runs.runs_and_model,
     "camera front end": camera_front_end,
     "trade": trade,
+    "accuracy": accuracy,
     "depth error": depth_error,
     "parts of the depth error": error_parts,
     "throughput of software": software_throughput,

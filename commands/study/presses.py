@@ -8,22 +8,26 @@ model. The folder is that of `make calibrate`. RTL=0: model only. Exit status: 1
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
-from typing import Annotated
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, replace
+from pathlib import Path
+from typing import Annotated, Any
 
 import numpy as np
 
 import tactile_depth as td
+from commands.common import recorded, variables
 from commands.common import simulator as simulation
 from commands.common.press_data import data_folder, pixels
 from commands.common.progress import progress_bar
-from commands.common.tabular import Table
+from commands.common.tabular import Column, Table, shown
 from commands.common.variables import EQUAL, MISMATCH, Place, one, real
 from commands.run import bench
+from commands.study.study import VERSION
 from tactile_depth.base import files
 from tactile_depth.calibrate.fitting import DRAWN_OUT, errors_by_number, fit_presses
 from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
+from tactile_depth.chip.configuration import STORED
 from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.registers.axil_registers import GAINS
 from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
@@ -96,32 +100,60 @@ def codes_differ(simulator: str, pipeline: td.Pipeline, picture: np.ndarray, res
     return int(np.count_nonzero(played.codes.reshape(rows, -1)[::-1] != result.codes))
 
 
-def means(values: Sequence[Measured], central: np.ndarray) -> Table:
-    """Return the table of the means of presses in the middle and at the sides, and over all."""
-    numbers = {field.name: np.array([getattr(value, field.name) for value in values]) for field in fields(Measured)}
-    rows = []
-    for where, among in (("middle", central), ("sides", ~central), ("all", np.full(len(values), True))):
-        of = {name: each[among] for name, each in numbers.items()}
-        rows.append(
-            [
-                f"{where}, {among.sum()}",
-                f"{1000 * of['height_rms'].mean():.1f}",
-                f"{of['cap'].mean():.3f}",
-                f"{np.sqrt(((of['cap'] - 1) ** 2).mean()):.3f}",
-                f"{of['rest_rms'].mean():.4f}, {of['rest_largest'].mean():.3f}",
-                f"{of['centroid'].mean():.3f}, {of['centroid'].max():.3f}",
-                f"{of['area'].mean():.2f}, {of['area'].min():.2f} to {of['area'].max():.2f}",
-            ]
-        )
-    head = [
-        *("presses", "height RMS, um", "caps, mean", "RMS error", "untouched gel, RMS and largest, mm"),
-        *("centroid off, mean and most, mm", "area over circle, mean and range"),
-    ]
-    return Table(head, rows)
+@dataclass(frozen=True)
+class Accuracy:
+    """How accurate heights and contacts are: over the presses of a place, means unless the head says otherwise."""
+
+    place: Annotated[str, Column("where")]
+    presses: Annotated[int, Column("presses")]
+    height_um: Annotated[float, Column("height in the contact, RMS, um", ".1f")]
+    untouched_um: Annotated[float, Column("untouched gel, RMS, um", ".1f")]
+    untouched_most_um: Annotated[float, Column("its largest, um", ".0f")]
+    cap: Annotated[float, Column("caps, recovered / true", ".3f")]
+    cap_error: Annotated[float, Column("RMS error of caps", ".3f")]
+    centroid_mm: Annotated[float, Column("centroid off, mm", ".3f")]
+    centroid_most_mm: Annotated[float, Column("at most, mm", ".3f")]
+    area: Annotated[float, Column("area / circle", ".2f")]
+    area_range: Annotated[Sequence[float], Column("its range", lambda ends: "{:.2f} to {:.2f}".format(*ends))]
 
 
-def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
-    """Print the tables; return the exit status. `simulator` None: no RTL."""
+def accuracy(place: str, values: Sequence[Measured]) -> Accuracy:
+    """Return the accuracy of presses of a place."""
+    of = {each.name: np.array([getattr(value, each.name) for value in values]) for each in fields(Measured)}
+    mean = {name: float(each.mean()) for name, each in of.items()}
+    return Accuracy(
+        place=place,
+        presses=len(values),
+        height_um=1000 * mean["height_rms"],
+        untouched_um=1000 * mean["rest_rms"],
+        untouched_most_um=1000 * mean["rest_largest"],
+        cap=mean["cap"],
+        cap_error=float(np.sqrt(((of["cap"] - 1) ** 2).mean())),
+        centroid_mm=mean["centroid"],
+        centroid_most_mm=float(of["centroid"].max()),
+        area=mean["area"],
+        area_range=(float(of["area"].min()), float(of["area"].max())),
+    )
+
+
+def accuracy_table(document: Mapping[str, Any]) -> Table:
+    """Return the table of what `run` found, with its sentence."""
+    return shown(Accuracy, document["places"])._replace(title=f"{document['setting']}. {sentence(document)}.")
+
+
+def sentence(document: Mapping[str, Any]) -> str:
+    """Return the sentence on accuracy that pages quote."""
+    where = {"middle": "in the middle of the picture", "sides": "at its sides"}
+    heights = [f"{each['height_um'] / 1000:.3f} mm {where[each['place']]}" for each in document["places"][:-1]]
+    untouched = document["places"][-1]["untouched_um"] / 1000
+    return (
+        f"The RMS error of heights in a contact is {' and '.join(heights)}, of untouched gel beside the contact "
+        f"{untouched:.3f} mm"
+    )
+
+
+def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> tuple[int, dict[str, Any]]:
+    """Print the tables; return the exit status, and what docs/figures.json keeps. `simulator` None: no RTL."""
     presses = to_grid(pictures, pitch_mm)
     fit = fit_presses(presses, ("cubic",))
     by_name = {press.name: press for press in pictures.presses}
@@ -138,9 +170,20 @@ def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
             values.append(measured(pipeline(in_light(picture, light)), view.press))
         if simulator is not None:
             differing += codes_differ(simulator, pipeline, view.frame, result)
-    print(f"each press by a calibration from all others, {presses.grid[1]} x {presses.grid[0]}, {pictures.name}\n")
-    central = np.array([view.press.is_central for view in views])
-    print(means(same, central))
+    central = [value for value, view in zip(same, views, strict=True) if view.press.is_central]
+    sides = [value for value, view in zip(same, views, strict=True) if not view.press.is_central]
+    config = pipeline.config
+    document = {
+        "setting": f"{pictures.name}, each press by a calibration from all others; default configuration: "
+        f"{presses.grid[1]} x {presses.grid[0]}, {config.solver}, {config.boundary}, `{config.gradient_model}`, "
+        f"{getattr(config, STORED)}-bit words, light gains, zero offset",
+        "places": [
+            asdict(accuracy(place, values))
+            for place, values in (("middle", central), ("sides", sides), ("all", same))
+            if values
+        ],
+    }
+    print(accuracy_table(document))
     rows = []
     for light, values in lit.items():
         caps, areas = (
@@ -158,23 +201,34 @@ def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
     head = ["light, of red, green, blue", "caps over those in the same light, mean", "largest change", "areas, mean"]
     print(f"\n{Table(head, rows)}")
     numbers = [number for number in NUMBERS if number + DRAWN_OUT <= len(presses.views)]
-    if numbers and central.sum() >= DRAWN_OUT:
+    if numbers and len(central) >= DRAWN_OUT:
         by_number = errors_by_number(presses, numbers, progress=lambda each: progress_bar(each, "fits"))
         rows = [[str(number), f"{cap:.3f}", f"{1000 * rms:.1f}"] for number, (cap, rms) in by_number.items()]
         print(f"\n{Table(('presses fitted', 'caps, RMS error in the middle', 'height RMS, um'), rows)}")
     if simulator is not None:
         total = len(views) * presses.grid[0] * presses.grid[1]
         print(f"\nRTL on {simulator}: {total - differing:,} of {total:,} codes equal the model's")
-    return MISMATCH if differing else EQUAL
+    return MISMATCH if differing else EQUAL, document
 
 
-def main(
-    presses: Place | None = None,
-    pitch: Annotated[float | None, real(*PIXEL_PITCHES_MM)] = None,
-    simulator: simulation.Simulator = simulation.SIMULATORS[0],
-    rtl: Annotated[bool, one({"1": True, "0": False})] = True,
-) -> int:
-    if rtl:
-        simulation.check(simulator)
-    pictures = gather(presses or data_folder())
-    return run(pictures, camera_pitch_mm(pictures, pitch), simulator if rtl else None)
+def sources(arguments: Sequence[str]) -> str:
+    """Return the digest of models and command, for docs/figures.json."""
+    variables.read(Variables, arguments)
+    return recorded.digest([Path(__file__)], VERSION)
+
+
+@dataclass(frozen=True)
+class Variables:
+    presses: Place | None = None
+    pitch: Annotated[float | None, real(*PIXEL_PITCHES_MM)] = None
+    simulator: simulation.Simulator = simulation.SIMULATORS[0]
+    rtl: Annotated[bool, one({"1": True, "0": False})] = True
+
+
+def main(chosen: Variables) -> int:
+    if chosen.rtl:
+        simulation.check(chosen.simulator)
+    pictures = gather(chosen.presses or data_folder())
+    status, document = run(pictures, camera_pitch_mm(pictures, chosen.pitch), chosen.simulator if chosen.rtl else None)
+    recorded.record(recorded.rounded(document))
+    return status

@@ -38,6 +38,7 @@ from tactile_depth.sensor.scenes import BENCH, SENSOR_WIDTH_MM, render
 from tactile_depth.sensor.synthetic import synthetic
 
 DEFAULT_OUT = ROOT / "build" / "report"
+PAGE = "report.html"
 INTERRUPTED = "the rows of the sweep are kept, run it again to go on"
 SIZE = 128
 CONSECUTIVE = 1000  # frames, at least
@@ -340,7 +341,7 @@ def hardware_sections() -> list[Section]:
 
 def build(folder: Path) -> Path:
     """Measure and write the page; returns its path. Raises InputError, Mismatch or RuntimeError."""
-    files.make(folder, ["report.html"])
+    files.make(folder, [PAGE])
     missing = not (baselines.DEFAULT_OUT / baselines.RESULTS[0]).exists()
     least = RTL_S + missing * baselines.SECONDS
     print(f"report takes {duration(least)} at least, and the rows that the sweep lacks", flush=True)
@@ -370,10 +371,10 @@ def build(folder: Path) -> Path:
         reflex_section(documents[0]),
         baselines_section(documents[1]),
     ]
-    target, draft = folder / "report.html", folder / ".report.html"
-    draft.write_text(page(figures))
-    os.replace(draft, target)
-    return target
+    with files.workspace(folder) as work:
+        (work / PAGE).write_text(page(figures))
+        files.replace(work, [PAGE], folder)
+    return folder / PAGE
 
 
 def main(out: variables.Place = DEFAULT_OUT) -> None:

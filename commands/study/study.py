@@ -205,7 +205,7 @@ class Study(Generic[P, R]):
     def opened(self, folder: Path) -> Iterator[tuple[BinaryIO, dict[P, R]]]:
         """Yield the table in a folder, open to append, and its rows; one study at a time. Raises InputError."""
         path = folder / f"{self.name}.csv"
-        files.make(folder, [path.name])
+        files.make(folder, [path.name], guarded=False)  # `kept` refuses the tables of others
         with path.open("a+b") as file:
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -40,6 +40,7 @@ from commands.study.study import INTERRUPTED as INTERRUPTED
 from commands.study.study import VERSION, Study, built
 from commands.study.trade_front import DEFAULT, LUT, Point, Row, draw, front_of, summary, write_beaten
 from tactile_depth.base import files
+from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate.fitting import fit_folds
 from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
@@ -163,14 +164,17 @@ def prepare(folder: Path, source: Path, pitch_mm: float | None) -> Prepared:
     stamp = folder / "presses.txt"
     if stamp.exists() and stamp.read_text() == study.digest:
         return study
-    files.make(folder, [stamp.name])
-    stamp.unlink(missing_ok=True)
+    folds = [folder / f"presses-{fold}" for fold in range(FOLDS)]
+    if not stamp.exists() and (others := [path for path in (folder / "background.png", *folds) if path.exists()]):
+        raise InputError(f"OUT={folder}: {others[0].name} in it is of no earlier run: move it away or give another")
+    files.make(folder, [stamp.name], guarded=False)
+    stamp.write_text("")
     Image.fromarray(pictures.background).save(folder / "background.png")
-    for fold in range(FOLDS):
-        shutil.rmtree(folder / f"presses-{fold}", ignore_errors=True)
-        (folder / f"presses-{fold}").mkdir()
+    for fold in folds:
+        shutil.rmtree(fold, ignore_errors=True)
+        fold.mkdir()
     for index, press in enumerate(pictures.presses):
-        Image.fromarray(pixels(press)).save(folder / f"presses-{index % FOLDS}" / f"{index:03}.png")
+        Image.fromarray(pixels(press)).save(folds[index % FOLDS] / f"{index:03}.png")
     jobs = [joblib.delayed(_calibrate)(study, pictures, pixel_format) for pixel_format in FORMATS]
     fitted = joblib.Parallel(n_jobs=-1, return_as="generator_unordered")(jobs)
     for _ in progress_bar(fitted, "calibrations", len(jobs), unit=" pixel formats"):

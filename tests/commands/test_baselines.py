@@ -14,6 +14,7 @@ from commands.study import baseline_methods, baseline_throughput, baselines, rep
 from commands.study.baseline_methods import METHODS, Method, Prepared
 from commands.study.baselines import WARM_UPS, BaselinesRun
 from tactile_depth.base.errors import InputError
+from tactile_depth.base.files import RECORD
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth
 
@@ -76,7 +77,7 @@ def test_a_small_run(tmp_path: Path, monkeypatch: Any) -> None:
     monkeypatch.setattr(baselines.os, "sched_getaffinity", lambda process: {0})
     monkeypatch.setattr(baselines.os, "sched_setaffinity", lambda process, cores: None)
     baselines.run(BaselinesRun((16,), 20, max_load=10_000, out=tmp_path))
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["baselines.json", "baselines.png"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [RECORD, "baselines.json", "baselines.png"]
     document = json.loads((tmp_path / "baselines.json").read_text())
     timed, missing = document["software"]
     assert timed["runs"] == 20

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tactile_depth.base.files import CACHE_TAG, RECORD
 from tactile_depth.calibrate.fitting import fit_presses
 from tactile_depth.calibrate.presses import gather, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
@@ -56,7 +57,7 @@ def test_the_variables_reach_the_fit(made: Any, tmp_path: Path, run_command: Any
         f"the best model is {sensor.model}",
     ):
         assert printed in output
-    assert sorted(path.name for path in out.parent.iterdir()) == ["mine.npz", "mine.png"]
+    assert sorted(path.name for path in out.parent.iterdir()) == [RECORD, "mine.npz", "mine.png"]
 
 
 def test_found_circles_replace_those_of_the_table(made: Any, tmp_path: Path, run_command: Any) -> None:
@@ -107,6 +108,7 @@ def test_a_result_that_cannot_be_written_is_named_before_the_fit(
 def test_a_full_disk_leaves_earlier_results(
     made: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, run_command: Any
 ) -> None:
+    (tmp_path / CACHE_TAG).touch()  # there all files may be replaced
     (tmp_path / "mine.npz").write_text("earlier")
 
     def full(*_: Any) -> None:
@@ -118,7 +120,7 @@ def test_a_full_disk_leaves_earlier_results(
     assert status == 3
     assert "mine.png: No space left on device: free disk space" in line
     assert (tmp_path / "mine.npz").read_text() == "earlier"
-    assert [path.name for path in tmp_path.iterdir()] == ["mine.npz"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [CACHE_TAG, "mine.npz"]
 
 
 @pytest.mark.regress  # tests/test_fitting.py compares the fit itself

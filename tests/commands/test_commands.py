@@ -14,6 +14,7 @@ from commands import __main__ as entry
 from commands.__main__ import COMMANDS
 from commands.common.repository import ROOT
 from commands.hardware import asic, yosys
+from tactile_depth.base.files import RECORD
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -195,4 +196,9 @@ def test_a_reader_of_the_output_that_ends_is_no_traceback(tmp_path: Path) -> Non
     )
     assert result.returncode == 3
     assert result.stderr == "make sim: whatever reads the output has ended\n"
-    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["depth.npy", "depth.png", "report.json"]
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
+        RECORD,
+        "depth.npy",
+        "depth.png",
+        "report.json",
+    ]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import tactile_depth as td
-from commands.study.presses import in_light, measured, run
+from commands.study.presses import in_light, measured, run, sentence
 from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather
 from tests.ball_presses import write_folder
 
@@ -17,9 +17,13 @@ def test_every_press_is_measured_by_the_others_and_equals_the_rtl(
 ) -> None:
     pictures = gather(write_folder(tmp_path / "presses"))
     few = PressPictures(pictures.name, pictures.presses[:10], pictures.background)
-    assert run(few, camera_pitch_mm(few, None), "verilator") == 0
+    status, document = run(few, camera_pitch_mm(few, None), "verilator")
+    assert status == 0
+    *places, every = document["places"]
+    assert sum(place["presses"] for place in places) == every["presses"]
+    assert sentence(document).endswith(f"{every['untouched_um'] / 1000:.3f} mm")
     lines = capsys.readouterr().out.splitlines()
-    assert [line for line in lines if line.startswith("| all, ")]
+    assert [line for line in lines if line.startswith("| all ")]
     total = lines[-1].split()[3]
     assert lines[-1] == f"RTL on verilator: {total} of {total} codes equal the model's"
 

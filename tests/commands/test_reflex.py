@@ -15,6 +15,7 @@ from commands.common.variables import read
 from commands.run import bench, reflex, reflex_model
 from commands.run.reflex_model import ReflexRun
 from commands.study import report
+from tactile_depth.base.files import RECORD
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_pixel_to_first_depth
 from tactile_depth.chip.limits import COLUMNS
@@ -117,7 +118,7 @@ def test_the_loop_on_the_rtl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     rate."""
     out = tmp_path / "out"
     read(reflex.run, [*SMALL, "HOST_TRIALS=3", f"OUT={out}"])
-    assert sorted(path.name for path in out.iterdir()) == ["reflex.json", "reflex.png"]
+    assert sorted(path.name for path in out.iterdir()) == [RECORD, "reflex.json", "reflex.png"]
     document = json.loads((out / "reflex.json").read_text())
 
     request = read(ReflexRun, [*SMALL[:2], "CLOCK_MHZ=0.7", SMALL[3]])

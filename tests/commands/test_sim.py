@@ -13,6 +13,7 @@ from skimage import io  # type: ignore[attr-defined]
 
 from commands.common import published, run_request
 from commands.run import sim
+from tactile_depth.base.files import RECORD
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.depth.zero_capture import captured_zero
 from tactile_depth.chip.depth.zero_offset import zero_offset
@@ -29,7 +30,7 @@ def run(tmp_path: Any, *arguments: Any) -> Any:
     """Run `make sim` into tmp_path/out; return the report. The run must be bit-exact."""
     out = tmp_path / "out"
     assert sim.run(run_request.parse([*arguments, f"OUT={out}"])) == 0
-    assert sorted(p.name for p in out.iterdir()) == ["depth.npy", "depth.png", "report.json"]
+    assert sorted(p.name for p in out.iterdir()) == [RECORD, "depth.npy", "depth.png", "report.json"]
     assert [p.name for p in tmp_path.iterdir() if p.name.startswith(".")] == []
     return json.loads((out / "report.json").read_text())
 

@@ -13,6 +13,7 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
+from tactile_depth.base.files import RECORD
 from tactile_depth.calibrate.fitting import fit_presses
 from tactile_depth.calibrate.presses import GridPresses, gather, to_grid
 from tactile_depth.cli.main import main
@@ -106,7 +107,7 @@ def test_the_file_is_that_of_a_fit_in_python(
         assert sorted(written) == sorted(other)
         for key in written:
             np.testing.assert_array_equal(written[key], other[key])
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["expected.npz", "presses.npz"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [RECORD, "expected.npz", "presses.npz"]
 
 
 def test_a_device_on_a_line_gives_the_grid_before_the_fit(

@@ -1,10 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes files so that a folder holds all of them or, after a failure or a signal, its earlier files."""
+"""Writes files so that a folder holds all of them or, after a failure or a signal, its earlier files.
+
+Files of others stay. `replace` keeps in each folder the digests of the files that it wrote there, in `RECORD`, and
+refuses to write in place of any other file, or of one that was changed since. Below a folder with a `CACHEDIR.TAG`
+(https://bford.info/cachedir), such as build/ of a clone, everything is made and may be replaced; no record is kept.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import errno
+import hashlib
 import json
 import os
 import secrets
@@ -21,6 +27,9 @@ from tactile_depth.base.errors import Argument, InputError
 OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM)
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 SHORT_WRITE = " requested and "  # of numpy, whose error has no number: "4096 requested and 512 written"
+RECORD = ".tactile-depth.json"  # digests of the files that were written into its folder, by name
+CACHE_TAG = "CACHEDIR.TAG"
+CACHE_SIGNATURE = "Signature: 8a477f597d28d172789f06886806bc55"  # first line of such a file
 
 
 @contextmanager
@@ -29,6 +38,8 @@ def workspace(
     files: Iterable[str] = (),
     path: str = "",
     keep: type[BaseException] | tuple[type[BaseException], ...] = (),
+    *,
+    guarded: bool = True,
 ) -> Iterator[Path]:
     """Make a folder and yield an empty one inside it, which is removed at the end, however that comes about.
 
@@ -43,11 +54,13 @@ def workspace(
         Path that errors name, if the user gave another one than that of the folder.
     keep
         Exceptions after which the folders stay, unless a signal caused them.
+    guarded : bool
+        Refuse files of others, as `replace` does.
 
     Raises
     ------
     InputError
-        It is no folder, it cannot be written, or one of `files` is a folder.
+        It is no folder, it cannot be written, or one of `files` is a folder or a file of others.
     OSError
         The machine failed, with a full disk for example.
     """
@@ -55,7 +68,7 @@ def workspace(
     work = Path.cwd() / folder / f".work-{secrets.token_hex(8)}"
     stays = False
     try:
-        _create(folder, work, tuple(files), path)
+        _create(folder, work, tuple(files), path, guarded)
         yield work.resolve()
     except keep:
         stays = interruption.received() is None
@@ -68,7 +81,7 @@ def workspace(
                 _remove(work, missing)
 
 
-def _create(folder: Path, work: Path, names: Iterable[str], path: str) -> None:
+def _create(folder: Path, work: Path, names: Iterable[str], path: str, guarded: bool) -> None:
     """Make a folder and `work` inside it, as `workspace` says."""
     given = Argument("folder", path or str(folder))
     try:
@@ -80,10 +93,10 @@ def _create(folder: Path, work: Path, names: Iterable[str], path: str) -> None:
         if folder.exists() and not folder.is_dir():
             raise InputError(given, f"{f': {folder}' if path else ''} is a file", remedy="give a folder")
         folder.mkdir(parents=True, exist_ok=True)
-        refuse_folders(folder, names, path)
         for name in names:
             with contextlib.suppress(FileNotFoundError):
                 os.lstat(folder / name)  # refuses a name that no file can have
+        _refuse(folder, names, path, guarded)
         work.mkdir(mode=0o700)
     except InputError:
         raise
@@ -114,34 +127,83 @@ def check(folder: Path, files: Iterable[str] = ()) -> None:
         pass
 
 
-def make(folder: Path, files: Iterable[str] = ()) -> None:
+def make(folder: Path, files: Iterable[str] = (), *, guarded: bool = True) -> None:
     """Make a folder in which `files` can be written; raise what `workspace` raises."""
-    check(folder, files)
+    with workspace(folder, files, guarded=guarded):
+        pass
     folder.mkdir(parents=True, exist_ok=True)
 
 
-def refuse_folders(folder: Path, files: Iterable[str], path: str = "") -> None:
-    """Raise InputError if one of `files`, which are to be written, is a folder there: replacing it would lose it."""
-    for name in files:
+def own_files(folder: Path, names: Iterable[str]) -> set[str]:
+    """Return those of the names under which `folder` has a file as it was written, by the record there."""
+    there = [name for name in names if (folder / name).is_file()]
+    if _is_cache(folder):
+        return set(there)
+    record = _record(folder)
+    return {name for name in there if record.get(name) == _digest(folder / name)}
+
+
+def _is_cache(folder: Path) -> bool:
+    place = folder.resolve()
+    return any((each / CACHE_TAG).is_file() for each in (place, *place.parents))
+
+
+def _record(folder: Path) -> dict[str, str]:
+    try:
+        digests = json.loads((folder / RECORD).read_text())
+    except (OSError, ValueError):
+        return {}
+    return digests if isinstance(digests, dict) else {}
+
+
+def _digest(path: Path) -> str:
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while part := file.read(1 << 20):
+            digest.update(part)
+    return digest.hexdigest()
+
+
+def _refuse(folder: Path, names: Iterable[str], path: str = "", guarded: bool = True) -> None:
+    """Raise InputError if one of the names, to be written, is that of a folder or, if guarded, of a file of others."""
+    given, there = Argument("folder", path or folder), [name for name in names if os.path.lexists(folder / name)]
+    own = own_files(folder, there) if guarded else set(there)
+    for name in there:
         if (folder / name).is_dir():
             problem = f" cannot be written ({name}{'' if path else ' in it'} is a folder)"
-            raise InputError(Argument("folder", path or folder), problem, remedy="remove it or give another")
+            raise InputError(given, problem, remedy="remove it or give another")
+        if name not in own:
+            problem = f": {name} is there and was not written by an earlier run, or was changed since"
+            raise InputError(given, problem, remedy="move it away or give another name")
 
 
-def replace(work: Path, names: Iterable[str], folder: Path, obsolete: Iterable[str] = ()) -> None:
+def replace(
+    work: Path, names: Iterable[str], folder: Path, obsolete: Iterable[str] = (), *, guarded: bool = True
+) -> None:
     """Move files from `work`, which lies inside `folder`, to `folder`, and remove `obsolete` files there.
 
-    When a move fails, or a signal comes, the files that were there before come back. Folders stay.
+    When a move fails, or a signal comes, the files that were there before come back. Folders stay, and so do files
+    that an earlier run did not write, or that were changed since.
+
+    Parameters
+    ----------
+    guarded : bool
+        Refuse to replace files of others, and record what is written. False where the user names the very file.
 
     Raises
     ------
     InputError
-        A folder has the name of a file.
+        A folder, or a file of others, has the name of a file.
     OSError
     """
     fresh = list(names)
-    refuse_folders(folder, fresh)
-    obsolete = [name for name in obsolete if not (folder / name).is_dir()]
+    _refuse(folder, fresh, guarded=guarded)
+    obsolete = own_files(folder, obsolete)
+    if guarded and not _is_cache(folder):
+        record = {name: digest for name, digest in _record(folder).items() if name not in obsolete}
+        record |= {name: _digest(work / name) for name in fresh}
+        (work / RECORD).write_text(json.dumps(record, indent=1) + "\n")
+        fresh.append(RECORD)
     earlier = Path(tempfile.mkdtemp(prefix="earlier-", dir=work))
     moves = [(folder / name, earlier / name) for name in {*fresh, *obsolete} if os.path.lexists(folder / name)]
     moves += [(work / name, folder / name) for name in fresh]

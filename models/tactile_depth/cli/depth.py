@@ -30,7 +30,8 @@ LARGEST_UM = 2**16 - 1
 UNITS = {
     HEIGHTS: "height above the untouched surface in mm, float32; rows from the picture's top; with several pictures "
     "the first axis counts them",
-    "depth_um.png": f"the same in micrometres, 16 bits, clipped at 0 and {LARGEST_UM}",
+    "depth_um.png": f"the same in micrometres, 16 bits, clipped at 0 and {LARGEST_UM}; viewers show it black, "
+    "overview.png is for looking",
     "depth.ply": "the same as a mesh, mm",
     "peak_height_mm": "largest height",
     "warnings": "of a picture: why its heights are uncertain",
@@ -89,7 +90,7 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     print(f"grid: {pipeline.grid[1]} x {pipeline.grid[0]} pixels of {pipeline.pixel_pitch_mm:.4f} mm")
     for label, _, result in frames:
         print(f"{label}: {summary(result)}")
-    print(f"results: {out}")
+    print(f"results: {out}; overview.png is for looking: viewers show depth_um.png, which is in micrometres, black")
 
 
 def _pictures(sources: Sequence[str]) -> Iterator[tuple[str, np.ndarray]]:
@@ -129,7 +130,7 @@ def _write_frame(folder: Path, suffix: str, label: str, image: np.ndarray, resul
     picture, mesh, overview = (f"depth_um{suffix}.png", f"depth{suffix}.ply", f"overview{suffix}.png")
     micrometres = np.rint(result.height_mm * MICROMETRES).clip(0, LARGEST_UM).astype(np.uint16)
     unit = PngInfo()
-    unit.add_text("Description", "height above the untouched surface in micrometres")
+    unit.add_text("Description", "height above the untouched surface in micrometres, which viewers show black")
     Image.fromarray(micrometres).save(folder / picture, pnginfo=unit)
     write_ply(folder / mesh, result.height_mm, result.pixel_pitch_mm, result.pixel_aspect)
     draw_overview(image, result, f"{label}: {summary(result)}").save(folder / overview)

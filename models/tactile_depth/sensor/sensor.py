@@ -403,10 +403,10 @@ class Sensor(ByValue):
             arrays[f"fitted_slope_{model}"] = slope
         for model, error in self.height_errors.items():
             arrays[f"cap_height_{model}"] = np.array((error.mean, error.spread, error.presses))
-        with files.workspace(path.parent, (path.name,), str(path)) as work:
+        with files.workspace(path.parent, (path.name,), str(path), guarded=False) as work:
             held = {key: value for key, value in arrays.items() if value is not None}
             np.savez_compressed(work / path.name, **held)
-            files.replace(work, (path.name,), path.parent)
+            files.replace(work, (path.name,), path.parent, guarded=False)
 
 
 def grid_terms(row: np.ndarray, column: np.ndarray, grid: tuple[int, int], pixel_pitch_mm: float) -> np.ndarray:
