@@ -130,7 +130,7 @@ def build(
     """
     check(simulator)
     runner: Runner = WholeVerilator() if simulator == "verilator" else get_runner(simulator)
-    arguments = ["-Wall"]
+    arguments, settings = ["-Wall"], dict[str, str]()
     if simulator == "verilator":
         folder.mkdir(parents=True, exist_ok=True)
         visible = folder / "visible.vlt"
@@ -142,8 +142,10 @@ def build(
         files = [HDL / "verilator.vlt", visible, *waivers_first]
         # The testbench of a core compiles longer than it runs; -O2 saves only 5 % of a long run.
         level = "-O1" if fast else "-O0"
-        os.environ["MAKEFLAGS"] = f"{VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL=-O2"
-        os.environ["VM_SUPPORT_FAST"] = "program"  # Verilator's makefile adds to this list of parts of the C++ file
+        settings = {
+            "MAKEFLAGS": f"{VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL=-O2",
+            "VM_SUPPORT_FAST": "program",  # Verilator's makefile adds to this list of parts of the C++ file
+        }
         (folder / "program.cpp").unlink(missing_ok=True)
         (folder / "program.cpp").symlink_to(program or PROGRAM)
         # Registers and memories are random at power-up, by the seed that `run` passes.
@@ -157,18 +159,19 @@ def build(
         arguments += _take_runtime(folder, runtime)
     else:
         files = [file for file in files if file.suffix != ".vlt"]
-    runner.build(
-        sources=files,
-        hdl_toplevel=toplevel,
-        parameters=dict(parameters),
-        build_dir=folder,
-        build_args=arguments,
-        timescale=("1ns", "1ps"),
-        waves=waves,
-        log_file=log,
-    )
-    if simulator == "verilator" and not headers.exists():
-        _keep_runtime(folder, runtime, headers)
+    with mock.patch.dict(os.environ, settings):
+        runner.build(
+            sources=files,
+            hdl_toplevel=toplevel,
+            parameters=dict(parameters),
+            build_dir=folder,
+            build_args=arguments,
+            timescale=("1ns", "1ps"),
+            waves=waves,
+            log_file=log,
+        )
+        if simulator == "verilator" and not headers.exists():
+            _keep_runtime(folder, runtime, headers)
     if simulator == "icarus" and log and (unknown := UNKNOWN_PARAMETER.search(log.read_text())):
         raise RuntimeError(f"{unknown.group()}: Icarus builds with its default")
 

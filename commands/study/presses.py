@@ -144,11 +144,11 @@ def accuracy_table(document: Mapping[str, Any]) -> Table:
 def sentence(document: Mapping[str, Any]) -> str:
     """Return the sentence on accuracy that pages quote."""
     where = {"middle": "in the middle of the picture", "sides": "at its sides"}
-    heights = [f"{each['height_um'] / 1000:.3f} mm {where[each['place']]}" for each in document["places"][:-1]]
-    untouched = document["places"][-1]["untouched_um"] / 1000
+    heights = [f"{each['height_um']:.1f} um {where[each['place']]}" for each in document["places"][:-1]]
+    untouched = document["places"][-1]["untouched_um"]
     return (
         f"The RMS error of heights in a contact is {' and '.join(heights)}, of untouched gel beside the contact "
-        f"{untouched:.3f} mm"
+        f"{untouched:.1f} um"
     )
 
 
@@ -174,9 +174,9 @@ def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> tupl
     sides = [value for value, view in zip(same, views, strict=True) if not view.press.is_central]
     config = pipeline.config
     document = {
-        "setting": f"{pictures.name}, each press by a calibration from all others; default configuration: "
-        f"{presses.grid[1]} x {presses.grid[0]}, {config.solver}, {config.boundary}, `{config.gradient_model}`, "
-        f"{getattr(config, STORED)}-bit words, light gains, zero offset",
+        "setting": f"{len(presses.views)} presses of {pictures.name}, whole ones measured by a calibration from all "
+        f"others; default configuration: {presses.grid[1]} x {presses.grid[0]}, {config.solver}, {config.boundary}, "
+        f"`{config.gradient_model}`, {getattr(config, STORED)}-bit words, light gains, zero offset",
         "places": [
             asdict(accuracy(place, values))
             for place, values in (("middle", central), ("sides", sides), ("all", same))

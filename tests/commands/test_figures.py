@@ -11,7 +11,7 @@ import pytest
 from commands.common import recorded, repository
 from commands.hardware import synth
 from commands.hardware.targets import DEFAULT_TARGET, TARGETS
-from commands.study import figures
+from commands.study import figures, presses
 from tactile_depth.base.errors import InputError
 
 WITHOUT_FIGURES = ("| variable |", "| J1 |", "| part |")  # heads of tables of settings and of pins
@@ -33,6 +33,14 @@ def test_a_page_has_no_other_tables_of_figures(page: Path) -> None:
     by_hand = figures.TABLE.sub("", page.read_text())
     heads = re.findall(r"(?:^|\n\n)(\|.*)", by_hand)
     assert [head for head in heads if not head.startswith(WITHOUT_FIGURES)] == []
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/calibrate.md", "docs/error-budget.md", "docs/results.md"])
+def test_a_page_quotes_how_accurate_the_default_configuration_is(page: str) -> None:
+    ((_, document, _),) = figures.runs("presses")
+    text = " ".join((repository.ROOT / page).read_text().split())
+    assert presses.sentence(document) in text
+    assert len(re.findall(r"[\d.]+ [mu]m in the middle of the picture", text)) == 1, "another set"
 
 
 def test_a_run_of_other_sources_is_marked(monkeypatch: pytest.MonkeyPatch) -> None:

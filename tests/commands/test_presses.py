@@ -21,7 +21,7 @@ def test_every_press_is_measured_by_the_others_and_equals_the_rtl(
     assert status == 0
     *places, every = document["places"]
     assert sum(place["presses"] for place in places) == every["presses"]
-    assert sentence(document).endswith(f"{every['untouched_um'] / 1000:.3f} mm")
+    assert sentence(document).endswith(f"{every['untouched_um']:.1f} um")
     lines = capsys.readouterr().out.splitlines()
     assert [line for line in lines if line.startswith("| all ")]
     total = lines[-1].split()[3]
