@@ -108,13 +108,10 @@ class Accuracy:
     presses: Annotated[int, Column("presses")]
     height_um: Annotated[float, Column("height in the contact, RMS, um", ".1f")]
     untouched_um: Annotated[float, Column("untouched gel, RMS, um", ".1f")]
-    untouched_most_um: Annotated[float, Column("its largest, um", ".0f")]
     cap: Annotated[float, Column("caps, recovered / true", ".3f")]
     cap_error: Annotated[float, Column("RMS error of caps", ".3f")]
     centroid_mm: Annotated[float, Column("centroid off, mm", ".3f")]
-    centroid_most_mm: Annotated[float, Column("at most, mm", ".3f")]
     area: Annotated[float, Column("area / circle", ".2f")]
-    area_range: Annotated[Sequence[float], Column("its range", lambda ends: "{:.2f} to {:.2f}".format(*ends))]
 
 
 def accuracy(place: str, values: Sequence[Measured]) -> Accuracy:
@@ -126,13 +123,10 @@ def accuracy(place: str, values: Sequence[Measured]) -> Accuracy:
         presses=len(values),
         height_um=1000 * mean["height_rms"],
         untouched_um=1000 * mean["rest_rms"],
-        untouched_most_um=1000 * mean["rest_largest"],
         cap=mean["cap"],
         cap_error=float(np.sqrt(((of["cap"] - 1) ** 2).mean())),
         centroid_mm=mean["centroid"],
-        centroid_most_mm=float(of["centroid"].max()),
         area=mean["area"],
-        area_range=(float(of["area"].min()), float(of["area"].max())),
     )
 
 
