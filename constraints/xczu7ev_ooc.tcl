@@ -22,7 +22,7 @@ set parameters [split [string trim [read $file]]]
 close $file
 
 # Packages first. Tables are looked for where Vivado stands.
-set sources [lsort [glob [file join $root hdl *.sv] [file join $root hdl * *.sv]]]
+set sources [lsort [glob [file join $root hdl *.sv] [file join $root hdl * *.sv] [file join $root hdl * * *.sv]]]
 foreach source [lsearch -all -inline $sources *_pkg.sv] { read_verilog -sv $source }
 foreach source [lsearch -all -inline -not $sources *_pkg.sv] { read_verilog -sv $source }
 read_xdc -mode out_of_context [file join $root constraints xczu7ev.xdc]

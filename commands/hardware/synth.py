@@ -44,7 +44,7 @@ from tactile_depth.chip.tactile_depth import hdl_parameters
 from tactile_depth.sensor.sensor import Sensor
 
 OUT = repository.ROOT / "build" / "synth"
-ROMS, PARAMETERS = "td_rom", "parameters.txt"
+ROMS, PARAMETERS = "rom", "parameters.txt"
 UNITS = ("u_video", "u_gradient", "u_poisson", "u_depth", "u_contact")  # of hdl/tactile_depth.sv
 SOLVER = "u_poisson.u_solver"
 CAMERA_UNIT, CAMERA_PATH = "camera_unit", "u_camera"

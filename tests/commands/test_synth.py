@@ -2,6 +2,7 @@
 """`make synth`: its counts on a tiny grid, the plain rule of memories, and errors for bad input."""
 
 import json
+import re
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -137,6 +138,23 @@ def test_a_grid_that_one_solver_has_is_built_with_that_solver() -> None:
     reasons = {each.solver: reason for each, reason in synth.designs(of.request, of.grids)}
     assert reasons["tridiagonal"] == ""
     assert "1024" in reasons["spectral"]
+
+
+def test_tables_replace_those_of_the_run_before_and_no_others(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    (out / synth.ROMS).mkdir(parents=True)
+    (out / synth.ROMS / "mine.hex").touch()
+    for name in ("first", "second"):
+        made = tmp_path / name
+        made.mkdir()
+        (made / f"{name}.hex").touch()
+        synth.keep_sources(made, TINY, out)
+    assert {path.name for path in (out / synth.ROMS).glob("*.hex")} == {"mine.hex", "second.hex"}
+    assert (out / synth.PARAMETERS).read_text().startswith("Config=")
+    script = (repository.ROOT / "constraints" / "xczu7ev_ooc.tcl").read_text()
+    assert f"cd [file join $made {synth.ROMS}]" in script
+    patterns = [found.split() for found in re.findall(r"\[file join \$root ([^]]*\.sv)\]", script)]
+    assert {*repository.sources()} == {path for words in patterns for path in repository.ROOT.glob("/".join(words))}
 
 
 def test_a_missing_tool(refused: Any, monkeypatch: Any) -> None:

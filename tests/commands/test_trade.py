@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make trade`: its rows are what the RTL does and are measured once; which are beaten, and the knee."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from commands.common import run_request
 from commands.study import study, trade, trade_front
 from commands.study.trade_front import Point, Row
+from tactile_depth.base.errors import InputError
 from tests import ball_presses
 
 PRESSES = 20  # drawn, so that each fold leaves enough in the middle
@@ -81,6 +83,15 @@ def test_the_folds_are_kept(presses: trade.Prepared, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(trade, "FORMATS", ("rgb888", "raw8"))
     monkeypatch.setattr(trade, "_calibrate", None)
     assert trade.prepare(presses.folder, presses.source, None) == presses
+
+
+def test_folders_of_others_are_not_removed(presses: trade.Prepared, tmp_path: Path) -> None:
+    mine = tmp_path / "presses-0" / "mine.png"
+    mine.parent.mkdir()
+    mine.touch()
+    with pytest.raises(InputError, match="presses-0 in it is of no earlier run"):
+        trade.prepare(tmp_path, presses.source, None)
+    assert mine.exists()
 
 
 @pytest.mark.regress
