@@ -123,7 +123,7 @@ def test_a_full_disk_leaves_earlier_results(
     assert sorted(path.name for path in tmp_path.iterdir()) == [CACHE_TAG, "mine.npz"]
 
 
-@pytest.mark.regress  # tests/test_fitting.py compares the fit itself
+@pytest.mark.regress  # tests/test_real_fits.py compares the fit itself
 def test_the_shipped_calibration_is_what_the_command_makes(tmp_path: Path, run_command: Any) -> None:
     out = tmp_path / "gelsight-mini.npz"
     assert run_command("calibrate", f"PRESSES={real_folder()}", f"OUT={out}").status == 0
