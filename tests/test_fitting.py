@@ -169,7 +169,7 @@ def test_a_sensor_is_the_same_from_a_file(sensor: Any, tmp_path: Path) -> None:
     again = td.load(path)
     for field in ("gradient", "coefficients", "cubic", "corrections", "lighting"):
         np.testing.assert_array_equal(getattr(again, field), getattr(sensor, field))
-    for field in ("camera", "fitted_slope", "height_errors", "model", "largest_slope", "flat_field"):
+    for field in ("camera", "fitted_slope", "height_errors", "model", "largest_slope", "flat_field", "verdict"):
         assert getattr(again, field) == getattr(sensor, field), field
 
 
@@ -327,7 +327,7 @@ def test_an_evaluation_on_the_fitted_presses_is_a_little_better_than_that_of_the
     td.fit(folder, models="quadratic")
     view, *summary = capsys.readouterr().out.splitlines()
     assert view.startswith("0.1 mm per pixel: the picture shows 16.0 x 11.2 mm of the gel.")
-    assert summary == quadratic.evaluation.summary.splitlines()
+    assert summary == [*quadratic.evaluation.summary.splitlines(), f"verdict: {quadratic.sensor.verdict}"]
 
 
 def test_presses_that_the_picture_cuts_are_left_out_with_a_note(sensor: Any, folder: Path, presses: Any) -> None:

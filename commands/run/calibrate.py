@@ -14,6 +14,7 @@ from commands.common.press_data import data_folder
 from commands.common.run_request import camera_choice
 from commands.common.variables import EQUAL, Place, Several, one, real, whole
 from tactile_depth.calibrate.fitting import DEFAULT_BITS
+from tactile_depth.calibrate.presses import ROTATIONS
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.limits import MODELS
 from tactile_depth.cli import calibrate
@@ -28,6 +29,8 @@ def main(
     bits: Annotated[int, whole(*TABLE_BITS)] = DEFAULT_BITS,
     find_circles: Annotated[bool, one({"table": False, "found": True}), "CIRCLES"] = False,
     exposure_us: Annotated[float | None, real(1e-3, LONGEST_EXPOSURE_US)] = None,
+    rotate: Annotated[int, one({str(degrees): degrees for degrees in ROTATIONS})] = 0,
+    keep_bad: Annotated[bool, one({"0": False, "1": True})] = False,
     camera: Annotated[CameraChoice | None, Several(("CAMERA", "BAYER"), camera_choice)] = None,
     out: Place | None = None,
 ) -> int:
@@ -38,6 +41,7 @@ def main(
     calibrate.add_arguments(parser)
     options = parser.parse_args(["PRESSES", "--compare-circles", "--picture"])
     options.presses, options.model, options.bits, options.find_circles = str(folder), model, bits, find_circles
+    options.rotate, options.keep_bad = rotate, keep_bad
     options.pitch_mm, options.exposure_us = pitch_mm and (pitch_mm,), exposure_us
     if camera is not None:
         options.camera, options.bayer = camera.pixel_format, camera.phase

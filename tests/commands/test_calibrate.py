@@ -57,7 +57,10 @@ def test_the_variables_reach_the_fit(made: Any, tmp_path: Path, run_command: Any
         f"the best model is {sensor.model}",
     ):
         assert printed in output
-    assert sorted(path.name for path in out.parent.iterdir()) == [RECORD, "mine.npz", "mine.png"]
+    assert sorted(path.name for path in out.parent.iterdir()) == [
+        RECORD,
+        *(f"mine{end}" for end in ("-circles.csv", "-circles.png", ".npz", ".png")),
+    ]
 
 
 def test_found_circles_replace_those_of_the_table(made: Any, tmp_path: Path, run_command: Any) -> None:

@@ -107,7 +107,11 @@ def test_the_file_is_that_of_a_fit_in_python(
         assert sorted(written) == sorted(other)
         for key in written:
             np.testing.assert_array_equal(written[key], other[key])
-    assert sorted(path.name for path in tmp_path.iterdir()) == [RECORD, "expected.npz", "presses.npz"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        RECORD,
+        "expected.npz",
+        *(f"presses{end}" for end in ("-circles.csv", "-circles.png", ".npz")),
+    ]
 
 
 def test_a_device_on_a_line_gives_the_grid_before_the_fit(

@@ -28,7 +28,15 @@ from tactile_depth.pictures.pictures import Picture
 from tactile_depth.pictures.reference_check import check_reference
 from tactile_depth.sensor.sensor import HeightError, Sensor
 
+GOOD_SHARE = 0.5  # of the largest usable error
 BALLS_AGREE = 0.03  # largest relative difference between the heights of balls
+# Largest errors of a usable model, on presses that were not fitted; a good one has half of them or less. Measured: the
+# better polynomial of 16 to 45 real presses, and drawn ones | half of the circles shifted by half a radius or more.
+CAP_BIAS = 0.12  # mean error of caps: up to 0.03 | 0.12 to 0.8
+CAP_RMS = 0.16  # RMS error of caps: 0.00 to 0.12 | 0.20 to 0.76
+SIDES_APART = 0.2  # mean caps in the middle less those at the sides: up to 0.08 | 0.15 to 0.6; a gel with markers: 0.8
+SHAPE_RMS = 0.16  # height RMS in the contact, over the height of the cap: 0.01 to 0.08 | 0.18 to 0.41
+FLAT_RMS = 0.16  # RMS depth of untouched gel, over the height of the cap: 0.00 to 0.06 | 0.02 to 0.18
 
 
 @dataclass(frozen=True)
@@ -43,12 +51,15 @@ class Score:
         Recovered over true height of the ball's cap.
     rest_slope, rest_mm : float
         RMS slope where nothing touches, and RMS of the depth, less its mean; NaN where the contact fills the grid.
+    cap_mm : float
+        True height of the cap.
     """
 
     height_rms_mm: float
     cap_height: float
     rest_slope: float
     rest_mm: float
+    cap_mm: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +102,41 @@ class Evaluation(ByValue):
 
     @property
     def best_model(self) -> str:
-        """The model with the smallest error of heights in the contacts."""
-        return min(self.scores, key=lambda model: float(self.values(model, "height_rms_mm").mean()))
+        """The model whose worst error is the smallest share of what is accepted."""
+        return min(self.scores, key=self.severity)
+
+    def severity(self, model: str) -> float:
+        """Return the largest error of a model over the largest that is usable: up to `GOOD_SHARE` it is good."""
+        return max(error / limit for error, limit, _ in self._errors(model))
+
+    def faults(self, model: str) -> list[str]:
+        """Return a line for each error of a model that is larger than that of a good one, the worst first."""
+        errors = sorted(self._errors(model), key=lambda each: each[0] / each[1], reverse=True)
+        return [
+            f"{text} (good up to {GOOD_SHARE * limit:.2g}, usable up to {limit:g})"
+            for error, limit, text in errors
+            if error > GOOD_SHARE * limit
+        ]
+
+    def _errors(self, model: str) -> list[tuple[float, float, str]]:
+        """Return errors of a model, each with the largest that is usable and a text."""
+        caps, height = self.values(model, "cap_height"), self.values(model, "cap_mm").mean()
+        rms, flat = self.values(model, "height_rms_mm").mean(), self.values(model, "rest_mm")
+        mean, spread, shape = float(caps.mean()), float(np.sqrt(((caps - 1) ** 2).mean())), float(rms / height)
+        errors = [
+            (abs(mean - 1), CAP_BIAS, f"caps read {mean:.2f} of their height"),
+            (spread, CAP_RMS, f"RMS error of caps {spread:.2f} of their height"),
+            (shape, SHAPE_RMS, f"height RMS in the contact {shape:.2f} of the caps' height"),
+        ]
+        if not np.isnan(flat).all():
+            rest = float(np.nanmean(flat) / height)
+            errors.append((rest, FLAT_RMS, f"untouched gel reads {rest:.2f} of the caps' height RMS"))
+        central = np.array(self.central)
+        if 0 < central.sum() < len(central):
+            middle, sides = float(caps[central].mean()), float(caps[~central].mean())
+            apart = f"caps read {middle:.2f} in the middle and {sides:.2f} at the sides"
+            errors.append((abs(middle - sides), SIDES_APART, apart))
+        return errors
 
     @property
     def summary(self) -> str:
@@ -233,4 +277,5 @@ def _score(view: View, slopes: np.ndarray, depth: np.ndarray, pitch_mm: float) -
     slope = math.sqrt((slopes[outside] ** 2).mean()) if outside.any() else math.nan
     far = view.press.untouched
     rest_mm = float(depth[far].std()) * pitch_mm if far.any() else math.nan
-    return Score(view.press.height_rms(depth) * pitch_mm, view.press.recovered(depth), slope, rest_mm)
+    cap_mm = view.press.cap_height * pitch_mm
+    return Score(view.press.height_rms(depth) * pitch_mm, view.press.recovered(depth), slope, rest_mm, cap_mm)

@@ -35,6 +35,7 @@ import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, InputWarning
 from tactile_depth.calibrate.evaluation import Evaluation, Score, evaluation_of, scores_of
+from tactile_depth.calibrate.judgement import judge
 from tactile_depth.calibrate.presses import (
     FITTED_SHARE,
     NOTHING_TOUCHES,
@@ -54,6 +55,7 @@ from tactile_depth.depth.reference import pixel_terms
 from tactile_depth.pictures.pictures import Picture
 from tactile_depth.sensor.calibration_file import LONGEST_EXPOSURE_US, PIXEL_ASPECTS, PIXEL_PITCHES_MM
 from tactile_depth.sensor.sensor import CORRECTIONS, TABLE_BITS, Camera, Sensor, equal_areas, lighting
+from tactile_depth.sensor.verdict import BAD
 
 FEWEST, FEWEST_MEASURED = 8, 2  # presses; those that lie completely in the middle square
 DRAWS, DRAWN_OUT = 12, 6  # choices of presses for each number of them, and presses that are measured in each
@@ -98,6 +100,7 @@ def fit(
     find_circles: bool = False,
     name: str | None = None,
     exposure_us: float | None = None,
+    rotate: int = 0,
     quiet: bool = False,
 ) -> Sensor:
     """Return a sensor, calibrated by presses of balls of known diameter.
@@ -127,27 +130,33 @@ def fit(
         Name of the sensor; by default that of the folder.
     exposure_us : float, optional
         Exposure time of the camera in microseconds.
+    rotate : int
+        Degrees, counter-clockwise, by which all pictures are rotated first: 0, 90, 180 or 270. Give circles as they lie
+        after that.
     quiet : bool
         Print nothing.
 
     Returns
     -------
     Sensor
-        `height_errors` is measured on each press by a fit to the others; `Sensor.save` writes it.
+        `height_errors` and `verdict` are measured on each press by a fit to the others; `Sensor.save` writes them. A
+        bad verdict gives a warning.
 
     Raises
     ------
     InputError
     """
     wanted = check_arguments(models, bits, pitch_mm, exposure_us)
-    pictures = gather(presses, background)
+    pictures = gather(presses, background, rotate)
     height, aspect = pixel_size(pitch_mm)
     on_grid = to_grid(pictures, camera_pitch_mm(pictures, height), find_circles, aspect=aspect)
     for note in on_grid.notes:
         warn(InputWarning(note), stacklevel=2)
     fitted = fit_presses(on_grid, wanted, bits, name or pictures.name, exposure_us)
+    if (verdict := fitted.sensor.verdict) and verdict.grade == BAD:
+        warn(InputWarning(f"the verdict of the fit is {verdict}"), stacklevel=2)
     if not quiet:
-        print(on_grid.field_of_view, fitted.evaluation.summary, sep="\n")
+        print(on_grid.field_of_view, fitted.evaluation.summary, f"verdict: {fitted.sensor.verdict}", sep="\n")
     return fitted.sensor
 
 
@@ -223,6 +232,7 @@ def fit_presses(
         height_errors={model: evaluation.height_error(model) for model in models},
         lighting=lighting(presses.background),
         untouched=equal_areas(presses.background),
+        verdict=judge(presses, evaluation),
     )
     return Fit(sensor, evaluation, without)
 

@@ -9,11 +9,12 @@ or `ball_diameter_mm` of the ball. Optional columns are the contact's circle, `c
 from __future__ import annotations
 
 import csv
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from tactile_depth.base.errors import InputError
 from tactile_depth.base.npy import is_file
-from tactile_depth.calibrate.ball_press import BallPress
+from tactile_depth.calibrate.ball_press import BallPress, Circle
 from tactile_depth.pictures.frames import PICTURE_SUFFIXES
 
 TABLE, BACKGROUND = "presses.csv", "background"
@@ -30,10 +31,15 @@ def background_path(folder: Path) -> Path:
     return next((path for path in paths if is_file(path)), paths[0])
 
 
-def read_presses(folder: Path) -> tuple[list[BallPress], list[str]]:
-    """Return the presses of presses.csv sorted by name, and one line for each column or line that is not used."""
-    path = folder / TABLE
+def read_presses(folder: Path, table: Path | None = None) -> tuple[list[BallPress], list[str]]:
+    """Return the presses of a table sorted by name, and one line for each column or line that is not used.
+
+    The table is presses.csv in the folder, if no other is given.
+    """
+    path = table or folder / TABLE
     if not is_file(path):
+        if table is not None:
+            raise InputError(f"{table}: no such file: give a table with the columns of {TABLE}")
         raise InputError(
             f"{folder}: no {TABLE} in it: give a folder with background.png, pictures of ball presses, and {TABLE} "
             "with columns frame and diameter_mm"
@@ -63,6 +69,18 @@ def read_presses(folder: Path) -> tuple[list[BallPress], list[str]]:
             continue
         presses[press.name] = press
     return [presses[name] for name in sorted(presses)], [str(InputError(note)) for note in notes]
+
+
+def write_presses(path: Path, presses: Iterable[BallPress], circles: Mapping[str, Circle]) -> None:
+    """Write a table of presses with these circles, by the names of presses; the others keep what they have."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(("frame", DIAMETERS[0], *CIRCLE, BALL_RADIUS))
+        for press in presses:
+            circle = circles.get(press.name, press.circle)
+            cells = [""] * len(CIRCLE) if circle is None else [f"{number:.2f}" for number in circle]
+            radius = "" if press.ball_radius_px is None else f"{press.ball_radius_px:g}"
+            writer.writerow((press.name, f"{press.diameter_mm:g}", *cells, radius))
 
 
 def _cells(path: Path) -> tuple[list[str], list[list[str]]]:

@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,7 @@ AT_REST = 2.5  # distance from the centre in contact radii: beyond it depth is t
 LARGEST_CONTACT = 0.999  # fraction of the ball's radius: slopes grow without bound towards 1
 LARGEST_CIRCLE = 0.8  # largest circle that is searched for, as a fraction of the ball's radius
 BACKGROUND = Argument("background")
+ROTATIONS = (0, 90, 180, 270)
 TOP_PX = 2  # radius of the top of a cap, in grid pixels
 # Standard deviation of the colours in the contacts, second over first principal axis. Colour pictures of 45 real
 # presses: 0.58; the same pictures in grey: 0.
@@ -181,17 +182,40 @@ class PressPictures:
     background : uint8 array (rows, columns, 3)
     notes : tuple of str
         One line for each column or line of presses.csv that was left out.
+    rotate : int
+        Degrees, counter-clockwise, by which pictures of presses are rotated; the background is rotated already.
     """
 
     name: str
     presses: tuple[BallPress, ...]
     background: np.ndarray
     notes: tuple[str, ...] = ()
+    rotate: int = 0
+
+    def image(self, press: BallPress) -> np.ndarray:
+        """Return the picture of a press, rotated; raise InputError if it is none of the background's size."""
+        image = _picture(press.image, press.name, self.rotate)
+        if image.shape != self.background.shape:
+            raise InputError(
+                f"{press.name}: {image.shape[0]} x {image.shape[1]} pixels, but the background has "
+                f"{self.background.shape[0]} x {self.background.shape[1]}"
+            )
+        return image
 
     @property
     def pitches(self) -> list[float]:
         """Millimetres per pixel, from each ball whose radius in pixels is known."""
         return [press.diameter_mm / 2 / press.ball_radius_px for press in self.presses if press.ball_radius_px]
+
+    @property
+    def ball_pitches(self) -> dict[float, float]:
+        """Median of the pitches by the diameter of the ball."""
+        given = [press for press in self.presses if press.ball_radius_px]
+        balls = {press.diameter_mm for press in given}
+        return {
+            ball: ball / 2 / float(np.median([press.ball_radius_px for press in given if press.diameter_mm == ball]))
+            for ball in sorted(balls)
+        }
 
 
 @dataclass(frozen=True)
@@ -217,6 +241,12 @@ class GridPresses:
         Pixel format of the camera that the pictures were converted for.
     aspect : float
         Width of a pixel over its height.
+    circles : mapping of str to Circle
+        The circles of the views in camera pixels, by the name of the press.
+    left_out : tuple of str
+        Names of the presses that were left out.
+    ball_pitches : mapping of float to float
+        Millimetres per pixel by the diameter of the ball, from presses with `ball_radius_px`.
     """
 
     name: str
@@ -229,6 +259,9 @@ class GridPresses:
     agreement: np.ndarray
     pixel_format: str = "rgb888"
     aspect: float = 1.0
+    circles: Mapping[str, Circle] = field(default_factory=dict)
+    left_out: tuple[str, ...] = ()
+    ball_pitches: Mapping[float, float] = field(default_factory=dict)
 
     @property
     def grid(self) -> tuple[int, int]:
@@ -251,7 +284,12 @@ class GridPresses:
         return self.pitch_mm * self.scale
 
 
-def gather(presses: str | Path | Sequence[BallPress], background: Picture | None = None) -> PressPictures:
+def gather(
+    presses: str | Path | Sequence[BallPress],
+    background: Picture | None = None,
+    rotate: int = 0,
+    table: Path | None = None,
+) -> PressPictures:
     """Return presses from a folder or from memory.
 
     Parameters
@@ -260,13 +298,19 @@ def gather(presses: str | Path | Sequence[BallPress], background: Picture | None
         A folder holds pictures, presses.csv (press_folder.py) and background.png or .jpg.
     background : uint8 array (rows, columns, 3), PIL image or path, optional
         Picture without contact; by default that of the folder.
+    rotate : int
+        Degrees, counter-clockwise, by which the pictures are rotated: one of `ROTATIONS`. Circles count after that.
+    table : path, optional
+        Of the presses in the folder; by default its presses.csv.
     """
+    if rotate not in ROTATIONS:
+        raise InputError(Argument("rotate", rotate), accepted=map(str, ROTATIONS))
     notes: list[str] = []
     if isinstance(presses, (str, Path)):
         folder = Path(presses)
         if background is None:
             background = background_path(folder)
-        listed, notes = read_presses(folder)
+        listed, notes = read_presses(folder, table)
         name = folder.resolve().name
     else:
         is_sequence: bool = isinstance(presses, Sequence)
@@ -282,7 +326,7 @@ def gather(presses: str | Path | Sequence[BallPress], background: Picture | None
     if repeated := next((one for one in names if names.count(one) > 1), None):
         problem = f": the name {repeated} stands twice"
         raise InputError(Argument("presses"), problem, remedy="give each press a name of its own")
-    return PressPictures(name, tuple(listed), _picture(background, BACKGROUND), tuple(notes))
+    return PressPictures(name, tuple(listed), _picture(background, BACKGROUND, rotate), tuple(notes), rotate)
 
 
 def camera_pitch_mm(pictures: PressPictures, pitch_mm: float | None) -> float:
@@ -347,10 +391,11 @@ def to_grid(
     require_light(gains, config, BACKGROUND)
     notes, agreement, stretches = list(pictures.notes), [], []
     geometry: list[tuple[GridPress, float]] = []
+    circles: dict[str, Circle] = {}
     frames: list[np.ndarray] = []
     for press in pictures.presses:
         try:
-            image = _press_image(press, background)
+            image = pictures.image(press)
             ball = press.diameter_mm / 2 / pitch_mm
             seen = None
             if find_circles or compare_circles or press.circle is None:
@@ -359,13 +404,17 @@ def to_grid(
                 seen = None if found is None else found.circle
                 stretches += [] if found is None else [found.stretch]
             given = None if press.circle is None else Circle(*press.circle)
-            at = _grid_press(press.name, seen if find_circles else given or seen, ball, sampler, grid, aspect)
+            circle = seen if find_circles else given or seen
+            if circle is None:
+                raise InputError(f"{press.name}: no circle to be seen")
+            at = _grid_press(press.name, circle, ball, sampler, grid, aspect)
         except InputError as error:
             notes.append(str(InputError(f"{error}: left out")))
             continue
         if given and seen:
             agreement.append(np.subtract(seen, given))
         geometry.append((at, press.diameter_mm))
+        circles[press.name] = circle
         frames.append(sampler.frame(image))
     stack = np.array(frames, np.uint8).reshape(-1, *grid, 3)
     field, light = pixel_gains(gains, config), Light.of(config)
@@ -377,7 +426,15 @@ def to_grid(
     differences = np.array(agreement).reshape(-1, 3)
     presses = GridPresses(pictures.name, views, background, rest, pitch_mm, sampler.scale, tuple(notes), differences)
     form = presses.pixel_format if choice is None else choice.pixel_format
-    return replace(presses, pixel_format=form, aspect=aspect)
+    left_out = tuple(press.name for press in pictures.presses if press.name not in circles)
+    return replace(
+        presses,
+        pixel_format=form,
+        aspect=aspect,
+        circles=circles,
+        left_out=left_out,
+        ball_pitches=pictures.ball_pitches,
+    )
 
 
 def _require_colours(views: Sequence[View], name: str) -> None:
@@ -403,11 +460,9 @@ def _stretched(stretches: Sequence[float]) -> list[str]:
 
 
 def _grid_press(
-    name: str, circle: Circle | None, ball: float, sampler: GridSampler, grid: tuple[int, int], aspect: float
+    name: str, circle: Circle, ball: float, sampler: GridSampler, grid: tuple[int, int], aspect: float
 ) -> GridPress:
     """Return the geometry of a circle and a ball's radius in camera pixels; raise InputError if it cannot be used."""
-    if circle is None:
-        raise InputError(f"{name}: no circle to be seen")
     if circle.radius >= LARGEST_CONTACT * ball:
         raise InputError(f"{name}: a contact of {circle.radius:.1f} pixels does not lie on a ball of {ball:.1f}")
     top, left = sampler.origin
@@ -425,21 +480,9 @@ def _grid_press(
     return press
 
 
-def _press_image(press: BallPress, background: np.ndarray) -> np.ndarray:
-    image = _picture(press.image, press.name)
-    if image.shape != background.shape:
-        raise InputError(
-            f"{press.name}: {image.shape[0]} x {image.shape[1]} pixels, but the background has "
-            f"{background.shape[0]} x {background.shape[1]}"
-        )
-    return image
-
-
-def _picture(image: Picture, name: Part) -> np.ndarray:
-    """Return the pixels of a picture, from an array, a PIL image or a path."""
-    if isinstance(image, str | Path):
-        return read_picture(Path(image))
-    image = np.asarray(image)
+def _picture(image: Picture, name: Part, rotate: int) -> np.ndarray:
+    """Return the pixels of a picture, from an array, a PIL image or a path, rotated by so many degrees."""
+    image = read_picture(Path(image)) if isinstance(image, str | Path) else np.asarray(image)
     if image.dtype != np.uint8 or image.ndim != 3 or image.shape[-1] != 3 or not image.size:
         raise InputError(name, f": {image.dtype} {image.shape}", accepted="uint8 (rows, columns, 3), RGB")
-    return image
+    return np.ascontiguousarray(np.rot90(image, rotate // 90))

@@ -14,8 +14,9 @@ import numpy as np
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
 from tactile_depth.calibrate.fitting import DEFAULT_BITS, Fit, check_arguments, fit_presses, pixel_size
-from tactile_depth.calibrate.press_folder import BACKGROUND, TABLE, background_path
+from tactile_depth.calibrate.press_folder import BACKGROUND, TABLE, background_path, write_presses
 from tactile_depth.calibrate.presses import (
+    ROTATIONS,
     SMALLEST_GRID,
     BallPress,
     GridPresses,
@@ -29,9 +30,10 @@ from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoic
 from tactile_depth.chip.limits import MODELS
 from tactile_depth.cli.measure import DEVICE, address_of, grid_of, measure
 from tactile_depth.cli.options import add_build_arguments, add_light_and_zero_arguments, build_choices, size
-from tactile_depth.cli.overview import draw_presses
+from tactile_depth.cli.overview import draw_circles, draw_presses
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.pictures.frames import read_pictures
+from tactile_depth.sensor.verdict import BAD
 
 NAME = "calibrate"
 HELP = "Fit a calibration to ball presses; load it into a device and measure it there, if one is named."
@@ -78,6 +80,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--bits", type=int, default=DEFAULT_BITS, metavar="N", help=f"of each colour, for lut (default {DEFAULT_BITS})"
     )
+    parser.add_argument(
+        "--rotate",
+        type=int,
+        default=0,
+        choices=ROTATIONS,
+        help="degrees counter-clockwise, by which to rotate pictures",
+    )
+    parser.add_argument(
+        "--circles",
+        type=Path,
+        metavar="FILE.csv",
+        help=f"in place of {TABLE}: the table that this command writes, corrected",
+    )
+    parser.add_argument("--keep-bad", action="store_true", help="write FILE.npz although the verdict of the fit is bad")
     parser.add_argument("--find-circles", action="store_true", help=f"find all circles, also those that {TABLE} gives")
     parser.add_argument(
         "--compare-circles",
@@ -119,11 +135,21 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     out: Path = options.out or Path(f"{Path(options.presses).resolve().name}.npz")
     require_npz(out)
     drawn = (out.with_suffix(".png"),) if options.picture else ()
-    names = [path.name for path in (out, *drawn)]
+    picture, table = (out.with_name(f"{out.stem}-circles{suffix}") for suffix in (".png", ".csv"))
+    circles = [picture] if options.circles else [picture, table]  # a table that is given is not written again
+    names = [path.name for path in (out, *drawn, *circles)]
     with files.workspace(out.parent, names, str(out)) as work:  # refused before the fit, which takes some seconds
         pictures = press_pictures(options)
         presses = on_grid(options, pictures)
-        fit = fitted(options, presses, out.stem)
+        draw_circles(pictures, presses).save(work / picture.name)
+        if table in circles:
+            write_presses(work / table.name, pictures.presses, presses.circles)
+        try:
+            fit = fitted(options, presses, out.stem)
+        except InputError:  # the circles may show why
+            files.replace(work, [path.name for path in circles], out.parent)
+            print("circles:", ", ".join(map(str, circles)), flush=True)
+            raise
         if address is not None:
             pipeline = Pipeline(fit.sensor, pictures.background, grid=presses.grid, **build_choices(options))
             measure(address, pipeline, presses, pictures)
@@ -131,6 +157,7 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
         for path in drawn:
             draw_presses(fit, presses).save(work / path.name)
         files.replace(work, names, out.parent)
+    print("circles:", ", ".join(map(str, circles)))
     print("results:", ", ".join(map(str, (out, *drawn))))
 
 
@@ -142,14 +169,16 @@ def require_npz(out: Path) -> None:
 
 def press_pictures(options: argparse.Namespace) -> PressPictures:
     """Return the presses of a folder with a table, or of a folder of pictures of one ball."""
-    folder = Path(options.presses)
+    folder, table = Path(options.presses), options.circles
     if options.diameter_mm is None:
-        return gather(folder, options.background)
-    if (folder / TABLE).exists():
-        raise InputError(f"--diameter-mm {options.diameter_mm:g}: {folder / TABLE} has the diameters: omit one of them")
+        return gather(folder, options.background, options.rotate, table)
+    if table is not None or (folder / TABLE).exists():
+        has = table or folder / TABLE
+        raise InputError(f"--diameter-mm {options.diameter_mm:g}: {has} has the diameters: omit one of them")
     background = Path(options.background or background_path(folder))
     names = [name for name in read_pictures(folder, f"PRESSES {folder}")[0] if folder / name != background]
-    return gather([BallPress(folder / name, options.diameter_mm, name=name) for name in names], background)
+    listed = [BallPress(folder / name, options.diameter_mm, name=name) for name in names]
+    return gather(listed, background, options.rotate)
 
 
 def on_grid(options: argparse.Namespace, pictures: PressPictures) -> GridPresses:
@@ -191,7 +220,10 @@ def fitted(options: argparse.Namespace, presses: GridPresses, name: str) -> Fit:
     fit = fit_presses(presses, chosen(options), options.bits, name, options.exposure_us, _progress)
     evaluation = replace(fit.evaluation, notes=())  # they are warnings
     print("every whole press, by a fit to the others; cap height: recovered / true", evaluation, sep="\n")
-    print(f"the best model is {fit.sensor.model}", flush=True)
+    print(f"the best model is {fit.sensor.model}", f"verdict: {fit.sensor.verdict}", sep="\n", flush=True)
+    if fit.sensor.verdict and fit.sensor.verdict.grade == BAD and not options.keep_bad:
+        what = f"{name}.npz is not written, because the verdict of the fit is bad"
+        raise InputError(what, remedy="mend the cause that is named, or give --keep-bad")
     return fit
 
 

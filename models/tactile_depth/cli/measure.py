@@ -17,7 +17,6 @@ from tactile_depth.device.addresses import SIM, open_channel
 from tactile_depth.device.device import Device
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.frame import DeviceFrame
-from tactile_depth.pictures.frames import read_picture
 from tactile_depth.sensor.synthetic import synthetic
 
 DEVICE = "device:"
@@ -80,7 +79,7 @@ def measure(address: str, pipeline: Pipeline, presses: GridPresses, pictures: Pr
     background = pictures.background
     rows, columns = pipeline.grid
     print(f"device {address}: {pipeline.config.gradient_model}, {columns} x {rows}", flush=True)
-    images = {press.name: press.image for press in pictures.presses}
+    named = {press.name: press for press in pictures.presses}
     results: dict[str, Measured] = {}
     with Device(address, pipeline) as device:
         device.load()
@@ -91,9 +90,7 @@ def measure(address: str, pipeline: Pipeline, presses: GridPresses, pictures: Pr
         print(f"{'press':<{NAME_WIDTH}}  {'touching':<10}height RMS, um: device  package")
         for view in presses.views:
             name = view.press.name
-            image = images[name]
-            picture = image if isinstance(image, np.ndarray) else read_picture(image)  # type: ignore[arg-type]
-            if (read := _read(device, pipeline, view, picture)) is None:
+            if (read := _read(device, pipeline, view, pictures.image(named[name]))) is None:
                 print(f"{name[-NAME_WIDTH:]:<{NAME_WIDTH}}  gives no depth, as a warning says", flush=True)
                 continue
             results[name] = read

@@ -6,15 +6,19 @@ from __future__ import annotations
 import numpy as np
 from PIL import Image
 
+from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate.evaluation import slopes_and_depths
 from tactile_depth.calibrate.fitting import Fit
-from tactile_depth.calibrate.presses import GridPresses
+from tactile_depth.calibrate.judgement import doubtful_circles
+from tactile_depth.calibrate.presses import GridPresses, PressPictures
 from tactile_depth.cli.drawing import AROUND_ZERO, BACKGROUND, DARK, FADED, INK, OUTSIDE, Panel, Scale, sheet
 from tactile_depth.depth.result import Result
 
 PANEL_WIDTH = 480  # pixels
 TICK = 0.02  # of the width of a map: marks the row of the profile
 PRESS_WIDTH, PRESSES_DRAWN = 300, 3
+CIRCLE_WIDTH, IN_A_ROW, CHANGE_GAIN = 240, 6, 2  # of a contact sheet; grey levels drawn for one of change
+GREY = 128
 LINES = (INK, (31, 119, 180), (255, 127, 14), (44, 160, 44))  # of the ball and of the gradient models
 
 
@@ -85,3 +89,28 @@ def draw_presses(fit: Fit, presses: GridPresses) -> Image.Image:
     size_mm = (columns * pitch_mm * presses.aspect, rows * pitch_mm)
     title = f"presses by fits to the others, {best}, Neumann, {columns} x {rows}"
     return sheet(drawn, PRESS_WIDTH, size_mm, notes, title)
+
+
+def draw_circles(pictures: PressPictures, presses: GridPresses) -> Image.Image:
+    """Draw the change of each press against the background, with its circle; presses without one were left out."""
+    rows, columns = pictures.background.shape[:2]
+    doubtful = set(doubtful_circles(presses))
+    angle = np.linspace(0, 2 * np.pi, 90)
+    panels = []
+    for press in pictures.presses:
+        try:
+            change = pictures.image(press).astype(np.int16) - pictures.background
+        except InputError:  # a warning named it
+            continue
+        curves = []
+        if circle := presses.circles.get(press.name):
+            x = (circle.x + 0.5 + circle.radius / presses.aspect * np.cos(angle)) / columns
+            y = (circle.y + 0.5 + circle.radius * np.sin(angle)) / rows
+            curves = [(OUTSIDE if press.name in doubtful else INK, np.stack((x, y)).clip(0, 1))]
+        pixels = (GREY + CHANGE_GAIN * change).clip(0, 255).astype(np.uint8)
+        panels.append(Panel(press.name, pixels, curves=curves))
+    lines = [panels[first : first + IN_A_ROW] for first in range(0, len(panels), IN_A_ROW)]
+    size_mm = (columns * presses.pitch_mm * presses.aspect, rows * presses.pitch_mm)
+    notes = [(INK, "circle"), (OUTSIDE, "beside the change of colour"), (BACKGROUND, "no circle: left out")]
+    caption = f"{presses.name}: change against the background, times {CHANGE_GAIN}"
+    return sheet(lines, CIRCLE_WIDTH, size_mm, notes, caption)

@@ -26,6 +26,7 @@ from tactile_depth.sensor.sensor import (
     HeightError,
     Sensor,
 )
+from tactile_depth.sensor.verdict import BAD, GRADES, Verdict
 from tactile_depth.sensor.view import SMALLEST_VIEW, is_share
 
 FOLDER = Path(__file__).resolve().parent / "calibrations"
@@ -45,6 +46,7 @@ KEYS = (
     "lighting",
     "untouched",
     "view",
+    "verdict",
     "cubic",
     "corrections",
     "pixel_aspect",
@@ -107,6 +109,7 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
         else 1.0,
         view=_view(path, arrays) if "view" in arrays else None,
         untouched=_untouched(path, arrays) if "untouched" in arrays else None,
+        verdict=_verdict(path, arrays["verdict"]) if "verdict" in arrays else None,
     )
 
 
@@ -116,6 +119,16 @@ def _view(path: Path, arrays: Arrays) -> tuple[float, float]:
         accepted = f"shares of the full picture's width and height, {SMALLEST_VIEW:g} to 1"
         raise InputError(f"{path}: `view` is {width:g}, {height:g}: accepted are {accepted}")
     return width, height
+
+
+def _verdict(path: Path, words: np.ndarray) -> Verdict:
+    if words.ndim != 1 or words.dtype.kind != "U" or not len(words) or words[0] not in GRADES:
+        accepted = f"one of {', '.join(GRADES)}, then reasons"
+        raise InputError(f"{path}: `verdict` is {words.dtype} {words.shape}", accepted=accepted)
+    verdict = Verdict(str(words[0]), tuple(map(str, words[1:])))
+    if verdict.grade == BAD:
+        warn(InputWarning(f"{path}: the verdict of its fit is {verdict}", remedy="calibrate again"))
+    return verdict
 
 
 def _untouched(path: Path, arrays: Arrays) -> np.ndarray:

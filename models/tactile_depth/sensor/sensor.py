@@ -23,6 +23,7 @@ from tactile_depth.chip.limits import (
     MODELS,
     SHALLOWEST_PX,
 )
+from tactile_depth.sensor.verdict import Verdict
 
 if TYPE_CHECKING:
     from tactile_depth.chip.configuration import Configuration
@@ -135,6 +136,8 @@ class Sensor(ByValue):
         middle; None: unknown.
     untouched : float64 array (`UNTOUCHED_AREAS`, 3), or None
         Grey levels of the calibration's own picture without contact, as means of equal areas.
+    verdict : Verdict or None
+        Verdict of the fit; None: unknown.
     """
 
     name: str
@@ -154,6 +157,7 @@ class Sensor(ByValue):
     pixel_aspect: float = 1.0
     view: tuple[float, float] | None = None
     untouched: Floats | None = None
+    verdict: Verdict | None = None
 
     def __post_init__(self) -> None:
         for name in ("gradient", "coefficients", "reference", "lighting", "cubic", "corrections", "untouched"):
@@ -397,6 +401,7 @@ class Sensor(ByValue):
             "lighting": self.lighting,
             "untouched": None if self.untouched is None else self.untouched.astype(np.float32),
             "view": None if self.view is None else np.array(self.view),
+            "verdict": None if self.verdict is None else np.array((self.verdict.grade, *self.verdict.reasons)),
             "pixel_aspect": self.pixel_aspect if self.pixel_aspect != 1 else None,
         }
         for model, slope in self.fitted_slope.items():

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Judges a fit: its errors on presses that were not fitted, and what the presses themselves show of a likely cause.
+
+No errors of a fit show a diameter or a pitch that is wrong for all presses, or what the gel does where nothing was
+pressed: the rest agrees with itself. So the presses are judged beside their errors.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from scipy.ndimage import median_filter
+from scipy.signal import fftconvolve
+
+from tactile_depth.calibrate.evaluation import Evaluation
+from tactile_depth.calibrate.presses import FITTED_SHARE, GridPresses, View
+from tactile_depth.chip.limits import COEFFICIENTS, DEVIATION
+from tactile_depth.depth.reference import pixel_terms
+from tactile_depth.sensor.verdict import BAD, GOOD, GRADES, USABLE, Verdict
+
+# Least distance of a press from the picture's middle towards each of its sides, as a share of the way. Presses all over
+# the gel, 10 or more: 0.31 to 0.9; presses on one side alone: -0.3 to 0.0.
+BAD_REACH, GOOD_REACH = 0.1, 0.25
+# Largest ratio of the diameter that the presses of a ball show, by the colours of other balls, to that given. Real
+# balls that contradict each other by 8 %: 1.11; one of two diameters wrong by 30 %: 1.19 to 1.41.
+DIAMETERS_AGREE, FEWEST_OF_A_BALL = 1.15, 4
+# Least ratio, of all diameters to those given, at which slopes are linear in the colours. Colours of a lit gel grow
+# more slowly than slopes, never faster. Drawn linear gels: 1.0; real gels: over 2; all diameters 30 % too large: 0.77.
+FASTER_THAN_SLOPES = 0.88
+FACTORS = np.exp(np.linspace(-0.6, 0.6, 49))  # of a diameter
+RIDGE = 1e-3  # added to the diagonal of equations scaled to 1
+# Change of colour in a circle over that in the circle of its size that holds most: 0.70 to 1 for right circles, below
+# 0.55 for others on untouched gel. Ring of most change, in radii: 0.75 to 1.05 for right circles, 0.25 to 0.65 for
+# circles shifted by half a radius or more, or 1.4 times too large; 1.45 for circles of 0.65 times the right size.
+FULL_CIRCLE, RING = 0.62, (0.7, 1.25)
+MOST_DOUBTFUL = 0.2  # share of the presses whose circles may be doubtful, or that may be left out
+# A dark spot has less than that share of the light around it, in a square so wide in a picture of 320 columns. Share of
+# the picture: real gels without markers 0.000; drawn markers 0.06 to 0.08.
+DARK_SPOT, SPOT_PX, COLUMNS, MOST_SPOTS = 0.8, 31, 320, 0.02
+NAMED = 4  # presses in a reason
+NOT_CHECKED = "pitch not checked: balls fit any, and no ball_radius_px says more"
+
+
+def judge(presses: GridPresses, evaluation: Evaluation) -> Verdict:
+    """Return the verdict on the best model of a fit to presses on the grid."""
+    model = evaluation.best_model
+    numbers = evaluation.faults(model)
+    grades = [GOOD if not numbers else BAD if evaluation.severity(model) > 1 else USABLE]
+    causes = []
+    circles = _circles(presses)
+    diameters = (GOOD, "") if circles[0] == BAD else _diameters(presses)  # which need right circles
+    for grade, cause in (circles, diameters, _markers(presses), _spread(presses)):
+        if cause:
+            grades.append(grade)
+            causes.append(cause)
+    worst = max(grades, key=GRADES.index)
+    if worst == BAD and not causes:
+        causes = ["no likely cause found: look at the circles, and whether the camera adjusts itself"]
+    unchecked = [] if presses.ball_pitches else [NOT_CHECKED]
+    return Verdict(worst, (*numbers, *causes, *unchecked))
+
+
+def _joined(names: Sequence[str]) -> str:
+    return ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
+
+
+# Diameters.
+
+
+def _diameters(presses: GridPresses) -> tuple[str, str]:
+    """Return whether the balls contradict each other, or all diameters what a gel can do."""
+    pitches = presses.ball_pitches
+    if pitches and max(pitches.values()) > DIAMETERS_AGREE * min(pitches.values()):
+        balls = ", ".join(f"{ball:g} mm {pitch:.3g} mm per pixel" for ball, pitch in pitches.items())
+        return BAD, f"likely cause: a wrong diameter or ball_radius_px: the pitch is by balls of {balls}"
+    by_ball: dict[float, list[View]] = {}
+    for view in presses.views:
+        by_ball.setdefault(view.diameter_mm, []).append(view)
+    samples = {ball: _Samples(views, presses.grid_pitch_mm) for ball, views in by_ball.items()}
+    shown = {}
+    for ball, own in samples.items():
+        others = [each for other, each in samples.items() if other != ball]
+        if len(by_ball[ball]) >= FEWEST_OF_A_BALL and len(presses.views) - len(by_ball[ball]) >= FEWEST_OF_A_BALL:
+            shown[ball] = own.factor(others)
+    if len(shown) > 1:
+        mean = math.exp(np.mean([math.log(factor) for factor in shown.values()]))
+        apart = {ball: factor / mean for ball, factor in shown.items()}
+        if max(max(ratio, 1 / ratio) for ratio in apart.values()) > DIAMETERS_AGREE:
+            balls = ", ".join(f"{ball:g} mm as {ball * ratio:.2g} mm" for ball, ratio in apart.items())
+            return BAD, f"likely cause: a wrong diameter: by the colours of the other balls, {balls}"
+    factor = _linear_at(list(samples.values()))
+    if factor < FASTER_THAN_SLOPES:
+        return BAD, (
+            "likely cause: diameters too large, or a pitch too small: colours are those of balls of "
+            f"{factor:.2f} times the diameters given"
+        )
+    return GOOD, ""
+
+
+class _Samples:
+    """Pixels in the contacts of some presses: features of a response linear in the colours, and the balls' slopes."""
+
+    def __init__(self, views: Sequence[View], pitch_mm: float) -> None:
+        features, offsets, radii = [], [], []
+        for view in views:
+            press, inside = view.press, view.press.distance < FITTED_SHARE
+            colours = view.deviations[inside] * DEVIATION.lsb
+            terms = pixel_terms(*press.grid, pitch_mm)[inside][:, : COEFFICIENTS[-1]]
+            features.append((colours[:, :, None] * terms[:, None, :]).reshape(len(colours), -1))
+            rows, columns = np.nonzero(inside)
+            offsets.append(np.stack(((press.x - columns) * press.aspect, press.y - rows), axis=-1))
+            radii.append(np.full(len(colours), press.ball_radius))
+        self.features, self.offsets, self.radii = (np.concatenate(parts) for parts in (features, offsets, radii))
+
+    def slopes(self, factor: float = 1.0) -> np.ndarray:
+        """Return slopes (n, 2) of balls of `factor` times the diameter; NaN where such a ball is not that wide."""
+        drop = (factor * self.radii) ** 2 - (self.offsets**2).sum(axis=-1)
+        return self.offsets / np.sqrt(np.where(drop > 0, drop, np.nan))[:, None]
+
+    def factor(self, others: Sequence[_Samples]) -> float:
+        """Return the factor of the diameter at which the slopes agree best with the response of other balls."""
+        slopes = np.concatenate([other.slopes() for other in others])
+        response = _response(np.concatenate([other.features for other in others]), slopes)
+        by_others = self.features @ response
+        known = np.hypot(*by_others.T) < np.quantile(np.hypot(*slopes.T), 0.98)
+        return _best(lambda factor: float(((by_others - self.slopes(factor))[known] ** 2).mean()))
+
+
+def _response(features: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+    squares = features.T @ features
+    scale = 1 / np.sqrt(squares.diagonal())
+    scaled = squares * np.outer(scale, scale) + RIDGE * np.eye(len(scale))
+    response: np.ndarray = scale[:, None] * np.linalg.solve(scaled, scale[:, None] * (features.T @ slopes))
+    return response
+
+
+def _best(error: Callable[[float], float]) -> float:
+    errors = np.array([error(factor) for factor in FACTORS])
+    return float(FACTORS[np.nanargmin(errors)]) if np.isfinite(errors).any() else 1.0
+
+
+def _linear_at(samples: Sequence[_Samples]) -> float:
+    """Return the factor of all diameters at which slopes are closest to linear in the colours."""
+    features = np.concatenate([each.features for each in samples])
+
+    def error(factor: float) -> float:
+        slopes = np.concatenate([each.slopes(factor) for each in samples])
+        if np.isnan(slopes).any():
+            return math.nan
+        return float(((features @ _response(features, slopes) - slopes) ** 2).sum() / (slopes**2).sum())
+
+    return _best(error)
+
+
+# Circles, markers and positions.
+
+
+def _circles(presses: GridPresses) -> tuple[str, str]:
+    """Return whether many circles lie beside the change of colour, or many presses are left out."""
+    doubtful = doubtful_circles(presses)
+    if len(doubtful) > MOST_DOUBTFUL * len(presses.views):
+        return BAD, (
+            f"likely cause: wrong circles: those of {len(doubtful)} of {len(presses.views)} presses do not lie around "
+            f"the change of colour: {_joined(doubtful)}"
+        )
+    number = len(presses.left_out)
+    if number > MOST_DOUBTFUL * (number + len(presses.views)):
+        return USABLE, f"{number} of {number + len(presses.views)} presses are left out: {_joined(presses.left_out)}"
+    return GOOD, ""
+
+
+def doubtful_circles(presses: GridPresses) -> list[str]:
+    """Return the names of presses whose circles do not hold the change of colour, the most of it near the edge."""
+    return [view.press.name for view in presses.views if not _is_full(view)]
+
+
+def _is_full(view: View) -> bool:
+    change, press = np.linalg.norm(view.deviations, axis=-1), view.press
+    reach = math.ceil(press.contact_radius)
+    rows, columns = np.indices((2 * reach + 1,) * 2) - reach
+    disc = np.hypot(rows, columns * press.aspect) < press.contact_radius
+    most = fftconvolve(change, disc, mode="same").max()
+    ring = (press.distance * 10).astype(int)[press.distance < 2]  # a tenth of the radius wide
+    mean = np.bincount(ring, change[press.distance < 2]) / np.maximum(np.bincount(ring), 1)
+    low, high = RING
+    at = (mean[2:].argmax() + 2.5) / 10
+    return bool(change[press.distance < 1].sum() >= FULL_CIRCLE * most and low < at < high)
+
+
+def _markers(presses: GridPresses) -> tuple[str, str]:
+    """Return whether the gel without contact has dark spots."""
+    step = max(presses.background.shape[1] // COLUMNS, 1)
+    light = presses.background[::step, ::step].mean(axis=-1)
+    share = float((light < DARK_SPOT * median_filter(light, SPOT_PX * light.shape[1] // COLUMNS | 1)).mean())
+    if share < MOST_SPOTS:
+        return GOOD, ""
+    return USABLE, (
+        f"likely cause: markers: dark spots cover {100 * share:.0f} % of the gel; they move with it, so its reference "
+        "does not cancel them"
+    )
+
+
+def _spread(presses: GridPresses) -> tuple[str, str]:
+    """Return whether presses leave a side of the picture out."""
+    rows, columns = presses.grid
+    at = np.array([(view.press.x, view.press.y) for view in presses.views])
+    away = 2 * (at + 0.5) / (columns, rows) - 1  # from the middle, in shares of the way to the edge
+    reach = np.concatenate(((-away).max(axis=0), away.max(axis=0)))
+    bare = [side for side, far in zip(("left", "top", "right", "bottom"), reach, strict=True) if far < GOOD_REACH]
+    if not bare:
+        return GOOD, ""
+    grade = BAD if reach.min() < BAD_REACH else USABLE
+    return grade, (
+        f"likely cause: presses on one side alone: none lies well to the {' or the '.join(bare)} of the "
+        "middle, where slopes are guessed"
+    )

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Verdicts on fits: good ones of drawn presses, and bad ones with their likely cause."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tactile_depth as td
+from tactile_depth.base.errors import InputError, InputWarning
+from tactile_depth.calibrate.fitting import fit_presses
+from tactile_depth.calibrate.presses import GridPresses, gather, to_grid
+from tactile_depth.cli.main import main
+from tactile_depth.sensor.verdict import Verdict
+from tests.ball_presses import PITCH, places, read, real_folder, table_rows, write_folder, write_table
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_folder(tmp_path_factory.mktemp("verdict") / "presses")
+
+
+@pytest.fixture(scope="module")
+def presses(folder: Path) -> GridPresses:
+    return read(folder)
+
+
+def verdict(presses: GridPresses) -> Verdict:
+    found = fit_presses(presses, ("quadratic",)).sensor.verdict
+    assert found is not None
+    return found
+
+
+def changed(folder: Path, radii: bool = False, **change: Callable[[int, Any], Any]) -> GridPresses:
+    """Return the presses with values changed by functions of the number of the press; without radii of balls."""
+    gathered = gather(folder)
+    listed = []
+    for index, press in enumerate(gathered.presses):
+        values = {name: value(index, getattr(press, name)) for name, value in change.items()}
+        listed.append(replace(press, ball_radius_px=press.ball_radius_px if radii else None, **values))
+    return to_grid(replace(gathered, presses=tuple(listed)), PITCH)
+
+
+def test_presses_all_over_the_gel_are_good(presses: GridPresses) -> None:
+    assert str(verdict(presses)) == "good"
+
+
+def test_a_pitch_that_nothing_checks_is_said(folder: Path) -> None:
+    checked = verdict(changed(folder))
+    assert checked.grade == "good"
+    assert checked.reasons == ("pitch not checked: balls fit any, and no ball_radius_px says more",)
+
+
+def shifted(number: int, circle: tuple[float, float, float]) -> tuple[float, float, float]:
+    x, y, radius = circle
+    angle = 2.4 * number
+    return (x + radius * np.cos(angle), y + radius * np.sin(angle), radius) if number % 2 else circle
+
+
+BAD: dict[str, Any] = {
+    "one diameter": ({"diameter_mm": lambda _, ball: 1.3 * ball if ball == 6 else ball}, "a wrong diameter: .* 7.8 mm"),
+    "the other": ({"diameter_mm": lambda _, ball: 0.7 * ball if ball == 8 else ball}, "a wrong diameter: .* 5.6 mm"),
+    "all diameters": ({"diameter_mm": lambda _, ball: 1.3 * ball}, "diameters too large, or a pitch too small: .* 0.7"),
+    "circles": ({"circle": shifted}, "wrong circles: those of 1[0-9] of "),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_a_bad_fit_names_the_likely_cause(folder: Path, case: str) -> None:
+    change, cause = BAD[case]
+    found = verdict(changed(folder, **change))
+    assert found.grade == "bad"
+    (match,) = [reason for reason in found.reasons if "likely cause" in reason]
+    assert re.search(cause, match), match
+
+
+def test_radii_of_balls_that_give_two_pitches_are_told(folder: Path) -> None:
+    one = changed(folder, radii=True, diameter_mm=lambda _, ball: 1.3 * ball if ball == 6 else ball)
+    assert "the pitch is by balls of 7.8 mm 0.13 mm per pixel, 8 mm 0.1 mm" in str(verdict(one))
+
+
+@pytest.mark.parametrize(("axis", "side"), [(0, "right"), (1, "bottom")])
+def test_presses_on_one_side_alone_are_bad(presses: GridPresses, axis: int, side: str) -> None:
+    rows, columns = presses.grid
+    kept = [view for view in presses.views if (view.press.x / columns, view.press.y / rows)[axis] < 0.5]
+    found = verdict(replace(presses, views=tuple(kept)))
+    assert found.grade == "bad"
+    assert f"none lies well to the {side}" in str(found)
+
+
+def test_markers_on_the_gel_are_named(presses: GridPresses) -> None:
+    rows, columns, _ = np.indices(presses.background.shape)
+    dots = np.hypot(rows % 12 - 6, columns % 12 - 6) < 2
+    dotted = np.where(dots, 0.3 * presses.background, presses.background).astype(np.uint8)
+    found = verdict(replace(presses, background=dotted))
+    assert found.grade == "usable"
+    assert "markers: dark spots cover 6 % of the gel" in str(found)
+
+
+def test_the_best_model_is_that_of_the_smallest_error_by_all_figures(presses: GridPresses) -> None:
+    fit = fit_presses(presses, ("lut", "quadratic"))
+    scores = fit.evaluation.scores
+    low = tuple(
+        replace(score, cap_height=0.64, height_rms_mm=0.5 * score.height_rms_mm) for score in scores["quadratic"]
+    )
+    evaluation = replace(fit.evaluation, scores={**scores, "lut": low})
+    assert evaluation.best_model == "quadratic"
+    assert evaluation.faults("lut")[0] == "caps read 0.64 of their height (good up to 0.06, usable up to 0.12)"
+    assert evaluation.severity("lut") == pytest.approx(0.36 / 0.12)
+
+
+def test_a_bad_calibration_is_refused_unless_asked_for_and_told_when_it_is_loaded(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, out = write_folder(tmp_path / "presses"), tmp_path / "mine.npz"
+    rows = [{**row, "diameter_mm": 1.3 * row["diameter_mm"]} for row in table_rows()]
+    write_table(folder, rows, ["frame", "diameter_mm", "centre_x_px", "centre_y_px", "contact_radius_px"])
+    words = ["calibrate", str(folder), "--pitch-mm", str(PITCH), "--model", "quadratic", "--out", str(out)]
+    assert main(words) == 2
+    captured = capsys.readouterr()
+    assert "verdict: bad; likely cause: diameters too large" in captured.out
+    assert "mine.npz is not written, because the verdict of the fit is bad: mend the cause" in captured.err
+    assert {path.name for path in tmp_path.glob("mine*")} == {"mine-circles.csv", "mine-circles.png"}
+    assert main([*words, "--keep-bad"]) == 0
+    with pytest.warns(InputWarning, match=r"mine.npz: the verdict of its fit is bad; .*: calibrate again"):
+        assert td.load(out).verdict is not None
+    with pytest.warns(InputWarning, match="the verdict of the fit is bad; likely cause"):
+        td.fit(folder, pitch_mm=PITCH, models="quadratic", quiet=True)
+
+
+def test_circles_that_are_corrected_by_hand_are_given_back(tmp_path: Path) -> None:
+    folder, out = write_folder(tmp_path / "presses"), tmp_path / "mine.npz"
+    words = ["calibrate", str(folder), "--model", "quadratic", "--out", str(out)]
+    assert main(words) == 0
+    first, table = td.load(out), tmp_path / "mine-circles.csv"
+    lines = table.read_text().splitlines()
+    assert lines[0] == "frame,diameter_mm,centre_x_px,centre_y_px,contact_radius_px,ball_radius_px"
+    name, diameter, x, y, radius, ball = places()[3]
+    assert lines[4] == f"{name},{diameter:g},{x:.2f},{y:.2f},{radius:.2f},{ball:g}"
+    (folder / "presses.csv").unlink()
+    table.write_text("\n".join(lines[:4] + lines[5:]))
+    assert main(words) == 2  # the table is not lost
+    assert main([*words, "--circles", str(table)]) == 0
+    assert td.load(out).height_errors != first.height_errors
+    assert table.read_text().splitlines() == lines[:4] + lines[5:]
+    with pytest.raises(InputError, match=r"none.csv: no such file: give a table with the columns of presses.csv"):
+        gather(folder, table=tmp_path / "none.csv")
+
+
+def test_real_presses_are_good_and_any_share_of_them_is_usable() -> None:
+    real = read(real_folder())
+    assert str(verdict(real)) in (
+        "good",
+        "usable; RMS error of caps 0.08 of their height (good up to 0.08, usable up to 0.16)",
+    )
+    for first in range(2):
+        assert verdict(replace(real, views=real.views[first::2])).grade != "bad"
