@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Verdicts on fits: good ones of drawn presses, and bad ones with their likely cause."""
 
+import base64
+import io
+import json
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -9,11 +12,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import tactile_depth as td
 from tactile_depth.base.errors import InputError, InputWarning
 from tactile_depth.calibrate.fitting import fit_presses
+from tactile_depth.calibrate.press_folder import HEAD
 from tactile_depth.calibrate.presses import GridPresses, gather, to_grid
+from tactile_depth.cli.circle_page import circle_page
 from tactile_depth.cli.main import main
 from tactile_depth.sensor.verdict import Verdict
 from tests.ball_presses import PITCH, places, read, real_folder, table_rows, write_folder, write_table
@@ -124,7 +130,7 @@ def test_a_bad_calibration_is_refused_unless_asked_for_and_told_when_it_is_loade
     captured = capsys.readouterr()
     assert "verdict: bad; likely cause: diameters too large" in captured.out
     assert "mine.npz is not written, because the verdict of the fit is bad: mend the cause" in captured.err
-    assert {path.name for path in tmp_path.glob("mine*")} == {"mine-circles.csv", "mine-circles.png"}
+    assert {path.name for path in tmp_path.glob("mine*")} == {f"mine-circles.{kind}" for kind in ("csv", "html", "png")}
     assert main([*words, "--keep-bad"]) == 0
     with pytest.warns(InputWarning, match=r"mine.npz: the verdict of its fit is bad; .*: calibrate again"):
         assert td.load(out).verdict is not None
@@ -149,6 +155,30 @@ def test_circles_that_are_corrected_by_hand_are_given_back(tmp_path: Path) -> No
     assert table.read_text().splitlines() == lines[:4] + lines[5:]
     with pytest.raises(InputError, match=r"none.csv: no such file: give a table with the columns of presses.csv"):
         gather(folder, table=tmp_path / "none.csv")
+
+
+def test_the_page_holds_the_table_and_the_pictures(folder: Path, presses: GridPresses) -> None:
+    pictures = gather(folder)
+    data = re.search(r"const \[columns, rows, aspect, head, presses\] = (.*);\n", circle_page(pictures, presses))
+    assert data is not None
+    columns, rows, aspect, head, listed = json.loads(data[1])
+    assert (columns, rows, aspect, head) == (160, 112, 1, list(HEAD))
+    name, diameter, x, y, radius, ball = places()[3]
+    assert listed[3]["cells"] == [name, f"{diameter:g}", f"{x:.2f}", f"{y:.2f}", f"{radius:.2f}", f"{ball:g}"]
+    shown = np.asarray(Image.open(io.BytesIO(base64.b64decode(listed[3]["picture"]))))
+    assert shown.shape == (112, 160, 3)
+    assert abs(shown[:5].mean() - 128) < 2  # nothing changes there
+
+
+def test_pictures_are_rotated_before_anything_else(folder: Path) -> None:
+    upright = gather(folder)
+    turned = [replace(press, image=np.rot90(upright.image(press), -1)) for press in upright.presses]
+    again = gather(turned, np.rot90(upright.background, -1), rotate=90)
+    np.testing.assert_array_equal(again.background, upright.background)
+    for press, other in zip(upright.presses, again.presses, strict=True):
+        np.testing.assert_array_equal(again.image(other), upright.image(press))
+    with pytest.raises(InputError, match="rotate=45: accepted are 0, 90, 180, 270"):
+        td.fit(folder, rotate=45)
 
 
 def test_real_presses_are_good_and_any_share_of_them_is_usable() -> None:

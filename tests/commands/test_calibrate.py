@@ -59,7 +59,7 @@ def test_the_variables_reach_the_fit(made: Any, tmp_path: Path, run_command: Any
         assert printed in output
     assert sorted(path.name for path in out.parent.iterdir()) == [
         RECORD,
-        *(f"mine{end}" for end in ("-circles.csv", "-circles.png", ".npz", ".png")),
+        *(f"mine{end}" for end in ("-circles.csv", "-circles.html", "-circles.png", ".npz", ".png")),
     ]
 
 

@@ -110,7 +110,7 @@ def test_the_file_is_that_of_a_fit_in_python(
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         RECORD,
         "expected.npz",
-        *(f"presses{end}" for end in ("-circles.csv", "-circles.png", ".npz")),
+        *(f"presses{end}" for end in ("-circles.csv", "-circles.html", "-circles.png", ".npz")),
     ]
 
 

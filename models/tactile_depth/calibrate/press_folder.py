@@ -22,6 +22,7 @@ LARGEST_TABLE = 1 << 20  # bytes
 CIRCLE = ("centre_x_px", "centre_y_px", "contact_radius_px")
 DIAMETERS = ("diameter_mm", "ball_diameter_mm")
 BALL_RADIUS = "ball_radius_px"
+HEAD = ("frame", DIAMETERS[0], *CIRCLE, BALL_RADIUS)
 KNOWN = ("frame", *DIAMETERS, *CIRCLE, BALL_RADIUS)
 
 
@@ -71,16 +72,15 @@ def read_presses(folder: Path, table: Path | None = None) -> tuple[list[BallPres
     return [presses[name] for name in sorted(presses)], [str(InputError(note)) for note in notes]
 
 
-def write_presses(path: Path, presses: Iterable[BallPress], circles: Mapping[str, Circle]) -> None:
-    """Write a table of presses with these circles, by the names of presses; the others keep what they have."""
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(("frame", DIAMETERS[0], *CIRCLE, BALL_RADIUS))
-        for press in presses:
-            circle = circles.get(press.name, press.circle)
-            cells = [""] * len(CIRCLE) if circle is None else [f"{number:.2f}" for number in circle]
-            radius = "" if press.ball_radius_px is None else f"{press.ball_radius_px:g}"
-            writer.writerow((press.name, f"{press.diameter_mm:g}", *cells, radius))
+def table_rows(presses: Iterable[BallPress], circles: Mapping[str, Circle]) -> list[list[str]]:
+    """Return the lines of a table under `HEAD`, with circles by names of presses; others keep what they have."""
+    rows = []
+    for press in presses:
+        circle = circles.get(press.name, press.circle)
+        cells = [""] * len(CIRCLE) if circle is None else [f"{number:.2f}" for number in circle]
+        radius = "" if press.ball_radius_px is None else f"{press.ball_radius_px:g}"
+        rows.append([press.name, f"{press.diameter_mm:g}", *cells, radius])
+    return rows
 
 
 def _cells(path: Path) -> tuple[list[str], list[list[str]]]:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import csv
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -14,7 +15,7 @@ import numpy as np
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
 from tactile_depth.calibrate.fitting import DEFAULT_BITS, Fit, check_arguments, fit_presses, pixel_size
-from tactile_depth.calibrate.press_folder import BACKGROUND, TABLE, background_path, write_presses
+from tactile_depth.calibrate.press_folder import BACKGROUND, HEAD, TABLE, background_path, table_rows
 from tactile_depth.calibrate.presses import (
     ROTATIONS,
     SMALLEST_GRID,
@@ -28,6 +29,7 @@ from tactile_depth.calibrate.presses import (
 )
 from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoice
 from tactile_depth.chip.limits import MODELS
+from tactile_depth.cli.circle_page import circle_page
 from tactile_depth.cli.measure import DEVICE, address_of, grid_of, measure
 from tactile_depth.cli.options import add_build_arguments, add_light_and_zero_arguments, build_choices, size
 from tactile_depth.cli.overview import draw_circles, draw_presses
@@ -135,15 +137,17 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     out: Path = options.out or Path(f"{Path(options.presses).resolve().name}.npz")
     require_npz(out)
     drawn = (out.with_suffix(".png"),) if options.picture else ()
-    picture, table = (out.with_name(f"{out.stem}-circles{suffix}") for suffix in (".png", ".csv"))
-    circles = [picture] if options.circles else [picture, table]  # a table that is given is not written again
+    picture, page, table = (out.with_name(f"{out.stem}-circles{suffix}") for suffix in (".png", ".html", ".csv"))
+    circles = [picture, page] if options.circles else [picture, page, table]  # a table that is given is not replaced
     names = [path.name for path in (out, *drawn, *circles)]
     with files.workspace(out.parent, names, str(out)) as work:  # refused before the fit, which takes some seconds
         pictures = press_pictures(options)
         presses = on_grid(options, pictures)
         draw_circles(pictures, presses).save(work / picture.name)
+        (work / page.name).write_text(circle_page(pictures, presses), encoding="utf-8")
         if table in circles:
-            write_presses(work / table.name, pictures.presses, presses.circles)
+            with (work / table.name).open("w", encoding="utf-8", newline="") as file:
+                csv.writer(file).writerows([HEAD, *table_rows(pictures.presses, presses.circles)])
         try:
             fit = fitted(options, presses, out.stem)
         except InputError:  # the circles may show why

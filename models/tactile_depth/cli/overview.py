@@ -7,6 +7,7 @@ import numpy as np
 from PIL import Image
 
 from tactile_depth.base.errors import InputError
+from tactile_depth.calibrate.ball_press import BallPress
 from tactile_depth.calibrate.evaluation import slopes_and_depths
 from tactile_depth.calibrate.fitting import Fit
 from tactile_depth.calibrate.judgement import doubtful_circles
@@ -98,19 +99,25 @@ def draw_circles(pictures: PressPictures, presses: GridPresses) -> Image.Image:
     angle = np.linspace(0, 2 * np.pi, 90)
     panels = []
     for press in pictures.presses:
-        try:
-            change = pictures.image(press).astype(np.int16) - pictures.background
-        except InputError:  # a warning named it
+        if (pixels := change_of(pictures, press)) is None:
             continue
         curves = []
         if circle := presses.circles.get(press.name):
             x = (circle.x + 0.5 + circle.radius / presses.aspect * np.cos(angle)) / columns
             y = (circle.y + 0.5 + circle.radius * np.sin(angle)) / rows
             curves = [(OUTSIDE if press.name in doubtful else INK, np.stack((x, y)).clip(0, 1))]
-        pixels = (GREY + CHANGE_GAIN * change).clip(0, 255).astype(np.uint8)
         panels.append(Panel(press.name, pixels, curves=curves))
     lines = [panels[first : first + IN_A_ROW] for first in range(0, len(panels), IN_A_ROW)]
     size_mm = (columns * presses.pitch_mm * presses.aspect, rows * presses.pitch_mm)
     notes = [(INK, "circle"), (OUTSIDE, "beside the change of colour"), (BACKGROUND, "no circle: left out")]
     caption = f"{presses.name}: change against the background, times {CHANGE_GAIN}"
     return sheet(lines, CIRCLE_WIDTH, size_mm, notes, caption)
+
+
+def change_of(pictures: PressPictures, press: BallPress) -> np.ndarray | None:
+    """Return the change of a press against the background as a picture, or None if it cannot be read."""
+    try:
+        change = pictures.image(press).astype(np.int16) - pictures.background
+    except InputError:  # a warning named it
+        return None
+    return (GREY + CHANGE_GAIN * change).clip(0, 255).astype(np.uint8)
