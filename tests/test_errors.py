@@ -21,7 +21,16 @@ from tests.drawn_light import no_contact
 
 GRID = Argument("grid", (24, 32))
 PYTHON = {  # arguments that neither a variable of make nor an option of the command gives
-    *("background", "ball_radius_px", "bits_per_channel", "black_level", "circle", "diameter_mm", "exposure_lines"),
+    *(
+        "background",
+        "ball_radius_px",
+        "bits_per_channel",
+        "black_level",
+        "captured_at",
+        "circle",
+        "diameter_mm",
+        "exposure_lines",
+    ),
     *("flat_field", "frames", "gains", "gradient_limit", "name", "path", "pictures", "pipeline", "register"),
     *("release_mm", "sensor", "stream", "zero", "zero_offset"),
 }

@@ -21,7 +21,7 @@ from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoic
 from tactile_depth.chip.configuration import CHOICES, DEFAULTS, NUMBERS, WORDS, Configuration
 from tactile_depth.chip.limits import BOUNDARIES, COLUMNS, MODELS
 from tactile_depth.pictures.frames import REST_SCENE
-from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.built_in import load, read
 from tactile_depth.sensor.calibration_file import BUILT_IN
 from tactile_depth.sensor.presets import PRESETS, Preset
 from tactile_depth.sensor.scenes import NOISE, SCENES, SENSOR_WIDTH_MM, Press
@@ -34,7 +34,7 @@ CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
 *_, DEPTH_RANGE = WORDS.values()
 CONFIGURING = (
     *("PRESET", *(choice.variable for choice in CHOICES.values())),
-    *("COLS", "REFERENCE", "ZERO", "CALIBRATION", "CAMERA_SIZE", "CONFIG"),
+    *("COLS", "REFERENCE", "ZERO", "CALIBRATION", "CAMERA_SIZE", "CROP", "CONFIG"),
 )
 ACCEPTED = (
     *(*CONFIGURING, "SIM", "FRAMES", "PRESS", "AT", "NOISE", "REPEAT", "SEED", "GAPS", "STALLS", "WAVES", "OUT"),
@@ -66,6 +66,7 @@ class Request:
     light_gains: bool | None  # None: unless the model is lut
     calibration: str
     camera_size: tuple[int, int] | None  # rows, columns
+    crop: str | None  # what pictures show; None: what those of the calibration show
     gradient: str  # a model; "": that of the calibration
     repeat: int
     seed: int
@@ -146,6 +147,7 @@ def of_values(
         light_gains=bool(number("LIGHT_GAINS", 0, 0, 1)) if "LIGHT_GAINS" in values else by_preset,
         calibration=_calibration(values),
         camera_size=_camera_size(values),
+        crop=values.get("CROP"),
         gradient=choice("GRADIENT", ("", *MODELS)),
         repeat=number("REPEAT", 1, 1, 100_000),
         seed=number("SEED", 1, 0, 10**9),
@@ -232,7 +234,7 @@ def _camera_size(values: dict[str, str]) -> tuple[int, int] | None:
 
 def load_sensor(request: Request) -> Sensor:
     """Return the calibration of a request. Raises InputError."""
-    return load(request.calibration, request.camera_size)
+    return (load if request.crop is None else read)(request.calibration, request.camera_size)
 
 
 def from_file(path: Path, explicit: dict[str, str], accepted: list[str]) -> dict[str, str]:

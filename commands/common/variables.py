@@ -23,7 +23,7 @@ from tactile_depth.base.files import cause
 EQUAL, MISMATCH, BAD_INPUT, FAILURE = 0, 1, 2, 3  # exit status; 128 + the number of a signal
 
 # Arguments of the package that are called as the variables of make.
-SAME = ("reference", "calibration", "bits", "camera_size", "exposure_us", "window", "presses")
+SAME = ("reference", "calibration", "bits", "camera_size", "exposure_us", "window", "presses", "crop", "rotate")
 OTHERS = {"folder": "OUT", "models": "GRADIENT", "phase": "BAYER", "pitch_mm": "PITCH", "pixel_format": "CAMERA"}
 
 PLAIN = {int: r"[+-]?[0-9]+", float: r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"}

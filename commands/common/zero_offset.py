@@ -17,7 +17,9 @@ def untouched(request: Request, frames: Frames) -> np.ndarray | None:
     if not request.frames and request.zero == REST_SCENE and frames.picture_size is not None:
         return frames.pixels  # a flat picture of a real sensor, `flat_frames`
     reference = request.reference if request.zero in SCENES else None
-    no_contact = load_frames(request.zero, frames.pixels.shape[1:3], reference, request.seed, camera=request.camera)
+    no_contact = load_frames(
+        request.zero, frames.pixels.shape[1:3], reference, request.seed, camera=request.camera, share=frames.share
+    )
     if no_contact.pixel_scale != frames.pixel_scale:
         raise InputError(f"ZERO={request.zero}: not of the size of {frames.name}: give frames of the same camera")
     return no_contact.pixels[: 1 << min(LARGEST_LOG2, len(no_contact.pixels).bit_length() - 1)]

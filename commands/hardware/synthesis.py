@@ -12,6 +12,7 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
 from tactile_depth.pictures.frames import REST_SCENE, Frames, flat_frames, load_frames, on_grid
 from tactile_depth.sensor.sensor import Sensor
+from tactile_depth.sensor.view import shown
 
 SOLVERS = {"spectral_solver", "tridiagonal_solver", "wide_solver"}
 # Small ROMs are LUTs. For Yosys "distributed" is a RAM of LUTs, and it has none with a read port alone.
@@ -21,7 +22,8 @@ SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
 def design(request: run_request.Request, frames: Frames | None = None) -> tuple[Frames, Sensor, Configuration]:
     """Return frames, by default those of a request, calibration on their grid and configuration.
 
-    Without FRAMES the reference is the frame, because it gives the width of the camera's pixels on the grid.
+    Without FRAMES the reference is the frame, because it gives the width of the camera's pixels on the grid. Without a
+    picture at all, what CAMERA sends is taken to be the sensor's full picture, unless CROP says what else.
 
     Raises InputError.
     """
@@ -29,11 +31,16 @@ def design(request: run_request.Request, frames: Frames | None = None) -> tuple[
     run_request.check_grid(request)
     size = (request.rows, request.columns)
     flat = request.reference in (None, REST_SCENE)
-    if frames is None and not request.frames and flat and calibration.camera is not None:
-        frames = flat_frames(calibration, size, request.camera, with_reference=request.reference is not None)
+    without_picture = frames is None and not request.frames and flat and calibration.camera is not None
+    crop = request.crop
+    if crop is None and without_picture and request.camera is not None and calibration.view is not None:
+        crop = "none"
+    calibration, share = shown(calibration, crop)
+    if without_picture:
+        frames = flat_frames(calibration, size, request.camera, share, with_reference=request.reference is not None)
     elif frames is None:
         source = request.frames or (run_request.DEFAULT_SCENE if flat else str(request.reference))
-        frames = load_frames(source, size, request.reference, request.seed, request.press, request.camera)
+        frames = load_frames(source, size, request.reference, request.seed, request.press, request.camera, share)
     calibration = on_grid(calibration, frames)
     return frames, calibration, run_request.configure(request, calibration)
 

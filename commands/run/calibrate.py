@@ -12,7 +12,7 @@ from typing import Annotated
 from commands.common import repository
 from commands.common.press_data import data_folder
 from commands.common.run_request import camera_choice
-from commands.common.variables import EQUAL, Place, Several, one, real, whole
+from commands.common.variables import EQUAL, Name, Place, Several, one, real, whole
 from tactile_depth.calibrate.fitting import DEFAULT_BITS
 from tactile_depth.calibrate.presses import ROTATIONS
 from tactile_depth.chip.camera_configuration import CameraChoice
@@ -31,6 +31,7 @@ def main(
     exposure_us: Annotated[float | None, real(1e-3, LONGEST_EXPOSURE_US)] = None,
     rotate: Annotated[int, one({str(degrees): degrees for degrees in ROTATIONS})] = 0,
     keep_bad: Annotated[bool, one({"0": False, "1": True})] = False,
+    crop: Name | None = None,
     camera: Annotated[CameraChoice | None, Several(("CAMERA", "BAYER"), camera_choice)] = None,
     out: Place | None = None,
 ) -> int:
@@ -42,7 +43,7 @@ def main(
     options = parser.parse_args(["PRESSES", "--compare-circles", "--picture"])
     options.presses, options.model, options.bits, options.find_circles = str(folder), model, bits, find_circles
     options.rotate, options.keep_bad = rotate, keep_bad
-    options.pitch_mm, options.exposure_us = pitch_mm and (pitch_mm,), exposure_us
+    options.pitch_mm, options.exposure_us, options.crop = pitch_mm and (pitch_mm,), exposure_us, crop
     if camera is not None:
         options.camera, options.bayer = camera.pixel_format, camera.phase
     default = repository.ROOT / "build" / "calibrate" / f"{folder.resolve().name}.npz"

@@ -54,6 +54,7 @@ from tactile_depth.depth.pipeline import AREA_THRESHOLD_MM, THRESHOLD_MM
 from tactile_depth.depth.result import Recorder
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, load_frames, on_grid
+from tactile_depth.sensor.built_in import read
 from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
 from tactile_depth.sensor.sensor import Sensor
 
@@ -143,9 +144,8 @@ class Prepared:
 
     def request(self, of: Point, fold: int) -> run_request.Request:
         """Return the request of `make sim` for a fold. Raises InputError."""
-        return run_request.of_values(
-            of_sim(of) | self.sources(fold, of.pixel_format), run_request.WITH_CAMERA, "sensor"
-        )
+        values = of_sim(of) | self.sources(fold, of.pixel_format) | {"CROP": "none"}  # of the presses' own calibration
+        return run_request.of_values(values, run_request.WITH_CAMERA, "sensor")
 
     def command(self, of: Point) -> str:
         """Return the command that plays the first fold through the RTL."""
@@ -223,7 +223,7 @@ def _folds(study: Prepared, rows: int, columns: int, pixel_format: str) -> list[
         frames = load_frames(sources["FRAMES"], grid, sources["REFERENCE"], camera=choice)
         among = [press.name for press in pictures.presses[fold::FOLDS]]
         presses = {number: geometry[name] for number, name in enumerate(among) if name in seen}
-        folds.append(Fold(frames, on_grid(td.load(sources["CALIBRATION"]), frames), presses))
+        folds.append(Fold(frames, on_grid(read(sources["CALIBRATION"]), frames), presses))
     return folds
 
 

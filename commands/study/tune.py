@@ -39,6 +39,7 @@ from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, load_frames, on_grid
 from tactile_depth.sensor.scenes import AS_EVER
 from tactile_depth.sensor.sensor import Sensor
+from tactile_depth.sensor.view import shown
 
 AUTO_SHARE = 0.1  # fraction that TOLERANCE=auto adds to the error of the calibration
 NOT_OF_SIM = (*(width.variable for width in WIDTHS.values()), "REPEAT", "GAPS", "STALLS", "WAVES", "CONFIG")
@@ -186,7 +187,7 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
     simulation.check(request.simulator)
     out = request.out or DEFAULT_OUT
     files.check(out, RESULTS)
-    calibration = run_request.load_sensor(request)
+    calibration, share = shown(run_request.load_sensor(request), request.crop)
     automatic = math.isnan(limits.tolerance)
     if automatic:
         limits = replace(limits, tolerance=tolerance_of(calibration, request.gradient), judgement=ALL_FRAMES)
@@ -196,7 +197,7 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
 
     _check_grid(request, solvers)
     shape = (request.rows, request.columns)
-    frames = load_frames(request.frames, shape, request.reference, request.seed, request.press)
+    frames = load_frames(request.frames, shape, request.reference, request.seed, request.press, share=share)
     calibration = on_grid(calibration, frames)
     refusals: list[InputError] = []
 

@@ -94,7 +94,7 @@ REFUSED = {
     "reflex TRIALS=1": "TRIALS=1: accepted is a whole number from 2",
     "regress JOBS=0": "JOBS=0: accepted is a whole number from 1 to 1,000",
     "synth BAYER=grbg": "BAYER=grbg goes with CAMERA",
-    "synth CAMERA=raw10 N=256": "is 1.88 pixels for each of the grid: 2 are needed",
+    "synth CAMERA=raw10 N=256": "is 1.34 pixels for each of the grid: 2 are needed",
     "synth GRIDS=64,7": "GRIDS=7: ",
     "synth GRIDS=64;128": "GRIDS=64;128: accepted are whole numbers",
     "synth N=1024 SOLVER=spectral": "1024",

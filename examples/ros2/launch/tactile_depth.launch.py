@@ -10,6 +10,7 @@ from launch_ros.parameter_descriptions import ParameterValue
 PARAMETERS = {
     "calibration": ("", str),
     "reference": ("", str),
+    "crop": ("", str),
     "threshold_mm": ("0.1", float),
     "area_threshold_mm": ("0.3", float),
     "arithmetic": ("chip", str),

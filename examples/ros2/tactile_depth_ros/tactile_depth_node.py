@@ -27,6 +27,7 @@ class TactileDepthNode(Node):
     def __init__(self) -> None:
         super().__init__("tactile_depth")
         calibration = self.declare_parameter("calibration", "").value
+        self._crop = self.declare_parameter("crop", "").value or None
         self._sensor = td.load(calibration) if calibration else None
         names = {"threshold_mm": 0.1, "area_threshold_mm": 0.3}
         self._thresholds = {name: self.declare_parameter(name, value).value for name, value in names.items()}
@@ -49,8 +50,9 @@ class TactileDepthNode(Node):
     def _make_pipeline(self, reference: np.ndarray) -> None:
         """Make the pipeline, with the calibration that was named or the built-in one that the reference looks like."""
         first = reference if reference.ndim == 3 else reference[0]
-        sensor = self._sensor or td.identify(first)
-        self._pipeline = td.Pipeline(sensor, reference, **self._thresholds, arithmetic=self._arithmetic)
+        sensor = self._sensor or td.identify(first, crop=self._crop)
+        options = {**self._thresholds, "crop": self._crop, "arithmetic": self._arithmetic}
+        self._pipeline = td.Pipeline(sensor, reference, **options)
         self.get_logger().info(f"calibration {sensor.name}, {self._pipeline.grid[1]} x {self._pipeline.grid[0]} pixels")
 
     def _ask(self, name: str, response: Trigger.Response) -> Trigger.Response:

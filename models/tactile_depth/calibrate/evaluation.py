@@ -24,9 +24,11 @@ from tactile_depth.calibrate.presses import (
 )
 from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.depth.twin import Twin
+from tactile_depth.pictures.grid_sampler import middle
 from tactile_depth.pictures.pictures import Picture
 from tactile_depth.pictures.reference_check import check_reference
 from tactile_depth.sensor.sensor import HeightError, Sensor
+from tactile_depth.sensor.view import Crop, shown
 
 GOOD_SHARE = 0.5  # of the largest usable error
 BALLS_AGREE = 0.03  # largest relative difference between the heights of balls
@@ -197,6 +199,7 @@ def evaluate(
     background: Picture | None = None,
     *,
     find_circles: bool = False,
+    crop: Crop | None = None,
 ) -> Evaluation:
     """Measure each gradient model of a calibration on presses of balls.
 
@@ -209,6 +212,8 @@ def evaluate(
         See `load` and `fit`.
     presses, background, find_circles
         See `fit`. The pixel pitch is that of the sensor.
+    crop : str, float or (width, height), optional
+        What the pictures show of the sensor's full picture, as for a Pipeline.
 
     Returns
     -------
@@ -221,7 +226,8 @@ def evaluate(
     """
     pictures = gather(presses, background)
     rows, columns = pictures.background.shape[:2]
-    pitch = sensor.pixel_pitch_mm / sensor.zoom((rows, columns), BACKGROUND)
+    sensor, share = shown(sensor, crop)
+    pitch = sensor.pixel_pitch_mm / sensor.zoom((rows, columns), BACKGROUND, share)
     by_balls = float(np.median(pictures.pitches)) if pictures.pitches else pitch
     if abs(by_balls / pitch - 1) > PITCHES_AGREE:
         raise InputError(
@@ -229,8 +235,8 @@ def evaluate(
             f"{by_balls:.4g}: give presses of that sensor, or correct ball_radius_px"
         )
     sensor.require_reference(True)
-    check_reference(sensor, pictures.background[None])
-    on_grid = to_grid(pictures, pitch, find_circles, aspect=sensor.pixel_aspect)
+    check_reference(sensor, middle(pictures.background[None], share))
+    on_grid = to_grid(pictures, pitch, find_circles, aspect=sensor.pixel_aspect, share=share)
     measured = [view for view in on_grid.views if view.is_whole]
     cut = [view.press.name for view in on_grid.views if not view.is_whole]
     notes = tuple(f"{name}: the edge of the picture cuts the contact: left out" for name in cut)

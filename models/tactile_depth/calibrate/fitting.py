@@ -56,6 +56,7 @@ from tactile_depth.pictures.pictures import Picture
 from tactile_depth.sensor.calibration_file import LONGEST_EXPOSURE_US, PIXEL_ASPECTS, PIXEL_PITCHES_MM
 from tactile_depth.sensor.sensor import CORRECTIONS, TABLE_BITS, Camera, Sensor, equal_areas, lighting
 from tactile_depth.sensor.verdict import BAD
+from tactile_depth.sensor.view import Crop, view_of
 
 FEWEST, FEWEST_MEASURED = 8, 2  # presses; those that lie completely in the middle square
 DRAWS, DRAWN_OUT = 12, 6  # choices of presses for each number of them, and presses that are measured in each
@@ -101,6 +102,7 @@ def fit(
     name: str | None = None,
     exposure_us: float | None = None,
     rotate: int = 0,
+    crop: Crop | None = None,
     quiet: bool = False,
 ) -> Sensor:
     """Return a sensor, calibrated by presses of balls of known diameter.
@@ -133,6 +135,9 @@ def fit(
     rotate : int
         Degrees, counter-clockwise, by which all pictures are rotated first: 0, 90, 180 or 270. Give circles as they lie
         after that.
+    crop : str, float or (width, height), optional
+        What the pictures show of the sensor's full picture, to be kept as `Sensor.view`: `none`, all of it; a share, as
+        0.8; `gs_sdk` or `gsrobotics`, what that software leaves. By default it is unknown.
     quiet : bool
         Print nothing.
 
@@ -149,7 +154,9 @@ def fit(
     wanted = check_arguments(models, bits, pitch_mm, exposure_us)
     pictures = gather(presses, background, rotate)
     height, aspect = pixel_size(pitch_mm)
+    view = None if crop is None else view_of(crop)
     on_grid = to_grid(pictures, camera_pitch_mm(pictures, height), find_circles, aspect=aspect)
+    on_grid = replace(on_grid, view=view)
     for note in on_grid.notes:
         warn(InputWarning(note), stacklevel=2)
     fitted = fit_presses(on_grid, wanted, bits, name or pictures.name, exposure_us)
@@ -233,6 +240,7 @@ def fit_presses(
         lighting=lighting(presses.background),
         untouched=equal_areas(presses.background),
         verdict=judge(presses, evaluation),
+        view=presses.view,
     )
     return Fit(sensor, evaluation, without)
 

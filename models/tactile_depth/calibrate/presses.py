@@ -20,6 +20,7 @@ from tactile_depth.chip.camera_configuration import FORMATS, CameraChoice
 from tactile_depth.chip.configuration import COLOURS, Configuration
 from tactile_depth.chip.gradient.flat_field import captured_gains, pixel_gains, require_light
 from tactile_depth.chip.gradient.light_gains import Light, settled
+from tactile_depth.chip.resampling import WHOLE, Share
 from tactile_depth.pictures.frames import read_picture
 from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler, picture_grid
 from tactile_depth.pictures.pictures import Picture
@@ -247,6 +248,8 @@ class GridPresses:
         Names of the presses that were left out.
     ball_pitches : mapping of float to float
         Millimetres per pixel by the diameter of the ball, from presses with `ball_radius_px`.
+    view : (width, height), or None
+        Shares of the sensor's full picture that the pictures show; None: unknown.
     """
 
     name: str
@@ -262,6 +265,7 @@ class GridPresses:
     circles: Mapping[str, Circle] = field(default_factory=dict)
     left_out: tuple[str, ...] = ()
     ball_pitches: Mapping[float, float] = field(default_factory=dict)
+    view: tuple[float, float] | None = None
 
     @property
     def grid(self) -> tuple[int, int]:
@@ -357,6 +361,7 @@ def to_grid(
     choice: CameraChoice | None = None,
     aspect: float = 1.0,
     grid: tuple[int, int] | None = None,
+    share: Share = WHOLE,
 ) -> GridPresses:
     """Resample presses to a grid; `notes` names the presses left out and why.
 
@@ -374,18 +379,21 @@ def to_grid(
         Width of a pixel over its height.
     grid : (rows, columns), optional
         By default `picture_grid`, which covers the pictures.
+    share : Share
+        Part of the pictures that the grid covers.
     """
     background = pictures.background
     camera = background.shape[:2]
     least = 1 if choice is None else FORMATS[choice.pixel_format].least_ratio
-    grid = grid or picture_grid((camera[0], camera[1]), least_ratio=least)
+    rows, columns = (round(length * part) for length, part in zip(camera, share, strict=True))
+    grid = grid or picture_grid((rows, columns), least_ratio=least)
     if min(grid) < SMALLEST_GRID:
         raise InputError(BACKGROUND, f": {camera[0]} x {camera[1]} pixels", accepted=f"{SMALLEST_GRID} x or more")
     if find_circles or compare_circles or any(press.circle is None for press in pictures.presses):
         require_circle_finder()
     shape: dict[str, Any] = {"columns": grid[1], "rows": grid[0], "solver": "tridiagonal"}
     config = Configuration(**shape, **COLOURS)
-    sampler = grid_sampler(BACKGROUND, (camera[0], camera[1]), grid, choice)
+    sampler = grid_sampler(BACKGROUND, (camera[0], camera[1]), grid, choice, share)
     rest = sampler.frame(background)
     gains = captured_gains(rest[None], config)
     require_light(gains, config, BACKGROUND)

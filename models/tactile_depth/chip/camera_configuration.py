@@ -9,7 +9,7 @@ from fractions import Fraction
 from tactile_depth.base.errors import Argument, InputError, former_names, one_of
 from tactile_depth.chip.camera.block_weights import pixels_of
 from tactile_depth.chip.fixed_point import Format
-from tactile_depth.chip.resampling import crop_origin, ratio
+from tactile_depth.chip.resampling import WHOLE, Share, crop_origin, ratio
 
 LARGEST_PICTURE = 4096  # rows and columns
 GAIN = Format(16, 12)  # unsigned
@@ -98,9 +98,10 @@ class CameraChoice:
     def __post_init__(self) -> None:
         check_format(self.pixel_format, self.phase)
 
-    def on(self, picture: tuple[int, int], grid: tuple[int, int]) -> CameraConfiguration:
-        """Return the camera for pictures and a grid, (rows, columns) each."""
-        return CameraConfiguration(picture, grid, self.pixel_format, self.phase, self.window)
+    def on(self, picture: tuple[int, int], grid: tuple[int, int], share: Share = WHOLE) -> CameraConfiguration:
+        """Return the camera for pictures and a grid, (rows, columns) each; its default window is in a share of them."""
+        window = window_of(picture, grid, share) if self.window is None else self.window
+        return CameraConfiguration(picture, grid, self.pixel_format, self.phase, window)
 
 
 @former_names(
@@ -162,26 +163,19 @@ class CameraConfiguration:
     def _place_window(self) -> None:
         rows, columns = self.picture
         if self.window is None:
-            top, left = crop_origin(self.picture, self.grid)
-            window = (left, top, *self._covered(Fraction(*ratio(self.picture, self.grid))))
-            object.__setattr__(self, "window", window)
+            object.__setattr__(self, "window", window_of(self.picture, self.grid))
             return
         x, y, width, height = self.window
         window_given = (Argument("window", self.window), " (x, y, width, height)")
         if min(x, y) < 0 or min(width, height) < 1 or x + width > columns or y + height > rows:
             raise InputError(*window_given, f" is not inside the picture of {columns} x {rows} pixels")
-        covered = self._covered(self.ratio)
+        covered = _covered(self.grid, self.ratio)
         if covered != (width, height):
             raise InputError(
                 *window_given,
                 f" has not the aspect ratio of the grid of {self.grid[1]} x {self.grid[0]} (columns x rows)",
                 remedy=f"give {covered[0]} x {covered[1]} pixels",
             )
-
-    def _covered(self, scale: Fraction) -> tuple[int, int]:
-        """Return width and height of the pixels that the grid covers, in part at least."""
-        rows, columns = (pixels_of(length, scale.numerator, scale.denominator) for length in self.grid)
-        return columns, rows
 
     @property
     def format(self) -> PixelFormat:
@@ -207,7 +201,7 @@ class CameraConfiguration:
     def ratio(self) -> Fraction:
         """Camera pixels per grid pixel."""
         _, _, width, height = self.crop
-        return Fraction(*ratio((height, width), self.grid))
+        return ratio((height, width), self.grid)
 
     @property
     def phase_code(self) -> int:
@@ -239,3 +233,22 @@ class CameraConfiguration:
     def gain_codes(self) -> tuple[int, int, int]:
         red, green, blue = (round(gain * (1 << GAIN.fraction)) for gain in self.gains)
         return red, green, blue
+
+
+def window_of(picture: tuple[int, int], grid: tuple[int, int], share: Share = WHOLE) -> tuple[int, int, int, int]:
+    """Return the centred crop of the grid's aspect ratio in whole pixels of a share of a picture: x, y, width, height.
+
+    Parameters
+    ----------
+    picture, grid : (rows, columns)
+    """
+    rows, columns = (round(length * part) for length, part in zip(picture, share, strict=True))
+    top, left = crop_origin((rows, columns), grid)
+    covered = _covered(grid, ratio((rows, columns), grid))
+    return (picture[1] - columns) // 2 + left, (picture[0] - rows) // 2 + top, *covered
+
+
+def _covered(grid: tuple[int, int], scale: Fraction) -> tuple[int, int]:
+    """Return width and height of the camera pixels that a grid covers, in part at least."""
+    rows, columns = (pixels_of(length, scale.numerator, scale.denominator) for length in grid)
+    return columns, rows

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,10 @@ if TYPE_CHECKING:
 
 STRIP = 1024  # columns of a picture converted to floats at a time: 4096 x 4096 pixels would take 400 MB
 SINGLE = 1 << 24  # up to here float32, which takes half the time, holds every integer
+
+Share = tuple[Fraction, Fraction]
+"""Share of the rows and of the columns of a picture, around its middle."""
+WHOLE: Share = (Fraction(1), Fraction(1))
 
 
 @dataclass(frozen=True)
@@ -27,7 +32,7 @@ class Resampling:
 
     rows: np.ndarray  # (grid rows, camera rows), integers as float64
     columns: np.ndarray  # (grid cols, camera cols)
-    origin: tuple[int, int]  # first camera row and column of the crop
+    origin: tuple[int | Fraction, int | Fraction]  # first camera row and column of the crop
     numerator: int
     denominator: int
 
@@ -77,35 +82,36 @@ class Resampling:
         return averages
 
 
-def ratio(camera: tuple[int, int], grid: tuple[int, int]) -> tuple[int, int]:
-    """Return numerator and denominator, in lowest terms, of the camera pixels per grid pixel, for the largest crop."""
-    (height, width), (rows, cols) = camera, grid
-    numerator, denominator = (height, rows) if height * cols <= width * rows else (width, cols)
-    common = math.gcd(numerator, denominator)
-    return numerator // common, denominator // common
+def ratio(camera: tuple[int, int], grid: tuple[int, int], share: Share = WHOLE) -> Fraction:
+    """Return the camera pixels per grid pixel, for the largest crop of a share of the camera's pictures."""
+    return min(length * part / count for length, part, count in zip(camera, share, grid, strict=True))
 
 
 def crop_origin(camera: tuple[int, int], grid: tuple[int, int]) -> tuple[int, int]:
     """Return the first camera row and column of the centred crop."""
-    numerator, denominator = ratio(camera, grid)
-    top, left = (
-        (length * denominator - count * numerator) // (2 * denominator)
-        for length, count in zip(camera, grid, strict=True)
-    )
+    scale = ratio(camera, grid)
+    top, left = (math.floor((length - count * scale) / 2) for length, count in zip(camera, grid, strict=True))
     return top, left
 
 
-def resampling(camera: tuple[int, int], grid: tuple[int, int]) -> Resampling:
-    """Return the resampling of camera frames (rows, cols) to a grid (rows, cols) that is not larger.
+def resampling(camera: tuple[int, int], grid: tuple[int, int], share: Share = WHOLE) -> Resampling:
+    """Return the resampling of a share of camera frames (rows, cols) to a grid (rows, cols) that is not larger.
 
-    The crop starts on a pixel boundary, so that a frame as wide as the grid is not blurred.
+    The crop of whole frames starts on a pixel boundary, so that a frame as wide as the grid is not blurred; that of a
+    share lies exactly in the middle.
     """
     (height, width), (rows, cols) = camera, grid
-    numerator, denominator = ratio(camera, grid)
+    scale = ratio(camera, grid, share)
+    numerator, denominator = scale.numerator, scale.denominator
+    top: int | Fraction
+    left: int | Fraction
     top, left = crop_origin(camera, grid)
+    if share != WHOLE:
+        numerator, denominator = 2 * numerator, 2 * denominator
+        top, left = (height - rows * scale) / 2, (width - cols * scale) / 2
 
-    def weights(count: int, length: int, origin: int) -> np.ndarray:
-        start = origin * denominator + np.arange(count)[:, None] * numerator
+    def weights(count: int, length: int, origin: int | Fraction) -> np.ndarray:
+        start = int(origin * denominator) + np.arange(count)[:, None] * numerator
         pixel = np.arange(length) * denominator
         overlap = np.minimum(start + numerator, pixel + denominator) - np.maximum(start, pixel)
         return np.maximum(overlap, 0).astype(np.float64)

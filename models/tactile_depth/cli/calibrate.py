@@ -31,11 +31,18 @@ from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoic
 from tactile_depth.chip.limits import MODELS
 from tactile_depth.cli.circle_page import circle_page
 from tactile_depth.cli.measure import DEVICE, address_of, grid_of, measure
-from tactile_depth.cli.options import add_build_arguments, add_light_and_zero_arguments, build_choices, size
+from tactile_depth.cli.options import (
+    add_build_arguments,
+    add_crop_argument,
+    add_light_and_zero_arguments,
+    build_choices,
+    size,
+)
 from tactile_depth.cli.overview import draw_circles, draw_presses
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.pictures.frames import read_pictures
 from tactile_depth.sensor.verdict import BAD
+from tactile_depth.sensor.view import view_of
 
 NAME = "calibrate"
 HELP = "Fit a calibration to ball presses; load it into a device and measure it there, if one is named."
@@ -108,6 +115,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--bayer", default=PHASES[0], metavar="PHASE", help=f"of its Bayer pattern: {', '.join(PHASES)} (default first)"
     )
+    add_crop_argument(parser, "it is kept in FILE.npz, and unknown by default")
     parser.add_argument("--exposure-us", type=float, metavar="US", help="exposure time of the camera, to be kept")
     parser.add_argument("--out", type=Path, metavar="FILE.npz", help="default: <name of PRESSES>.npz")
     parser.add_argument("--picture", action="store_true", help="draw three of the presses beside FILE.npz, as FILE.png")
@@ -203,7 +211,7 @@ def on_grid(options: argparse.Namespace, pictures: PressPictures) -> GridPresses
     )
     for note in presses.notes:
         warn(InputWarning(note))
-    return presses
+    return replace(presses, view=None if options.crop is None else view_of(options.crop))
 
 
 def chosen(options: argparse.Namespace) -> tuple[str, ...]:

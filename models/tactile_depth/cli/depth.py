@@ -20,6 +20,7 @@ from tactile_depth.cli.ply import write_ply
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.depth.result import Result
 from tactile_depth.pictures.frames import read_pictures
+from tactile_depth.pictures.grid_sampler import middle
 
 NAME = "depth"
 HELP = "Write the height maps of pictures: arrays, pictures, meshes and a report."
@@ -39,7 +40,8 @@ UNITS = {
     "peak_mm": "largest depth above the threshold, mm; depth is height before the mean of the untouched surface is "
     "subtracted",
     "peak_px, centroid_px": "row, column on the grid",
-    "peak_position_mm, centroid_mm": "row, column from the upper left corner of the picture; null without contact",
+    "view": "shares of the width and height of the sensor's full picture that the grid is cut from; null: unknown",
+    "peak_position_mm, centroid_mm": "row, column from the upper left corner of that view; null without contact",
     "area_threshold_mm": "depth above which a pixel is in the area: the one chosen, or half the contact's peak if that "
     "is less, at least threshold_mm",
     "area_mm2": "area above area_threshold_mm",
@@ -75,7 +77,7 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
         for label, image in _pictures(options.pictures):
             result = pipeline(image, name=label)
             heights.append(result.height_mm.astype(np.float32))
-            frames.append((label, image, result))
+            frames.append((label, middle(image, pipeline.reader.share), result))
         digits = len(str(len(frames) - 1))
         described = []
         for index, (label, image, result) in enumerate(frames):
@@ -152,6 +154,7 @@ def _describe_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> dict[
             "presses": error.presses,
             "relative": error.relative,
         },
+        "view": pipeline.sensor.view,
         "calibrated_slope": pipeline.sensor.fitted_slope.get(model),
         "reference": options.reference,
         "arithmetic": pipeline.arithmetic,

@@ -16,7 +16,6 @@ from tactile_depth.device.device import Device
 from tactile_depth.device.frame import DeviceFrame
 from tactile_depth.pictures.doubts import UnusablePicture
 from tactile_depth.pictures.picture_check import check_picture
-from tactile_depth.pictures.reader import Reader
 
 
 class Shot(NamedTuple):
@@ -102,7 +101,6 @@ class SentFeed:
     def __init__(self, frames: Iterator[Frame | None], device: Device, counts: Counts) -> None:
         self.counts = counts
         self._frames, self._device = frames, device
-        self._reader = Reader(device.pipeline.sensor, device.pipeline.grid)
         self._sent: list[Frame] = []  # pictures of this stream
         self._is_first = True
         self._captured = False
@@ -131,7 +129,7 @@ class SentFeed:
             if frame is None:
                 continue
             try:
-                ((name, on_grid),) = self._reader.pictures(frame.image, f"frame {frame.index}")[0]
+                ((name, on_grid),) = self._device.pipeline.reader.pictures(frame.image, f"frame {frame.index}")[0]
                 check_picture(on_grid, rest, name)
             except InputError as error:
                 if self._is_first and not isinstance(error, UnusablePicture):

@@ -26,6 +26,7 @@ from tactile_depth.cli.options import (
     add_pipeline_arguments,
     choose_sensor,
     make_pipeline,
+    named_sensor,
     read_reference,
 )
 from tactile_depth.cli.source import Counts, Frame, Source
@@ -36,8 +37,8 @@ from tactile_depth.pictures.doubts import UnusablePicture
 from tactile_depth.pictures.frames import GREY
 from tactile_depth.pictures.picture_check import check_picture
 from tactile_depth.pictures.reference_check import STEADY
-from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.sensor import Sensor
+from tactile_depth.sensor.view import completed
 
 NAME = "live"
 HELP = "Show depth of a camera, a video, a folder of pictures or a device as it comes, or record it."
@@ -189,12 +190,15 @@ def own_camera(
     ------
     InputError, DeviceError
     """
-    sensor = load(options.calibration, options.camera_size)
-    print(f"calibration: {sensor.name}")
+    sensor = named_sensor(options)
     is_given = reference is not None
+    if not is_given and options.crop is not None and sensor.view is None:
+        sensor = completed(sensor, options.crop)
     with warnings.catch_warnings():
         if not is_given:
             warnings.simplefilter("ignore", InputWarning)  # of the picture that stands for a reference for a moment
+        if not is_given:
+            options.crop = None  # the picture that stands for a reference shows what the calibration's pictures show
         pipeline = make_pipeline(options, sensor, reference if is_given else stand_in(sensor))
     device = stack.enter_context(Device(address, pipeline, depth_format=options.depth_format or WORDS))
     device.load()

@@ -32,7 +32,7 @@ DESCRIPTION = "Depth in millimetres from visuotactile fingertips, bit for bit as
 # Arguments of the package, and the options that a user of the command gave; {} is the value.
 SAME = (
     *("arithmetic", "background", "bits", "calibration", "camera_size", "diameter_mm", "exposure_us", "grid"),
-    *("pitch_mm", "reference", "threshold_mm", "area_threshold_mm", "depth_format"),
+    *("pitch_mm", "reference", "threshold_mm", "area_threshold_mm", "depth_format", "crop", "rotate"),
 )
 OPTIONS = (
     {choice.argument: choice.option for choice in CHOICES.values()}

@@ -15,10 +15,11 @@ from tactile_depth.chip.limits import BOUNDARIES, MODELS, Solver
 from tactile_depth.depth.pipeline import AREA_THRESHOLD_MM, ARITHMETICS, THRESHOLD_MM, Pipeline
 from tactile_depth.pictures.frames import read_stack
 from tactile_depth.pictures.identify import identify
-from tactile_depth.sensor.built_in import load
+from tactile_depth.sensor.built_in import load, read
 from tactile_depth.sensor.calibration_file import BUILT_IN
 from tactile_depth.sensor.presets import SENSOR
 from tactile_depth.sensor.sensor import Sensor
+from tactile_depth.sensor.view import CONVENTIONS
 
 
 def size(text: str) -> tuple[int, int]:
@@ -39,6 +40,7 @@ def add_pipeline_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--camera-size", type=size, metavar="WxH", help="pictures that a calibration of format 1 was made from"
     )
+    add_crop_argument(parser, "by default what those of the calibration show")
     parser.add_argument("--grid", type=size, metavar="WxH", help="of the depth map, 128x96 by default for 4:3")
     parser.add_argument(
         "--arithmetic",
@@ -65,6 +67,13 @@ def add_pipeline_arguments(parser: argparse.ArgumentParser) -> None:
         "--model", choices=MODELS, default="", help="gradient model; by default the better of the calibration"
     )
     add_light_and_zero_arguments(parser)
+
+
+def add_crop_argument(parser: argparse.ArgumentParser, otherwise: str) -> None:
+    """Add the option that says what the pictures show."""
+    conventions = ", ".join(CONVENTIONS)
+    what = f"what the pictures show of the sensor's full picture: {conventions}, a share as 0.8, or WIDTH,HEIGHT"
+    parser.add_argument("--crop", metavar="CROP", help=f"{what}; {otherwise}")
 
 
 def add_light_and_zero_arguments(parser: argparse.ArgumentParser) -> None:
@@ -106,13 +115,19 @@ def read_reference(path: str) -> np.ndarray:
 def choose_sensor(options: argparse.Namespace, reference: np.ndarray) -> Sensor:
     """Return the calibration that is named, else the built-in one that a reference looks like, and say so."""
     if options.calibration is not None:
-        sensor = load(options.calibration, options.camera_size)
-        print(f"calibration: {sensor.name}")
-        return sensor
+        return named_sensor(options)
     if options.camera_size is not None:
         raise InputError("--camera-size without --calibration: it goes with a calibration file of version 0.1")
-    sensor = identify(reference[0])
+    sensor = identify(reference[0], crop=options.crop)
     print(f"calibration: {sensor.name}: the reference looks like it; --calibration names another")
+    return sensor
+
+
+def named_sensor(options: argparse.Namespace) -> Sensor:
+    """Return the calibration that is named, and say so; --crop completes one whose view is unknown."""
+    reader = load if options.crop is None else read
+    sensor = reader(options.calibration, options.camera_size)
+    print(f"calibration: {sensor.name}")
     return sensor
 
 
@@ -121,6 +136,7 @@ def make_pipeline(options: argparse.Namespace, sensor: Sensor, reference: np.nda
     return Pipeline(
         sensor,
         reference,
+        crop=options.crop,
         grid=options.grid,
         model=options.model,
         **build_choices(options),

@@ -36,6 +36,7 @@ from tactile_depth.pictures.reader import Reader, power_of_two_of
 from tactile_depth.pictures.reference_check import check_reference
 from tactile_depth.sensor.presets import SENSOR
 from tactile_depth.sensor.sensor import Sensor
+from tactile_depth.sensor.view import Crop, shown
 
 SYNTHETIC_GRID = (128, 128)
 ARITHMETICS = ("chip", "float")
@@ -61,6 +62,11 @@ class Pipeline:
         See `load`, `fit` and `sample`.
     reference : a picture or 2**k pictures, as for a call, optional
         Pictures of the sensor without contact. A real sensor needs them.
+    crop : str, float or (width, height), optional
+        What `reference` and pictures show of the sensor's full picture: `none`, all of it; a share, as 0.8; `gs_sdk` or
+        `gsrobotics`, what that software leaves. By default they show what the calibration's pictures show
+        (`sensor.view`). What they show beyond that is cut off; if they show less, depth is that of what they show. It
+        completes a sensor whose view is unknown.
     grid : (rows, columns), optional
         Size of the depth map; by default `default_grid`, which covers the full picture. Columns are a power of two,
         except with `arithmetic="float"`, which takes any grid up to the size of the pictures.
@@ -99,6 +105,7 @@ class Pipeline:
         sensor: Sensor,
         reference: Pictures | None = None,
         *,
+        crop: Crop | None = None,
         grid: tuple[int, int] | None = None,
         solver: Solver = SENSOR.solver,
         boundary: Boundary = SENSOR.boundary,
@@ -127,12 +134,13 @@ class Pipeline:
             require_flag(Argument("light_gains", light_gains))
         one_of(Argument("arithmetic", arithmetic), ARITHMETICS)
         one_of(Argument("boundary", boundary), BOUNDARIES)
+        sensor, share = shown(sensor, crop)
         sensor.require_reference(reference is not None)
         rows, columns = self._grid = default_grid(sensor, solver) if grid is None else grid
         self._arithmetic, self._is_of_hardware = arithmetic, is_grid_of_hardware(rows, columns, solver)
         kind = Configuration if self._is_of_hardware or arithmetic == "chip" else ExactConfiguration
         shape: dict[str, Any] = {"columns": columns, "rows": rows, "solver": solver, "neumann": boundary == "neumann"}
-        self._reader = Reader(sensor, self._grid)
+        self._reader = Reader(sensor, self._grid, share)
         self._rest: Rest | None = None
         self._doubts: tuple[Doubt, ...] = ()
         pitch_mm = sensor.pixel_pitch_mm * camera_scale(sensor, kind(**shape))
@@ -174,7 +182,7 @@ class Pipeline:
         Parameters
         ----------
         pictures : uint8 array (rows, columns, 3) or (frames, rows, columns, 3), RGB, or a path, or a sequence of them
-            Full pictures of the sensor's camera, or scaled pictures of the same aspect ratio. PIL images and other
+            Pictures of the sensor's camera, which show what `crop` says, of any size. PIL images and other
             objects that numpy takes as arrays are arrays. A path names a picture (PNG, JPEG), a `.npy` of one or of
             several, or a folder of pictures.
         stream : Stream, optional
@@ -280,6 +288,11 @@ class Pipeline:
     def sensor(self) -> Sensor:
         """Sensor on the grid, with the reference in use."""
         return self._sensor
+
+    @property
+    def reader(self) -> Reader:
+        """What reads pictures onto the grid."""
+        return self._reader
 
     @property
     def rest(self) -> Rest | None:

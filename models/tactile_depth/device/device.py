@@ -27,12 +27,12 @@ from tactile_depth.device.exchange import Exchange, camera_frames
 from tactile_depth.device.frame import DeviceFrame
 from tactile_depth.device.registers import Registers, read_words, write_words
 from tactile_depth.device.status import COUNTERS, DeviceStatus
-from tactile_depth.device.tables import load_tables, require_same, wait_in_use
+from tactile_depth.device.tables import load_tables, require_same, wait_in_use, window_doubt
 from tactile_depth.pictures.doubts import UnusablePicture
 from tactile_depth.pictures.frames import GREY
 from tactile_depth.pictures.picture_check import check_picture
 from tactile_depth.pictures.pictures import Picture, Pictures, is_array
-from tactile_depth.pictures.reader import Reader, power_of_two_of
+from tactile_depth.pictures.reader import power_of_two_of
 from tactile_depth.pictures.reference_check import check_reference
 
 CAPTURED = 8
@@ -92,11 +92,10 @@ class Device(AbstractContextManager["Device"]):
         one_of(Argument("depth_format", depth_format), tuple(FORMATS))
         self.address, self.pipeline, self.depth_format = address, pipeline, depth_format
         self.registers: MutableMapping[str, int] = Registers(self._open_line)
-        self._reader = Reader(pipeline.sensor, pipeline.grid)
         depths_mm = pipeline.threshold_mm, pipeline.threshold_mm, pipeline.area_threshold_mm
         self._codes = dict(zip(THRESHOLDS, map(self._code, depths_mm), strict=True))
         self._reference_gains: np.ndarray | None = None  # of the device, if they are known
-        self._is_closed = False
+        self._is_closed = self._is_window_checked = False
         self._line: Channel | None = self._connect()
 
     def __exit__(self, *raised: object) -> None:
@@ -160,8 +159,8 @@ class Device(AbstractContextManager["Device"]):
             self._capture_of_camera("reference", frames, largest)
             self._reference_gains = None
             return
-        images, taken = self._reader.reference(pictures, PICTURES, largest)
-        check_reference(self._reader.sensor, images, PICTURES)
+        images, taken = self.pipeline.reader.reference(pictures, PICTURES, largest)
+        check_reference(self.pipeline.reader.sensor, images, PICTURES)
         gains = captured_gains(taken, config)
         require_light(gains, config, PICTURES)
         with self._open_line() as line:
@@ -178,7 +177,7 @@ class Device(AbstractContextManager["Device"]):
         if pictures is None:
             self._capture_of_camera("zero", frames, LARGEST_LOG2)
             return
-        taken = np.stack([frame for _, frame in self._reader.pictures(pictures, PICTURES)[0]])
+        taken = np.stack([frame for _, frame in self.pipeline.reader.pictures(pictures, PICTURES)[0]])
         power_of_two_of(len(taken), LARGEST_LOG2, PICTURES)
         gains = None
         if config.light_gains and self._reference_gains is not None:
@@ -260,6 +259,7 @@ class Device(AbstractContextManager["Device"]):
         with ExitStack() as stack:
             line = stack.enter_context(self._open_line())
             if pictures is None:
+                self._check_window(line)
                 yield from (self._frame(arrival, None) for arrival in camera_frames(line))
                 return
             exchange = stack.enter_context(Exchange(line))
@@ -352,17 +352,24 @@ class Device(AbstractContextManager["Device"]):
     def _on_grid(self, pictures: Pictures | Iterable[Picture]) -> Iterator[tuple[Part, Bytes]]:
         """Give pictures on the grid, each with its name; those of an iterable one by one."""
         if is_array(pictures) or isinstance(pictures, str | Path | Sequence) or not isinstance(pictures, Iterable):
-            yield from self._reader.pictures(cast(Pictures, pictures), PICTURES)[0]
+            yield from self.pipeline.reader.pictures(cast(Pictures, pictures), PICTURES)[0]
             return
         for index, picture in enumerate(pictures):
-            yield from self._reader.pictures(picture, f"picture {index}")[0]
+            yield from self.pipeline.reader.pictures(picture, f"picture {index}")[0]
 
     def _capture_of_camera(self, table: str, count: int, largest_log2: int) -> None:
         accepted = [1 << power for power in range(largest_log2 + 1)]
         if count not in accepted:
             raise InputError(Argument("frames", count), accepted=[str(number) for number in accepted])
         with self._open_line() as line:
+            self._check_window(line)
             captures.capture_of_camera(line, table, count, lambda: line.send(self._untouched))
+
+    def _check_window(self, line: Channel) -> None:
+        """Warn once if what the device takes of its camera's pictures is not what the calibration is for."""
+        if not self._is_window_checked and (doubt := window_doubt(line, self.pipeline)):
+            warn(doubt)
+        self._is_window_checked = True
 
     def _frame(self, arrival: Arrival, picture: int | None) -> DeviceFrame:
         pipeline, frame = self.pipeline, arrival.frame

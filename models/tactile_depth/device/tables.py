@@ -8,9 +8,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tactile_depth.base.errors import InputError
+from tactile_depth.base.errors import InputError, InputWarning
+from tactile_depth.chip.camera_configuration import window_of
 from tactile_depth.chip.registers.axil_registers import Build
-from tactile_depth.chip.registers.register_map import REGISTERS, TABLES, Field
+from tactile_depth.chip.registers.register_map import CAMERA_REGISTERS, REGISTERS, TABLES, Field
 from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
 from tactile_depth.chip.table_entries import ONE_WORD, table_entries
 from tactile_depth.chip.tactile_depth import top_parameters
@@ -18,8 +19,14 @@ from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.registers import read_words, write_words
+from tactile_depth.sensor.view import share_of
 
 DESCRIPTION = ("GRID", "FORMAT", "DEVICE", "DEPTH_UNIT", "SLOPE_UNIT")
+CAMERA = ("CAMERA_PICTURE", "CAMERA_WINDOW", "CAMERA_WINDOW_SIZE")
+# Largest difference of a window from the calibration's view, in the length and the middle of each side, relative to the
+# length. A window that is rounded to half pixels per grid pixel differs by 0.02; one of 0.97 and 0.95 of the view makes
+# heights 4 and 7 % too large.
+WINDOWS_AGREE = 0.025
 BUSY = tuple(capture.name for capture in CAPTURES.values())
 REMEDY = "make the pipeline with the configuration of the device, or build the device for the pipeline"
 
@@ -48,6 +55,29 @@ def require_same(line: Channel, pipeline: Pipeline) -> None:
     ]
     if differing:
         raise InputError(f"the device has another configuration: {'; '.join(differing)}", remedy=REMEDY)
+
+
+def window_doubt(line: Channel, pipeline: Pipeline) -> InputWarning | None:
+    """Return a warning if a device cuts its camera's pictures to another part than the calibration's pictures show.
+
+    The camera is taken to send the sensor's full picture. None too for a device without a camera front end, over `uio`,
+    which does not reach its registers, and for a calibration whose view is unknown.
+    """
+    view, words = pipeline.sensor.view, line.read([CAMERA_REGISTERS[name].offset for name in CAMERA])
+    if view is None or len(words) < len(CAMERA):
+        return None
+    picture, first, size = (CAMERA_REGISTERS[name].unpack(word) for name, word in zip(CAMERA, words, strict=True))
+    window = np.array((first["x"], first["y"], size["columns"], size["rows"]))
+    expected = np.array(window_of((picture["rows"], picture["columns"]), pipeline.grid, share_of(view)))
+    differs = np.concatenate((window[2:] - expected[2:], (window - expected)[:2] + (window - expected)[2:] / 2))
+    if (np.abs(differs) <= WINDOWS_AGREE * np.tile(expected[2:], 2)).all():
+        return None
+    shown, right = (",".join(map(str, each.tolist())) for each in (window, expected))
+    return InputWarning(
+        f"CAMERA_WINDOW and CAMERA_WINDOW_SIZE of the device are {shown}, but {pipeline.sensor.name} is for {right} of "
+        f"a picture of {picture['columns']} x {picture['rows']}: heights are wrong",
+        remedy=f"build the device with WINDOW={right}, unless its camera sends less than the sensor's full picture",
+    )
 
 
 def _shown(word: int, field: Field) -> str:

@@ -20,7 +20,8 @@ from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.base.npy import is_file, read_header
 from tactile_depth.chip.camera_configuration import CameraChoice, CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.pictures.grid_sampler import grid_sampler
+from tactile_depth.chip.resampling import WHOLE, Share
+from tactile_depth.pictures.grid_sampler import grid_sampler, middle
 from tactile_depth.pictures.reference_check import check_reference
 from tactile_depth.sensor.scenes import AS_EVER, SCENES, SYNTHETIC_PIXEL_PITCH_MM, Press, render, scene_pixel_pitch_mm
 from tactile_depth.sensor.sensor import Sensor
@@ -61,6 +62,8 @@ class Frames(ByValue):
         The camera that the pictures were converted for; None: they are averaged as they are.
     words : uint32 array (frames, picture rows, picture columns), or None
         What that camera sends (`pixel_format`).
+    share : Share
+        Part of the pictures that the calibrated camera shows.
     """
 
     pixels: np.ndarray
@@ -72,6 +75,7 @@ class Frames(ByValue):
     no_contact: np.ndarray | None = None
     camera: CameraConfiguration | None = None
     words: np.ndarray | None = None
+    share: Share = WHOLE
 
     def __repr__(self) -> str:
         frames, rows, columns, _ = self.pixels.shape
@@ -150,9 +154,9 @@ def on_grid(sensor: Sensor, frames: Frames) -> Sensor:
             remedy=("omit the ", Argument("calibration"), ", or give pictures of that sensor"),
         )
     sensor.require_reference(frames.reference is not None)
-    zoom = 1.0 if frames.picture_size is None else sensor.zoom(frames.picture_size, frames.name)
+    zoom = 1.0 if frames.picture_size is None else sensor.zoom(frames.picture_size, frames.name, frames.share)
     if frames.no_contact is not None:
-        check_reference(sensor, frames.no_contact[None])
+        check_reference(sensor, middle(frames.no_contact[None], frames.share))
     placed = sensor
     if frames.camera is not None:
         columns, rows = frames.camera.centre_shift
@@ -168,6 +172,7 @@ def load_frames(
     seed: int = 1,
     press: Press = AS_EVER,
     camera: CameraChoice | None = None,
+    share: Share = WHOLE,
 ) -> Frames:
     """Load the frames that `FRAMES` and `REFERENCE` of make name.
 
@@ -185,6 +190,8 @@ def load_frames(
     camera : CameraChoice, optional
         Pictures are converted to what this camera sends, and then taken as its hardware takes them. A scene is drawn as
         a picture of `SCENE_PICTURE`.
+    share : Share
+        Part of the pictures that the grid covers; the default window of `camera` is in it.
     """
     if source in SCENES:
         return _scene(source, size, reference, seed, press, camera)
@@ -192,22 +199,30 @@ def load_frames(
         raise InputError(f"press, position and noise with {source}: they go with scenes: omit them")
     labels, images = read_pictures(source, accepted=ACCEPTED)
     no_contact = None if reference is None else read_picture(Path(reference))
-    return _to_grid(source, labels, images, size, reference or "", no_contact, camera)
+    return _to_grid(source, labels, images, size, reference or "", no_contact, camera, share)
 
 
 def flat_frames(
-    sensor: Sensor, size: tuple[int, int], camera: CameraChoice | None = None, *, with_reference: bool = True
+    sensor: Sensor,
+    size: tuple[int, int],
+    camera: CameraChoice | None = None,
+    share: Share = WHOLE,
+    *,
+    with_reference: bool = True,
 ) -> Frames:
-    """Return a grey picture of a sensor's camera, as a frame and as its reference: for builds without a picture.
+    """Return a grey picture as a frame and as its reference: for builds without a picture.
 
-    It has the size of the calibration's camera, or `SCENE_PICTURE` in front of a camera of the same aspect ratio.
+    The calibration's camera shows a share of it, in its own pixels; in front of a camera of the same aspect ratio it is
+    of `SCENE_PICTURE`.
     """
     assert sensor.camera is not None
-    picture = sensor.camera.rows, sensor.camera.columns
-    if camera is not None and picture[0] * SCENE_PICTURE[1] == picture[1] * SCENE_PICTURE[0]:
+    rows, columns = sensor.camera.rows / share[0], sensor.camera.columns / share[1]
+    picture = round(rows), round(columns)
+    if camera is not None and rows * SCENE_PICTURE[1] == columns * SCENE_PICTURE[0]:
         picture = SCENE_PICTURE
     grey = np.full((*picture, 3), GREY, np.uint8)
-    frames = _to_grid(REST_SCENE, (REST_SCENE,), [grey], size, REST_SCENE, grey if with_reference else None, camera)
+    rest = grey if with_reference else None
+    frames = _to_grid(REST_SCENE, (REST_SCENE,), [grey], size, REST_SCENE, rest, camera, share)
     return replace(frames, no_contact=None)  # its lighting is that of no sensor
 
 
@@ -286,6 +301,7 @@ def _to_grid(
     reference: str,
     no_contact: np.ndarray | None,
     choice: CameraChoice | None,
+    share: Share = WHOLE,
 ) -> Frames:
     pixels = np.empty((len(labels), *size, 3), np.uint8)
     words: np.ndarray | None = None
@@ -299,7 +315,7 @@ def _to_grid(
                     f"{reference}: {no_contact.shape[0]} x {no_contact.shape[1]}, but the frames are "
                     f"{height} x {width}: give the no-contact frame of the same camera"
                 )
-            sampler = grid_sampler(name, picture, size, choice)
+            sampler = grid_sampler(name, picture, size, choice, share)
             if sampler.camera is not None:
                 words = np.empty((len(labels), *picture), np.uint32)
         if (height, width) != picture:
@@ -312,7 +328,7 @@ def _to_grid(
             words[index] = sampler.words(image)
     assert sampler is not None
     on_grid = None if no_contact is None else sampler.frame(no_contact)
-    return Frames(pixels, sampler.scale, name, labels, on_grid, picture, no_contact, sampler.camera, words)
+    return Frames(pixels, sampler.scale, name, labels, on_grid, picture, no_contact, sampler.camera, words, share)
 
 
 def _read_array(path: Path) -> np.ndarray:

@@ -11,7 +11,7 @@ from tactile_depth.base.errors import InputError, Part
 from tactile_depth.chip.camera.camera_front_end import camera_front_end
 from tactile_depth.chip.camera.pixel_format import photograph
 from tactile_depth.chip.camera_configuration import CameraChoice, CameraConfiguration
-from tactile_depth.chip.resampling import Resampling, resampling
+from tactile_depth.chip.resampling import WHOLE, Resampling, Share, resampling
 
 LARGEST_COLUMNS = 128  # of a grid that is chosen for pictures
 
@@ -33,7 +33,7 @@ class GridSampler:
     """
 
     scale: float
-    origin: tuple[int, int]
+    origin: tuple[float, float]
     plan: Resampling | None
     camera: CameraConfiguration | None
 
@@ -63,16 +63,28 @@ def picture_grid(picture: tuple[int, int], solver: str = "tridiagonal", least_ra
 
 
 def grid_sampler(
-    name: Part, picture: tuple[int, int], grid: tuple[int, int], choice: CameraChoice | None = None
+    name: Part,
+    picture: tuple[int, int],
+    grid: tuple[int, int],
+    choice: CameraChoice | None = None,
+    share: Share = WHOLE,
 ) -> GridSampler:
-    """Return the way from pictures to a grid, (rows, columns) each; `name` names the pictures in errors."""
-    if picture[0] < grid[0] or picture[1] < grid[1]:
-        (height, width), (rows, columns) = picture, grid
-        problem = f": {width} x {height} pixels (columns x rows) are smaller than the grid of {columns} x {rows}"
-        raise InputError(name, problem, remedy="give larger pictures or a smaller grid")
+    """Return the way from a share of pictures to a grid, (rows, columns) each; `name` names the pictures in errors."""
+    height, width = (float(length * part) for length, part in zip(picture, share, strict=True))
+    if height < grid[0] or width < grid[1]:
+        used, (rows, columns) = "" if share == WHOLE else " of the part that is used", grid
+        problem = f": {width:.0f} x {height:.0f} pixels (columns x rows){used} are smaller than the grid of"
+        raise InputError(name, f"{problem} {columns} x {rows}", remedy="give larger pictures or a smaller grid")
     if choice is not None:
-        camera = choice.on(picture, grid)
+        camera = choice.on(picture, grid, share)
         x, y = camera.crop[:2]
         return GridSampler(float(camera.ratio), (y, x), None, camera)
-    plan = resampling(picture, grid)
-    return GridSampler(plan.scale, plan.origin, plan, None)
+    plan = resampling(picture, grid, share)
+    return GridSampler(plan.scale, (float(plan.origin[0]), float(plan.origin[1])), plan, None)
+
+
+def middle(pictures: np.ndarray, share: Share) -> np.ndarray:
+    """Return a share of pictures (.., rows, columns, 3) in whole pixels."""
+    cuts = (round(length * (1 - part) / 2) for length, part in zip(pictures.shape[-3:-1], share, strict=True))
+    top, left = cuts
+    return pictures[..., top : pictures.shape[-3] - top, left : pictures.shape[-2] - left, :]

@@ -7,21 +7,25 @@ import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.pictures.exchanges import exchange_of
+from tactile_depth.pictures.grid_sampler import middle
 from tactile_depth.pictures.pictures import HasArray, HasInterface, is_array
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import BUILT_IN
 from tactile_depth.sensor.sensor import LIGHTING_AGREES, Sensor
+from tactile_depth.sensor.view import Crop, shown
 
 PICTURE = "uint8 (rows, columns, 3), RGB"
 
 
-def identify(reference: np.ndarray | HasArray | HasInterface) -> Sensor:
+def identify(reference: np.ndarray | HasArray | HasInterface, *, crop: Crop | None = None) -> Sensor:
     """Return the built-in calibration of the sensor that took a picture without contact, found by its lighting.
 
     Parameters
     ----------
     reference : uint8 array (rows, columns, 3), RGB, or a PIL image
-        Full picture of the sensor's camera.
+        Picture of the sensor's camera.
+    crop : str, float or (width, height), optional
+        What it shows of the sensor's full picture, as for a Pipeline.
 
     Raises
     ------
@@ -38,14 +42,16 @@ def identify(reference: np.ndarray | HasArray | HasInterface) -> Sensor:
     for sensor in map(load, BUILT_IN):
         if sensor.camera is None or sensor.lighting is None:
             continue
-        difference = sensor.lighting_difference(reference)
+        seen, share = shown(sensor, crop)
+        cut = middle(reference, share)
+        difference = seen.lighting_difference(cut)
         try:
-            sensor.zoom((rows, columns))
+            seen.zoom((rows, columns), share=share)
         except InputError:
             camera = sensor.camera
             reasons.append(f"{sensor.name} takes {camera.columns} x {camera.rows}, this has {columns} x {rows} pixels")
             continue
-        exchange = exchange_of(sensor, reference)
+        exchange = exchange_of(seen, cut)
         if difference > LIGHTING_AGREES or exchange:
             reasons.append(
                 f"its lighting differs from {sensor.name} by {100 * difference:.0f} %, accepted are "

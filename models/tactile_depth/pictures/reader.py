@@ -8,7 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, Part
-from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler
+from tactile_depth.chip.resampling import WHOLE, Share
+from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler, middle
 from tactile_depth.pictures.pictures import Pictures, pictures_of
 from tactile_depth.sensor.sensor import Sensor
 
@@ -20,10 +21,12 @@ class Reader:
     ----------
     sensor : Sensor
         With the pixel pitch of its camera.
+    share : Share
+        What the sensor's camera shows of the pictures; the grid covers it.
     """
 
-    def __init__(self, sensor: Sensor, grid: tuple[int, int]) -> None:
-        self.sensor, self._grid = sensor, grid
+    def __init__(self, sensor: Sensor, grid: tuple[int, int], share: Share = WHOLE) -> None:
+        self.sensor, self.share, self._grid = sensor, share, grid
         self._samplers: dict[tuple[int, int], GridSampler] = {}
 
     def pictures(self, given: Pictures, name: Part) -> tuple[Iterator[tuple[Part, np.ndarray]], bool]:
@@ -32,7 +35,7 @@ class Reader:
         return ((each, self._on_grid(picture, each)) for each, picture in read), single
 
     def reference(self, given: Pictures, name: Argument, largest_log2: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return 1, 2, 4 .. 2**largest_log2 pictures, as given and on the grid, uint8 (frames, rows, columns, 3)."""
+        """Return 1, 2, 4 .. 2**largest_log2 pictures, cut and on the grid, uint8 (frames, rows, columns, 3)."""
         read = list(pictures_of(given, name)[0])
         power_of_two_of(len(read), largest_log2, name)
         frames = np.stack([self._on_grid(picture, each) for each, picture in read])
@@ -42,17 +45,17 @@ class Reader:
                 size = f"{picture.shape[1]} x {picture.shape[0]}"
                 problem = f": {size} pixels (columns x rows), but the first picture had {columns} x {rows}"
                 raise InputError(each, problem, remedy="give pictures of one size")
-        return np.stack([picture for _, picture in read]), frames
+        return middle(np.stack([picture for _, picture in read]), self.share), frames
 
     def _on_grid(self, picture: np.ndarray, name: Part) -> np.ndarray:
         size = (picture.shape[0], picture.shape[1])
         if size not in self._samplers:
-            self.sensor.zoom(size, name)
+            self.sensor.zoom(size, name, self.share)
             if self.sensor.camera is None and self._samplers:
                 first = next(iter(self._samplers))[::-1]
                 problem = f": {size[1]} x {size[0]} pixels (columns x rows), but the first picture had {first}"
                 raise InputError(name, problem, remedy="give pictures of one size")
-            self._samplers[size] = grid_sampler(name, size, self._grid)
+            self._samplers[size] = grid_sampler(name, size, self._grid, share=self.share)
         return self._samplers[size].frame(picture)
 
 

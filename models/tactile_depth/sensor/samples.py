@@ -62,5 +62,7 @@ def sample(name: str = "ball", seed: int = 1) -> Sample:
     size = (CAMERA.rows, CAMERA.columns)
     scene, rest = render(name, *size, seed), render("flat", *size, seed + 1, Press(noise=0))
     pitch = scene_pixel_pitch_mm(min(size))
-    sensor = replace(synthetic(), name="sample", pixel_pitch_mm=pitch, camera=CAMERA, flat_field=True, model="cubic")
+    sensor = replace(
+        synthetic(), name="sample", pixel_pitch_mm=pitch, camera=CAMERA, flat_field=True, model="cubic", view=(1.0, 1.0)
+    )
     return Sample(sensor, scene.frames[0], rest.frames[0], scene.height[0] * pitch)

@@ -23,6 +23,7 @@ from tactile_depth.chip.limits import (
     MODELS,
     SHALLOWEST_PX,
 )
+from tactile_depth.chip.resampling import WHOLE, Share
 from tactile_depth.sensor.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -200,23 +201,31 @@ class Sensor(ByValue):
         assert held is not None
         return np.pad(held, ((0, 0), (0, 0), (0, CUBIC[-1] - held.shape[-1])))
 
-    def zoom(self, picture_size: tuple[int, int], name: Part = "picture") -> float:
+    def zoom(self, picture_size: tuple[int, int], name: Part = "picture", share: Share = WHOLE) -> float:
         """Return pixels of a picture (rows, columns) per pixel of the calibrated camera; 1 for the synthetic sensor.
+
+        Parameters
+        ----------
+        share : of the rows and of the columns of the picture, which the calibrated camera shows
 
         Raises
         ------
         InputError
-            The picture and the camera have different aspect ratios.
+            That share and the camera's pictures have different aspect ratios.
         """
         if self.camera is None:
             return 1.0
-        rows, columns = picture_size
+        rows, columns = (float(length * part) for length, part in zip(picture_size, share, strict=True))
         if abs(columns * self.camera.rows / (rows * self.camera.columns) - 1) > ASPECTS_AGREE:
+            kept = "" if share == WHOLE else f", of which {columns:.0f} x {rows:.0f} are used"
             raise InputError(
                 name,
-                f": {columns} x {rows} pixels (columns x rows), but {self.name} is calibrated for pictures of "
-                f"{self.camera.columns} x {self.camera.rows}",
-                remedy="give whole pictures of that camera, of the same aspect ratio, or calibrate for this one",
+                f": {picture_size[1]} x {picture_size[0]} pixels (columns x rows){kept}, but {self.name} is calibrated "
+                f"for pictures of {self.camera.columns} x {self.camera.rows}",
+                remedy=(
+                    *("give pictures of that camera, of the same aspect ratio, say with ", Argument("crop")),
+                    " what part of the sensor's full picture they show, or calibrate for this one",
+                ),
             )
         return math.sqrt(rows * columns / (self.camera.rows * self.camera.columns))
 
