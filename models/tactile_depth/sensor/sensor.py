@@ -463,15 +463,19 @@ def lighting(picture: np.ndarray) -> np.ndarray:
 
 def equal_areas(picture: np.ndarray, areas: tuple[int, int] = UNTOUCHED_AREAS) -> np.ndarray:
     """Return means of a picture (rows, columns, 3) over equal areas, float64 (area rows, area columns, 3)."""
-    down, across = (_overlaps(length, count) for length, count in zip(picture.shape[:2], areas, strict=True))
+    down, across = (
+        overlaps(length, np.linspace(0, length, count + 1))
+        for length, count in zip(picture.shape[:2], areas, strict=True)
+    )
     means: np.ndarray = np.einsum("ir,rcn,jc->ijn", down, picture.astype(np.float64), across, optimize=True)
     return means
 
 
-def _overlaps(length: int, count: int) -> np.ndarray:
-    """Return the share of each of `length` pixels in the mean over each of `count` equal parts."""
-    edges, pixels = np.linspace(0, length, count + 1)[:, None], np.arange(length)
-    return np.clip(np.minimum(edges[1:], pixels + 1) - np.maximum(edges[:-1], pixels), 0, None) * (count / length)
+def overlaps(length: int, edges: np.ndarray) -> np.ndarray:
+    """Return the share of each of `length` pixels in the mean over each part between two edges: (parts, length)."""
+    pixels = np.arange(length)
+    shared = np.minimum(edges[1:, None], pixels + 1) - np.maximum(edges[:-1, None], pixels)
+    return np.clip(shared, 0, None) / np.diff(edges)[:, None]
 
 
 def _refuse(argument: Argument, problem: str) -> None:
