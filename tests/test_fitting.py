@@ -326,7 +326,9 @@ def test_an_evaluation_on_the_fitted_presses_is_a_little_better_than_that_of_the
     assert evaluation.best_model == sensor.model
     td.fit(folder, models="quadratic")
     view, *summary = capsys.readouterr().out.splitlines()
-    assert view.startswith("0.1 mm per pixel: the picture shows 16.0 x 11.2 mm of the gel.")
+    assert view.startswith(
+        "0.1 mm per pixel: the picture shows 16.0 x 11.2 mm of the gel, an unknown part (no crop) of the sensor's full"
+    )
     assert summary == [*quadratic.evaluation.summary.splitlines(), f"verdict: {quadratic.sensor.verdict}"]
 
 

@@ -227,6 +227,20 @@ def test_the_command_takes_a_crop(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "--crop half: accepted are none, gs_sdk, gsrobotics" in capsys.readouterr().err
 
 
+def test_the_simulator_plays_what_a_pipeline_reads(tmp_path: Path) -> None:
+    sample = td.sample()
+    sensor, _ = shown(sample.sensor, 0.8)
+    sensor.save(tmp_path / "new.npz")
+    Image.fromarray(sample.image).save(tmp_path / "press.png")
+    Image.fromarray(sample.reference).save(tmp_path / "background.png")
+    words = [f"FRAMES={tmp_path}/press.png", f"REFERENCE={tmp_path}/background.png", f"CALIBRATION={tmp_path}/new.npz"]
+    frames, on_grid, _ = synthesis.design(run_request.parse([*words, "CROP=none"], preset="sensor"))
+    pipeline = td.Pipeline(sensor, sample.reference, crop="none")
+    ((_, picture),) = pipeline.reader.pictures(sample.image, "press")[0]
+    np.testing.assert_array_equal(frames.pixels[0], picture)
+    assert on_grid.pixel_pitch_mm == pytest.approx(pipeline.pixel_pitch_mm)
+
+
 # Cameras.
 
 

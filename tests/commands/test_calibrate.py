@@ -38,6 +38,7 @@ def test_the_variables_reach_the_fit(made: Any, tmp_path: Path, run_command: Any
         "BITS=3",
         "CAMERA=raw8",
         "BAYER=grbg",
+        "CROP=0.8,1",
     ]
     status, output, (line,) = run_command("calibrate", *words)
     assert status == 0
@@ -48,6 +49,8 @@ def test_the_variables_reach_the_fit(made: Any, tmp_path: Path, run_command: Any
         np.testing.assert_array_equal(getattr(sensor, name), getattr(fit.sensor, name))
     camera = sensor.camera
     assert camera is not None
+    assert sensor.view == (0.8, 1)
+    assert "0.8 of the width and 1 of the height of the sensor's full picture" in output
     assert (camera.rows, camera.columns, camera.exposure_us, camera.pixel_format) == (*CAMERA, 8000, "raw8")
     assert read_picture(out.with_suffix(".png")).shape[1] > 1000
     for printed in (
@@ -129,7 +132,7 @@ def test_a_full_disk_leaves_earlier_results(
 @pytest.mark.regress  # tests/test_real_fits.py compares the fit itself
 def test_the_shipped_calibration_is_what_the_command_makes(tmp_path: Path, run_command: Any) -> None:
     out = tmp_path / "gelsight-mini.npz"
-    assert run_command("calibrate", f"PRESSES={real_folder()}", f"OUT={out}").status == 0
+    assert run_command("calibrate", f"PRESSES={real_folder()}", "CROP=gs_sdk", f"OUT={out}").status == 0
     with np.load(out) as made, np.load(FOLDER / "gelsight-mini.npz") as shipped:
         assert sorted(made.files) == sorted(shipped.files)
         np.testing.assert_array_equal(made["gradient"], shipped["gradient"])

@@ -275,11 +275,13 @@ class GridPresses:
     @property
     def field_of_view(self) -> str:
         """The size of the gel in the picture by the pitch, which balls of known diameter cannot check."""
-        rows, columns = self.background.shape[:2]
+        (rows, columns), part = self.background.shape[:2], "an unknown part (no crop)"
+        if self.view is not None:
+            part = f"{self.view[0]:.3g} of the width and {self.view[1]:.3g} of the height"
         return (
             f"{self.pitch_mm:.3g} mm per pixel: the picture shows {columns * self.pitch_mm * self.aspect:.1f} x "
-            f"{rows * self.pitch_mm:.1f} mm of the gel. Check that with a ruler: balls fit any pitch, and an error of "
-            "the pitch changes heights by twice as much"
+            f"{rows * self.pitch_mm:.1f} mm of the gel, {part} of the sensor's full picture. Check that with a ruler: "
+            "balls fit any pitch, and an error of the pitch changes heights by twice as much"
         )
 
     @property
