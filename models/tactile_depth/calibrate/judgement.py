@@ -26,9 +26,11 @@ BAD_REACH, GOOD_REACH = 0.1, 0.25
 # Largest ratio of the diameter that the presses of a ball show, by the colours of other balls, to that given. Real
 # balls that contradict each other by 8 %: 1.11; one of two diameters wrong by 30 %: 1.19 to 1.41.
 DIAMETERS_AGREE, FEWEST_OF_A_BALL = 1.15, 4
-# Least ratio, of all diameters to those given, at which slopes are linear in the colours. Colours of a lit gel grow
-# more slowly than slopes, never faster. Drawn linear gels: 1.0; real gels: over 2; all diameters 30 % too large: 0.77.
-FASTER_THAN_SLOPES = 0.88
+# Ratio of all diameters to those given at which slopes are linear in the colours. Drawn linear gels: 1.0, with 0.03 to
+# 0.04 of the slopes left; real gels: over 1.8, with 0.15 left. Colours of a lit gel never grow faster than slopes, as
+# they seem to with diameters that are too large: 30 %: 0.77. With diameters 30 % too small: 1.42, with 0.03 left, as of
+# a gel whose colours saturate a little.
+LINEAR_AT, LEFT_OF_LINEAR = (0.88, 1.14), 0.06
 FACTORS = np.exp(np.linspace(-0.6, 0.6, 49))  # of a diameter
 RIDGE = 1e-3  # added to the diagonal of equations scaled to 1
 # Change of colour in a circle over that in the circle of its size that holds most: 0.70 to 1 for right circles, below
@@ -90,11 +92,12 @@ def _diameters(presses: GridPresses) -> tuple[str, str]:
         if max(max(ratio, 1 / ratio) for ratio in apart.values()) > DIAMETERS_AGREE:
             balls = ", ".join(f"{ball:g} mm as {ball * ratio:.2g} mm" for ball, ratio in apart.items())
             return BAD, f"likely cause: a wrong diameter: by the colours of the other balls, {balls}"
-    factor = _linear_at(list(samples.values()))
-    if factor < FASTER_THAN_SLOPES:
-        return BAD, (
-            "likely cause: diameters too large, or a pitch too small: colours are those of balls of "
-            f"{factor:.2f} times the diameters given"
+    factor, left = _linear_at(list(samples.values()))
+    low, high = LINEAR_AT
+    if factor < low or (high < factor < FACTORS[-1] and left < LEFT_OF_LINEAR):
+        wrong = "too large, or a pitch too small" if factor < low else "too small, or a pitch too large"
+        return BAD if factor < low else USABLE, (
+            f"likely cause: diameters {wrong}: colours are those of balls of {factor:.2f} times the diameters given"
         )
     return GOOD, ""
 
@@ -125,7 +128,7 @@ class _Samples:
         response = _response(np.concatenate([other.features for other in others]), slopes)
         by_others = self.features @ response
         known = np.hypot(*by_others.T) < np.quantile(np.hypot(*slopes.T), 0.98)
-        return _best(lambda factor: float(((by_others - self.slopes(factor))[known] ** 2).mean()))
+        return _best(lambda factor: float(((by_others - self.slopes(factor))[known] ** 2).mean()))[0]
 
 
 def _response(features: np.ndarray, slopes: np.ndarray) -> np.ndarray:
@@ -136,20 +139,23 @@ def _response(features: np.ndarray, slopes: np.ndarray) -> np.ndarray:
     return response
 
 
-def _best(error: Callable[[float], float]) -> float:
+def _best(error: Callable[[float], float]) -> tuple[float, float]:
+    """Return the factor of the smallest error, and that error."""
     errors = np.array([error(factor) for factor in FACTORS])
-    return float(FACTORS[np.nanargmin(errors)]) if np.isfinite(errors).any() else 1.0
+    if np.isnan(errors).all():
+        return 1.0, math.inf
+    return float(FACTORS[np.nanargmin(errors)]), float(np.nanmin(errors))
 
 
-def _linear_at(samples: Sequence[_Samples]) -> float:
-    """Return the factor of all diameters at which slopes are closest to linear in the colours."""
+def _linear_at(samples: Sequence[_Samples]) -> tuple[float, float]:
+    """Return the factor of all diameters at which slopes are closest to linear in the colours, and what is left."""
     features = np.concatenate([each.features for each in samples])
 
     def error(factor: float) -> float:
         slopes = np.concatenate([each.slopes(factor) for each in samples])
         if np.isnan(slopes).any():
             return math.nan
-        return float(((features @ _response(features, slopes) - slopes) ** 2).sum() / (slopes**2).sum())
+        return math.sqrt(((features @ _response(features, slopes) - slopes) ** 2).sum() / (slopes**2).sum())
 
     return _best(error)
 
