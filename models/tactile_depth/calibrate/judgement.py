@@ -14,11 +14,15 @@ import numpy as np
 from scipy.ndimage import median_filter
 from scipy.signal import fftconvolve
 
+from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate.evaluation import Evaluation
 from tactile_depth.calibrate.presses import FITTED_SHARE, GridPresses, View
 from tactile_depth.chip.limits import COEFFICIENTS, DEVIATION
 from tactile_depth.depth.reference import pixel_terms
+from tactile_depth.pictures.identify import identify
+from tactile_depth.sensor.sensor import equal_areas
 from tactile_depth.sensor.verdict import BAD, GOOD, GRADES, USABLE, Verdict
+from tactile_depth.sensor.view import shown
 
 # Least distance of a press from the picture's middle towards each of its sides, as a share of the way. Presses all over
 # the gel, 10 or more: 0.31 to 0.9; presses on one side alone: -0.3 to 0.0.
@@ -42,7 +46,9 @@ MOST_DOUBTFUL = 0.2  # share of the presses whose circles may be doubtful, or th
 # the picture: real gels without markers 0.000; drawn markers 0.06 to 0.08.
 DARK_SPOT, SPOT_PX, COLUMNS, MOST_SPOTS = 0.8, 31, 320, 0.02
 NAMED = 4  # presses in a reason
-NOT_CHECKED = "pitch not checked: balls fit any, and no ball_radius_px says more"
+NOT_CHECKED = "pitch not checked: balls fit any, and neither ball_radius_px nor the view of a known sensor says more"
+PITCH_AGREES = 0.1  # largest relative difference to the pitch of a built-in calibration of the same kind of sensor
+SAME_PICTURE = 0.02  # RMS of log(picture / picture), colour by colour. Drawn specimens: 0.046 and more
 
 
 def judge(presses: GridPresses, evaluation: Evaluation) -> Verdict:
@@ -51,21 +57,54 @@ def judge(presses: GridPresses, evaluation: Evaluation) -> Verdict:
     numbers = evaluation.faults(model)
     grades = [GOOD if not numbers else BAD if evaluation.severity(model) > 1 else USABLE]
     causes = []
-    circles = _circles(presses)
+    circles, expected_mm = _circles(presses), expected_pitch_mm(presses)
     diameters = (GOOD, "") if circles[0] == BAD else _diameters(presses)  # which need right circles
-    for grade, cause in (circles, diameters, _markers(presses), _spread(presses)):
+    for grade, cause in (circles, _pitch(presses, expected_mm), diameters, _markers(presses), _spread(presses)):
         if cause:
             grades.append(grade)
             causes.append(cause)
     worst = max(grades, key=GRADES.index)
     if worst == BAD and not causes:
         causes = ["no likely cause found: look at the circles, and whether the camera adjusts itself"]
-    unchecked = [] if presses.ball_pitches else [NOT_CHECKED]
+    unchecked = [] if presses.ball_pitches or expected_mm else [NOT_CHECKED]
     return Verdict(worst, (*numbers, *causes, *unchecked))
 
 
 def _joined(names: Sequence[str]) -> str:
     return ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
+
+
+# Pitch.
+
+
+def expected_pitch_mm(presses: GridPresses) -> float | None:
+    """Return the pitch by a built-in calibration with the lighting of the background, None if there is none.
+
+    What the pictures show must be known, or the same as there.
+    """
+    background = presses.background
+    try:
+        known = identify(background, crop=presses.view)
+    except InputError:
+        return None
+    if presses.view is None:
+        assert known.untouched is not None
+        differs = np.log(np.maximum(equal_areas(background), 1) / np.maximum(known.untouched, 1))
+        if (differs - differs.mean(axis=(0, 1))).std() > SAME_PICTURE:
+            return None
+    known, share = shown(known, presses.view)
+    rows, columns = background.shape[:2]
+    return known.pixel_pitch_mm / known.zoom((rows, columns), share=share)
+
+
+def _pitch(presses: GridPresses, expected_mm: float | None) -> tuple[str, str]:
+    """Return whether the pitch is far from that of the same kind of sensor."""
+    if expected_mm is None or abs(presses.pitch_mm / expected_mm - 1) < PITCH_AGREES:
+        return GOOD, ""
+    return BAD, (
+        f"likely cause: a wrong pitch or crop: {presses.pitch_mm:.3g} mm per pixel, but {expected_mm:.3g} by a "
+        "built-in calibration for the same lighting and view"
+    )
 
 
 # Diameters.
