@@ -24,6 +24,7 @@ from tactile_depth.cli.drawing import DARK, OUTSIDE, Scale, round_number
 from tactile_depth.cli.main import main
 from tactile_depth.cli.overview import draw_overview
 from tactile_depth.cli.ply import triangles
+from tactile_depth.depth.pipeline import THRESHOLD_MM
 from tests.drawn_light import as_picture, no_contact, pressed
 from tests.real_data import FOLDER, needs_real_data
 
@@ -109,7 +110,9 @@ def test_the_report_describes_the_result(tmp_path: Path, inputs: Any, depth: Any
     assert picture["peak_height_mm"] == result.height_mm.max()
     contact = picture["contact"]
     assert contact["touching"]
-    assert contact["peak_mm"] == result.contact.peak_mm
+    (listed,) = picture["contacts"]
+    assert listed["peak_height_mm"] == result.contacts[0].peak_height_mm == pytest.approx(result.height_mm.max())
+    assert {**contact, "peak_height_mm": listed["peak_height_mm"]} == {"touching": True, **listed}
     assert contact["area_mm2"] == result.contact.area_mm2
     assert contact["volume_mm3"] == result.contact.volume_mm3
     assert contact["centroid_px"] == list(result.contact.centroid_px)
@@ -135,7 +138,7 @@ def test_options_reach_the_pipeline(tmp_path: Path, inputs: Any, depth: Any, opt
     result = expected(inputs, **choices)
     np.testing.assert_array_equal(np.load(tmp_path / "depth_mm.npy"), result.height_mm.astype(np.float32))
     report = json.loads((tmp_path / "report.json").read_text())
-    assert report["threshold_mm"] == choices.get("threshold_mm", 0.1)
+    assert report["threshold_mm"] == choices.get("threshold_mm", THRESHOLD_MM)
     assert report["zero_offset"] == choices.get("zero_offset", True)
 
 
@@ -224,7 +227,7 @@ def test_the_calibration_is_found_by_the_reference_and_named(
     message = "calibration: gelsight-mini: the reference looks like it; --calibration names another"
     assert printed.out.splitlines()[0] == message
     assert "grid: 128 x 96 pixels of 0.1585 mm" in printed.out
-    assert "no contact above 0.1 mm" in printed.out
+    assert "no contact above 0.07 mm" in printed.out
     assert not printed.err
     report = json.loads((tmp_path / "report.json").read_text())
     assert (report["calibration"], report["calibration_named"]) == ("gelsight-mini", False)

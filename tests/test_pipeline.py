@@ -43,7 +43,7 @@ def test_defaults_suit_a_real_sensor(pipeline: Any) -> None:
     assert pipeline.grid == (96, 128)
     assert (config.solver, config.neumann, config.gradient_model) == ("tridiagonal", True, "cubic")
     assert (config.data_width, config.coefficient_width, config.zero_offset) == (24, 18, True)
-    assert (pipeline.arithmetic, pipeline.threshold_mm) == ("chip", 0.1)
+    assert (pipeline.arithmetic, pipeline.threshold_mm) == ("chip", 0.07)
 
 
 @pytest.mark.parametrize(
@@ -262,14 +262,14 @@ def test_the_record_of_a_whole_frame_is_that_of_its_beats() -> None:
 def test_the_contact_in_millimetres(pipeline: Any, ball: Any) -> None:
     result = pipeline(ball.image)
     contact = result.contact
-    touched = result.codes * pipeline.depth_lsb_mm > 0.1
+    touched = result.codes * pipeline.depth_lsb_mm > pipeline.threshold_mm
     np.testing.assert_array_equal(contact.mask, touched)
     assert contact.peak_mm == pytest.approx(result.depth_mm.max())
     assert result.depth_mm[contact.peak_px] == result.depth_mm.max()
     pitch = result.pixel_pitch_mm
     assert contact.peak_position_mm == pytest.approx([pitch * index for index in contact.peak_px])
     assert contact.centroid_mm == pytest.approx([pitch * index for index in contact.centroid_px])
-    assert contact.peak_mm - contact.untouched_mm == pytest.approx(result.height_mm.max())
+    assert contact.peak_height_mm == pytest.approx(result.height_mm.max())
     level = min(0.3, contact.peak_mm / 2)
     assert contact.area_threshold_mm == pytest.approx(level, abs=pipeline.depth_lsb_mm)
     area = result.depth_mm > contact.area_threshold_mm
@@ -299,7 +299,7 @@ def test_a_light_touch_has_a_record(ball: Any, pipeline: Any, depth: float) -> N
     codes = np.rint(height / pipeline.depth_lsb_mm).astype(np.int32)
     record = pipeline._recorder.record(codes)
     assert (record.peak, record.peak_position) == (codes.max(), (row, column))
-    level = max(0.1, depth / 2) / pipeline.depth_lsb_mm
+    level = max(pipeline.threshold_mm, depth / 2) / pipeline.depth_lsb_mm
     assert record.area_threshold == pytest.approx(level, abs=1)
     assert record.area == np.count_nonzero(codes > record.area_threshold) > 0
     np.testing.assert_allclose(np.divide(record.centroid, 16), (row, column), atol=0.1)

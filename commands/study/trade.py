@@ -51,7 +51,7 @@ from tactile_depth.chip.latency import last_pixel_to_first_depth
 from tactile_depth.chip.limits import most_lanes
 from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.depth.pipeline import AREA_THRESHOLD_MM, THRESHOLD_MM
-from tactile_depth.depth.result import Recorder
+from tactile_depth.depth.result import Recorder, settings_of
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, load_frames, on_grid
 from tactile_depth.sensor.built_in import read
@@ -268,8 +268,8 @@ def _measured(
     every = twin.codes(data.frames.pixels, monitor)
     pitch = sensor.pixel_pitch_mm
     lsb = config.depth_lsb_px * pitch
-    threshold, area = (round(depth / lsb) for depth in (THRESHOLD_MM, AREA_THRESHOLD_MM))
-    recorder = Recorder.of(config, threshold, threshold, area)
+    settings = settings_of(THRESHOLD_MM, THRESHOLD_MM, AREA_THRESHOLD_MM, lsb, pitch**2)
+    recorder = Recorder.of(config, settings)
     values: list[tuple[Measured, bool, float]] = []
     for number, press in data.presses.items():
         codes = every[number]
@@ -277,7 +277,7 @@ def _measured(
         result = td.Result(
             codes.astype(np.int32), codes * lsb, empty, empty[..., 0] > 0, None, {}, recorder, lsb, pitch, np.inf, None
         )
-        touching = twin.upright(codes).reshape(-1) > threshold
+        touching = twin.upright(codes).reshape(-1) > settings.on_threshold
         first = int(touching.argmax()) if touching.any() else touching.size
         cycles = last_pixel_to_first_depth(config) + first // config.lanes + threshold_comparator.LATENCY
         values.append((measured(result, press), press.name in study.middle, cycles))

@@ -58,6 +58,8 @@ def require_equal(frames: list[td.DeviceFrame], results: list[td.Result]) -> Non
         assert frame.contact.touching == result.contact.touching
         assert frame.contact.record[3:] == result.contact.record[3:]
         assert frame.contact.peak_mm == result.contact.peak_mm
+        if frame.recorder == result.recorder:  # without hysteresis
+            assert frame.contacts == result.contacts
         assert frame.threshold_mm == result.threshold_mm
 
 
@@ -181,8 +183,8 @@ def test_thresholds(device: td.Device, sample: td.Sample) -> None:
     expected = td.Pipeline(
         sample.sensor, reference=sample.reference, grid=GRID, threshold_mm=0.05, area_threshold_mm=0.2
     )
-    codes = {name: device.registers[name] for name in ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD")}
-    assert list(codes.values()) == [round(mm / expected.depth_lsb_mm) for mm in (0.05, 0.03, 0.2)]
+    codes = {name: device.registers[name] for name in ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA")}
+    assert tuple(codes.values()) == expected.settings(0.05, 0.03, 0.2)[:-1]
     require_equal(list(device.depth([sample.image])), list(expected.stream([sample.image])))
     device.load()
     assert {name: device.registers[name] for name in codes} == codes, "load keeps them"

@@ -11,7 +11,7 @@ PARAMETERS = {
     "calibration": ("", str),
     "reference": ("", str),
     "crop": ("", str),
-    "threshold_mm": ("0.1", float),
+    "threshold_mm": ("0.07", float),
     "area_threshold_mm": ("0.3", float),
     "arithmetic": ("chip", str),
 }

@@ -29,7 +29,7 @@ class TactileDepthNode(Node):
         calibration = self.declare_parameter("calibration", "").value
         self._crop = self.declare_parameter("crop", "").value or None
         self._sensor = td.load(calibration) if calibration else None
-        names = {"threshold_mm": 0.1, "area_threshold_mm": 0.3}
+        names = {"threshold_mm": 0.07, "area_threshold_mm": 0.3}
         self._thresholds = {name: self.declare_parameter(name, value).value for name, value in names.items()}
         self._arithmetic = self.declare_parameter("arithmetic", "chip").value
         path = self.declare_parameter("reference", "").value

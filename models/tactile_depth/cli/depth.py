@@ -18,7 +18,7 @@ from tactile_depth.cli.options import add_pipeline_arguments, choose_sensor, mak
 from tactile_depth.cli.overview import draw_overview
 from tactile_depth.cli.ply import write_ply
 from tactile_depth.depth.pipeline import Pipeline
-from tactile_depth.depth.result import Result
+from tactile_depth.depth.result import Contact, Result, least_area_mm2
 from tactile_depth.pictures.frames import read_pictures
 from tactile_depth.pictures.grid_sampler import middle
 
@@ -34,25 +34,26 @@ UNITS = {
     "depth_um.png": f"the same in micrometres, 16 bits, clipped at 0 and {LARGEST_UM}; viewers show it black, "
     "overview.png is for looking",
     "depth.ply": "the same as a mesh, mm",
-    "peak_height_mm": "largest height",
+    "peak_height_mm": "largest height; of a contact the height of its peak",
+    "contacts": "the contacts, that with most pixels first; contact is the record of all together",
     "warnings": "of a picture: why its heights are uncertain",
     "light_gains": "light of the reference over that of the picture, of red, green and blue; null without light gains",
-    "peak_mm": "largest depth above the threshold, mm; depth is height before the mean of the untouched surface is "
-    "subtracted",
     "peak_px, centroid_px": "row, column on the grid",
     "view": "shares of the width and height of the sensor's full picture that the grid is cut from; null: unknown",
     "peak_position_mm, centroid_mm": "row, column from the upper left corner of that view; null without contact",
+    "least_area_mm2": "least area above threshold_mm that is a contact",
     "area_threshold_mm": "depth above which a pixel is in the area: the one chosen, or half the contact's peak if that "
     "is less, at least threshold_mm",
     "area_mm2": "area above area_threshold_mm",
     "centroid": "weighted by what depth is above area_threshold_mm",
+    "is_mostly_empty": "the area fills less than half of its bounding box: it is long, hollow, or of several contacts",
     "is_central": "the area lies wholly in the middle square, where calibration_error was measured; null without "
     "contact",
     "volume_mm3": "sum of the depths in the area times the area of a pixel",
 }
 CONTACT = (
-    *("touching", "peak_mm", "peak_px", "peak_position_mm", "area_threshold_mm", "area_mm2", "volume_mm3"),
-    *("centroid_px", "centroid_mm", "is_central"),
+    *("peak_px", "peak_position_mm", "area_threshold_mm", "area_mm2", "volume_mm3"),
+    *("centroid_px", "centroid_mm", "is_mostly_empty", "is_central"),
 )
 """Entries of a contact in a report."""
 
@@ -109,6 +110,8 @@ def summary(result: Result) -> str:
         peak, error = float(result.height_mm.max()), result.height_error
         spread = "" if error is None else f" +- {peak * error.relative:.2f}"
         parts = [f"peak height {peak:.2f}{spread} mm, contact area {contact.area_mm2:.1f} mm2"]
+        if len(result.contacts) > 1:
+            parts.append(f"{len(result.contacts)} contacts together")
         if result.warnings:
             parts.append("uncertain, as the warnings say")
         elif error is None:
@@ -169,20 +172,26 @@ def _describe_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> dict[
         "depth_range_mm": config.deepest_px * pipeline.pixel_pitch_mm,
         "threshold_mm": pipeline.threshold_mm,
         "area_threshold_mm": pipeline.area_threshold_mm,
+        "least_area_mm2": least_area_mm2(pipeline.threshold_mm),
     }
 
 
 def _describe(result: Result) -> dict[str, Any]:
     contact = result.contact
-    described = {name: getattr(contact, name) for name in CONTACT}
+    described = {"touching": contact.touching, **_describe_contact(contact)}
     if not contact.touching:
         described |= {"area_threshold_mm": None, "is_central": None}
     return {
         "peak_height_mm": float(result.height_mm.max()),
         "contact": described,
+        "contacts": [{"peak_height_mm": each.peak_height_mm, **_describe_contact(each)} for each in result.contacts],
         "warnings": list(result.warnings),
         "light_gains": None if result.light_gains is None else result.light_gains.tolist(),
         "saturations": result.saturations,
         "dark_pixels": int(result.dark.sum()),
         "outside_pixels": int(result.outside.sum()),
     }
+
+
+def _describe_contact(contact: Contact) -> dict[str, Any]:
+    return {name: getattr(contact, name) for name in CONTACT}

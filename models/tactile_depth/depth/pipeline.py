@@ -13,6 +13,7 @@ import numpy as np
 from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration, ExactConfiguration
+from tactile_depth.chip.contact.contact_events import Settings
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.depth.zero_offset import exact_zero, no_zero
 from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gains, require_light
@@ -22,7 +23,7 @@ from tactile_depth.chip.hardware_files import write_hardware
 from tactile_depth.chip.limits import BOUNDARIES, LIGHT_GAIN, Boundary, Model, Solver, is_grid_of_hardware
 from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.chip.tactile_depth import zeroed
-from tactile_depth.depth.result import Recorder, Result
+from tactile_depth.depth.result import Recorder, Result, settings_of, thresholds_of
 from tactile_depth.depth.stream import Stream
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.blocks import Rest
@@ -41,8 +42,7 @@ from tactile_depth.sensor.view import Crop, shown
 SYNTHETIC_GRID = (128, 128)
 ARITHMETICS = ("chip", "float")
 Arithmetic = Literal["chip", "float"]
-THRESHOLD_MM, AREA_THRESHOLD_MM = 0.1, 0.3  # of a contact
-THRESHOLDS = {"THRESHOLD": "on_threshold", "AREA_THRESHOLD": "area_threshold"}  # fields of Settings, by register
+THRESHOLD_MM, AREA_THRESHOLD_MM = 0.07, 0.3  # of a contact
 PICTURES, REFERENCE = Argument("pictures"), Argument("reference")
 
 
@@ -88,7 +88,8 @@ class Pipeline:
     arithmetic : str
         `chip`, bit-accurate as in the hardware, or `float`, double precision.
     threshold_mm : float
-        Depth above which a pixel touches.
+        Depth above which a pixel touches. A frame touches if an area of half that of a ball of 4 mm, 0.12 mm deep, is
+        above it, and at least 0.1 mm^2.
     area_threshold_mm : float
         Depth above which a pixel is in the area of the contact, whose centroid, limits and volume are recorded. Half
         the peak of the frame before counts where that is less, but never less than `threshold_mm`. A picture that is
@@ -162,8 +163,7 @@ class Pipeline:
         if not is_number(area_threshold_mm) or not 0 <= area_threshold_mm / self.depth_lsb_mm < 2**31:
             raise InputError(Argument("area_threshold_mm", area_threshold_mm), accepted="a depth, 0 or more")
         self._threshold_mm, self._area_threshold_mm = threshold_mm, area_threshold_mm
-        threshold, area = (round(depth / self.depth_lsb_mm) for depth in (threshold_mm, area_threshold_mm))
-        self._recorder = Recorder.of(self.config, threshold, threshold, area)
+        self._recorder = Recorder.of(self.config, self.settings(threshold_mm, threshold_mm, area_threshold_mm))
         self._zero = no_zero(self.config)
         self._exact_zero = np.zeros(self.grid)
         self._use_reference(rest)
@@ -334,6 +334,11 @@ class Pipeline:
         """Depth above which a pixel is in the area of the contact."""
         return self._area_threshold_mm
 
+    def settings(self, touch_mm: float, release_mm: float, area_mm: float) -> Settings:
+        """Return the settings of the hardware for thresholds in mm: depth codes, and the least area in pixels."""
+        pixel_mm2 = self.pixel_pitch_mm**2 * self.sensor.pixel_aspect
+        return settings_of(touch_mm, release_mm, area_mm, self.depth_lsb_mm, pixel_mm2)
+
     @property
     def zero_codes(self) -> np.ndarray:
         """Zero offset at its nodes, depth codes in the order of the stream, int64 (node rows, node columns)."""
@@ -393,7 +398,7 @@ class Pipeline:
             problem = " is for double precision alone"
             remedy = ("make the pipeline with ", Argument("arithmetic", "chip"), " and a grid that it takes")
             raise InputError(Argument("grid", self.grid), problem, remedy=remedy)
-        thresholds = {name: getattr(self._recorder.settings, field) for name, field in THRESHOLDS.items()}
+        thresholds = thresholds_of(self._recorder.settings)
         return write_hardware(Path(folder), self.sensor, self.config, self._zero, self._gains, thresholds)
 
     # Captures.

@@ -18,7 +18,7 @@ from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.depth.pipeline import PICTURES, Pipeline, require_flag, require_flat_field, require_zero_offset
-from tactile_depth.depth.result import Recorder
+from tactile_depth.depth.result import Recorder, thresholds_of
 from tactile_depth.device import captures
 from tactile_depth.device.addresses import open_channel
 from tactile_depth.device.channel import Arrival, Channel
@@ -37,8 +37,6 @@ from tactile_depth.pictures.reference_check import check_reference
 
 CAPTURED = 8
 """Pictures of the device's camera that a capture takes the mean of."""
-THRESHOLDS = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD")
-"""Registers of the thresholds, in the order of the fields of Settings."""
 
 
 class Device(AbstractContextManager["Device"]):
@@ -92,8 +90,12 @@ class Device(AbstractContextManager["Device"]):
         one_of(Argument("depth_format", depth_format), tuple(FORMATS))
         self.address, self.pipeline, self.depth_format = address, pipeline, depth_format
         self.registers: MutableMapping[str, int] = Registers(self._open_line)
-        depths_mm = pipeline.threshold_mm, pipeline.threshold_mm, pipeline.area_threshold_mm
-        self._codes = dict(zip(THRESHOLDS, map(self._code, depths_mm), strict=True))
+        self._thresholds_mm = {
+            "touch_mm": pipeline.threshold_mm,
+            "release_mm": pipeline.threshold_mm,
+            "area_mm": pipeline.area_threshold_mm,
+        }
+        self._settings = pipeline.settings(**self._thresholds_mm)
         self._reference_gains: np.ndarray | None = None  # of the device, if they are known
         self._is_closed = self._is_window_checked = False
         self._line: Channel | None = self._connect()
@@ -129,7 +131,7 @@ class Device(AbstractContextManager["Device"]):
                     exchange.depth_of(self._untouched)
 
                 load_tables(line, self.pipeline, untouched)
-                write_words(line, list(self._codes.items()))
+                write_words(line, list(thresholds_of(self._settings).items()))
                 wait_in_use(line, untouched)
         self._reference_gains = reference_gains(self.pipeline.sensor, config) if config.flat_field else None
 
@@ -188,7 +190,9 @@ class Device(AbstractContextManager["Device"]):
     def set_thresholds(
         self, touch_mm: float | None = None, release_mm: float | None = None, area_mm: float | None = None
     ) -> None:
-        """Set thresholds, in mm; those that are None stay as they are. `load` keeps them.
+        """Set thresholds, in mm, and the least area of a contact, which follows from `touch_mm`; `load` keeps them.
+
+        Those that are None stay as they are.
 
         Parameters
         ----------
@@ -208,21 +212,20 @@ class Device(AbstractContextManager["Device"]):
         """
         release_mm = touch_mm if release_mm is None else release_mm
         given = {"touch_mm": touch_mm, "release_mm": release_mm, "area_mm": area_mm}
-        codes = dict(self._codes)
-        for register, (name, depth_mm) in zip(THRESHOLDS, given.items(), strict=True):
-            if depth_mm is None:
-                continue
-            lowest_mm = self.pipeline.depth_lsb_mm if name == "touch_mm" else 0.0
-            if not is_number(depth_mm) or not lowest_mm <= depth_mm < self._limit_mm:
+        lsb_mm = self.pipeline.depth_lsb_mm
+        for name, depth_mm in given.items():
+            lowest_mm = lsb_mm if name == "touch_mm" else 0.0
+            if depth_mm is not None and not (is_number(depth_mm) and lowest_mm <= depth_mm < self._limit_mm):
                 accepted = f"a depth above 0, up to {self._limit_mm:.3g} mm"
                 raise InputError(Argument(name, depth_mm), accepted=accepted)
-            codes[register] = self._code(depth_mm)
-        if codes["OFF_THRESHOLD"] > codes["THRESHOLD"]:
-            touch = codes["THRESHOLD"] * self.pipeline.depth_lsb_mm
+        thresholds_mm = self._thresholds_mm | {name: depth for name, depth in given.items() if depth is not None}
+        settings = self.pipeline.settings(**thresholds_mm)
+        if settings.off_threshold > settings.on_threshold:
+            touch = settings.on_threshold * lsb_mm
             raise InputError(Argument("release_mm", release_mm), accepted=f"at most touch_mm, {touch:.3g}")
         with self._open_line() as line:
-            write_words(line, list(codes.items()))
-        self._codes = codes
+            write_words(line, list(thresholds_of(settings).items()))
+        self._thresholds_mm, self._settings = thresholds_mm, settings
 
     def depth(
         self, pictures: Pictures | Iterable[Picture] | None = None, *, stream: bool = True
@@ -373,17 +376,12 @@ class Device(AbstractContextManager["Device"]):
 
     def _frame(self, arrival: Arrival, picture: int | None) -> DeviceFrame:
         pipeline, frame = self.pipeline, arrival.frame
-        recorder = Recorder.of(pipeline.config, *self._codes.values())
+        recorder = Recorder.of(pipeline.config, self._settings)
         pitch_mm = span_of(frame.depth_format) * pipeline.pixel_pitch_mm
         units = pipeline.depth_lsb_mm, pitch_mm, pipeline.sensor.pixel_aspect
         counts = frame.number, arrival.time_s, arrival.lost
         form = self.depth_format, (pipeline.config.rows, pipeline.config.columns)
         return DeviceFrame(frame.codes, frame.record, *counts, picture, recorder, *units, *form)
-
-    # Thresholds.
-
-    def _code(self, depth_mm: float) -> int:
-        return round(depth_mm / self.pipeline.depth_lsb_mm)
 
     @property
     def _limit_mm(self) -> float:

@@ -71,17 +71,20 @@ class DeviceFrame(ByValue):
 
     @cached_property
     def _result(self) -> Result:
-        """Result of the codes, with the record of the device; without slopes."""
+        return self._result_of(self.codes, self.pixel_pitch_mm)
+
+    def _result_of(self, codes: Codes, pixel_pitch_mm: float) -> Result:
+        """Return the result of codes, with the record of the device; without slopes."""
         return Result(
-            self.codes,
-            np.multiply(self.codes, self.depth_lsb_mm, dtype=np.float64),
-            np.full((*self.codes.shape, 2), np.nan),
-            np.broadcast_to(np.False_, self.codes.shape),
+            codes,
+            np.multiply(codes, self.depth_lsb_mm, dtype=np.float64),
+            np.full((*codes.shape, 2), np.nan),
+            np.broadcast_to(np.False_, codes.shape),
             None,
             {},
             self.recorder,
             self.depth_lsb_mm,
-            self.pixel_pitch_mm,
+            pixel_pitch_mm,
             math.inf,
             None,
             (self.record,),
@@ -118,6 +121,16 @@ class DeviceFrame(ByValue):
         """Contact, with the record that the device made, in pixels of the grid; `mask` is that of the frame."""
         return replace(self._result.contact, pixel_pitch_mm=self.pixel_pitch_mm / self._span, grid=self.grid)
 
+    @cached_property
+    def contacts(self) -> list[Contact]:
+        """Contacts, that with most pixels first: `Result.contacts` of the depth map, in pixels of the grid."""
+        codes = self.codes
+        if self._span > 1:
+            codes = codes.repeat(self._span, axis=0).repeat(self._span, axis=1)
+            rows, columns = (whole - sent for whole, sent in zip(self.grid, codes.shape, strict=True))
+            codes = np.pad(codes, ((self._first_row, rows - self._first_row), (0, columns)), mode="edge")
+        return self._result_of(codes, self.pixel_pitch_mm / self._span).contacts
+
     @property
     def origin_mm(self) -> tuple[float, float]:
         """Row and column of the first value from the upper left corner of the picture, in mm, as `Contact` counts.
@@ -126,9 +139,13 @@ class DeviceFrame(ByValue):
         row r and column c lies r * `pixel_pitch_mm` below it and c * `pixel_pitch_mm` * `pixel_aspect` to the right.
         """
         middle = (self._span - 1) / 2
-        first_row = self.grid[0] % self._span if self.recorder.bottom_first else 0  # the last row to leave is not sent
         pitch_mm = self.pixel_pitch_mm / self._span
-        return (first_row + middle) * pitch_mm, middle * pitch_mm * self.pixel_aspect
+        return (self._first_row + middle) * pitch_mm, middle * pitch_mm * self.pixel_aspect
+
+    @property
+    def _first_row(self) -> int:
+        """Row of the grid at which the depth begins: the last row to leave is not sent if it has no other."""
+        return self.grid[0] % self._span if self.recorder.bottom_first else 0
 
     @property
     def _span(self) -> int:

@@ -54,6 +54,12 @@ class Record(NamedTuple):
         return self.weight + self.area * self.area_threshold
 
     @property
+    def box_share(self) -> float:
+        """Share of the bounding box that the area fills; 0 without area."""
+        rows, columns = (most - least + 1 for least, most in zip(self.least, self.greatest, strict=True))
+        return self.area / (rows * columns)
+
+    @property
     def words(self) -> tuple[int, ...]:
         """Words of the record, in the order in which they leave."""
         positions = self.peak_position, self.least, self.greatest, self.centroid
