@@ -137,7 +137,7 @@ lint: $(TOOLS)
 
 # Test `tactile-depth live` with its viewer, in an environment of its own (1.1 GB).
 live-test: $(LIVE)/complete
-	@PYTHONPATH=models $(LIVE)/bin/python -m pytest --noconftest tests/test_live.py tests/test_source.py
+	@PYTHONPATH=models $(LIVE)/bin/python -m pytest --noconftest tests/test_live.py tests/test_source.py tests/test_viewer.py
 
 # Prove properties of the cores without a bound on time. CORE=a,b. LIST=1: print them, and prove nothing.
 formal: $(TOOLS)

@@ -77,6 +77,7 @@ class Screen:
     def __init__(self, *_: Any) -> None:
         self.indices: list[Any] = []
         self.heights: list[Any] = []
+        self.sensors: list[int] = []
         Screen.last = self
 
     def __enter__(self) -> Any:
@@ -85,7 +86,8 @@ class Screen:
     def __exit__(self, *_: Any) -> None:
         pass
 
-    def show(self, index: int, picture: np.ndarray, result: Any) -> None:
+    def show(self, index: int, picture: np.ndarray, result: Any, sensor: int = 0) -> None:
+        self.sensors.append(sensor)
         self.indices.append(index)
         self.heights.append(result.height_mm)
 
@@ -182,6 +184,24 @@ def test_it_stops_after_so_many_frames(inputs: Any, live: Any, background: Any, 
     printed = live(inputs / "presses", *background, "--frames", 3)
     assert Screen.last.indices == [0, 1, 2]
     assert counted(printed.out)["shown"] == 3
+
+
+def test_several_sensors_are_shown_each_by_its_own_pipeline(
+    tmp_path: Path, inputs: Any, background: Any, images: Any, screen: Any, capsys: Any
+) -> None:
+    """Show two folders of unequal length, the second with a reference of its own, which is captured."""
+    no_contact = np.array(Image.open(inputs / "background.png"))
+    np.save(tmp_path / "frames.npy", np.stack([no_contact] * 8 + [images[5]]))
+    words = [f"{inputs}/presses", f"{tmp_path}/frames.npy", "--calibration", f"{inputs}/sensor.npz", "--grid", "32x24"]
+    assert main(["live", *words, *background, "--reference", "capture"]) == 0
+    heights = [result.height_mm for result in pipeline_of(inputs).stream(images)]
+    shown = list(zip(Screen.last.indices, Screen.last.sensors, Screen.last.heights, strict=True))
+    np.testing.assert_array_equal([height for _, sensor, height in shown if sensor == 0], heights)
+    ((number, height),) = [(number, height) for number, sensor, height in shown if sensor == 1]
+    (expected,) = pipeline_of(inputs).stream(images[5:6])
+    assert number == 8
+    np.testing.assert_array_equal(height, expected.height_mm)
+    assert "frames.npy: frames: read 9, captured 8, shown 1, dropped 0, failed 0" in capsys.readouterr().out
 
 
 # Keys.
@@ -290,6 +310,12 @@ def test_an_interruption_still_says_where_the_frames_went(
         (["none.mp4"], "none.mp4: no such source"),
         (["presses", "--headless"], "--headless shows nothing: give --save FILE.rrd"),
         (["presses", "--frames", "0"], "--frames 0: accepted are 1 and more"),
+        (["presses", "--web", "--headless", "--save", "run.rrd"], "--headless opens no viewer, and --web serves one"),
+        (["presses", "--web-address", "robot"], "--web-address robot is no address: accepted is an IP address"),
+        (["presses", "--web-address", "127.0.0.1:65535"], "accepted are ports from 1 to 65534"),
+        (["presses", "presses", "--reference", "capture"], "--reference is given 1 times for 2 SOURCEs"),
+        (["presses", "device:sim"], "device:sim with other sources: a device is watched alone"),
+        (["presses", "none.mp4", "--web"], "none.mp4: no such source"),
         (["presses"], "reference looks like no sensor"),
         (["few"], "few: 1 frames, the reference takes 8: give --reference BACKGROUND"),
     ],
@@ -365,7 +391,7 @@ def test_a_recording_holds_every_frame_as_the_pipeline_computes_it(
     printed = live(video, *background, "--headless", "--save", rrd)
     assert counted(printed.out) == {"read": 25, "shown": 25, "dropped": 0, "failed": 0}
     values, expected = read_back(rrd), pipeline_of(inputs)
-    results = [expected(image) for image in decoded(video)]
+    results = list(expected.stream(decoded(video)))
     heights = component(values, "/height", "buffer")
     assert sorted(heights) == list(range(25))
     for frame, result in enumerate(results):

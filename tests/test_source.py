@@ -9,17 +9,20 @@ import select
 import sys
 import termios
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
+from tactile_depth.base.errors import InputError
 from tactile_depth.cli import source as sources
 from tactile_depth.cli.failure import Failure
 from tactile_depth.cli.keys import pressed_keys
-from tactile_depth.cli.source import Source
+from tactile_depth.cli.source import CameraChoice, Source
 from tests import press_video
 
 ROOT = Path(__file__).parent.parent
@@ -39,7 +42,11 @@ def test_the_page_on_opencv_prints_what_it_says(
     names: dict[str, Any] = {}
     exec(loop, names)
     assert capsys.readouterr().out.splitlines() == printed[:2]
-    exec(camera.replace("gelsight-mini", "demo/sensor.npz").replace("pictures(0)", 'pictures("demo/press.avi")'), names)
+    untouched = [np.array(Image.open("demo/background.png"))] * 8
+    press_video.write_video(tmp_path / "demo" / "camera.avi", [*untouched, *press_video.press_frames()], 60)
+    exec(
+        camera.replace("gelsight-mini", "demo/sensor.npz").replace("pictures(0)", 'pictures("demo/camera.avi")'), names
+    )
     heights = capsys.readouterr().out.split()
     assert len(heights) == 60 - 8
     with pytest.raises(OSError, match="OpenCV cannot open it"):
@@ -54,7 +61,7 @@ def camera(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Make camera 0 return these items, each as fast as it is read."""
 
     def connect(items: Any) -> Any:
-        monkeypatch.setattr(sources, "_camera", lambda name: iter(items))
+        monkeypatch.setattr(sources, "_camera", lambda name, choice: iter(items))
         return Source("0")
 
     return connect
@@ -124,6 +131,99 @@ def test_a_camera_that_is_unplugged_ends_it(monkeypatch: pytest.MonkeyPatch) -> 
     assert device.name == 3  # type: ignore[comparison-overlap]
     assert device.released
     assert source.counts.failed == sources.DEAD_AFTER
+
+
+def test_frames_of_a_camera_have_the_time_of_their_capture_and_those_of_files_none(camera: Any, tmp_path: Path) -> None:
+    before = time.time()
+    with camera(numbered(2)) as source:
+        taken = [frame.captured_at for frame in source.frames() if frame is not None]
+    assert before <= taken[0] <= taken[1] <= time.time()
+    np.save(tmp_path / "frames.npy", np.stack(numbered(1)))
+    with Source(str(tmp_path / "frames.npy")) as source:
+        assert [frame.captured_at for frame in source.frames() if frame is not None] == [None]
+
+
+class Choosy(Camera):
+    """Camera that takes a size and a format, and has 480 x 640 pixels in MJPG whatever is asked."""
+
+    CAP_PROP_FRAME_HEIGHT, CAP_PROP_FRAME_WIDTH, CAP_PROP_FOURCC = "rows", "columns", "format"
+
+    class VideoWriter:
+        @staticmethod
+        def fourcc(*letters: str) -> int:
+            return int.from_bytes("".join(letters).encode(), "little")
+
+    class videoio_registry:
+        @staticmethod
+        def getCameraBackends() -> list[int]:
+            return [200, 700]
+
+        @staticmethod
+        def getBackendName(number: int) -> str:
+            return {200: "V4L2", 700: "DSHOW"}[number]
+
+    def VideoCapture(self, name: Any, *backend: int) -> Any:
+        self.opened = (name, *backend)
+        return self
+
+    def set(self, what: str, value: float) -> None:
+        pass
+
+    def get(self, what: str) -> float:
+        return {"rows": 480, "columns": 640, "format": float(self.VideoWriter.fourcc(*"MJPG"))}[what]
+
+
+def test_backend_size_and_format_of_a_camera_are_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
+    device = Choosy()
+    monkeypatch.setattr(sources, "load_opencv", lambda: device)
+    with Source("/dev/video3", CameraChoice("v4l2", (480, 640), "MJPG")):
+        assert device.opened == (3, 200)
+
+
+@pytest.mark.parametrize(
+    ("choice", "message"),
+    [
+        (CameraChoice("msmf"), "--backend msmf is none of this OpenCV: accepted are dshow, v4l2"),
+        (CameraChoice(size=(240, 320)), "--picture-size 320x240: camera 0 sends 640x480"),
+        (CameraChoice(picture_format="YUYV"), "--picture-format YUYV: camera 0 sends MJPG"),
+    ],
+)
+def test_what_a_camera_does_not_take_is_named(
+    monkeypatch: pytest.MonkeyPatch, choice: CameraChoice, message: str
+) -> None:
+    monkeypatch.setattr(sources, "load_opencv", Choosy)
+    with pytest.raises(InputError, match=message):
+        Source("0", choice)
+
+
+def test_a_camera_that_stays_silent_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a read fail after longer than `DEAD_S`, as V4L2 does with a camera that is gone."""
+    monkeypatch.setattr(sources, "load_opencv", lambda: Camera())
+    monkeypatch.setattr(sources, "DEAD_S", 0.0)
+    with Source("3") as source, pytest.raises(Failure, match="camera 3 gives no frames any more"):
+        list(source.frames())
+
+
+@pytest.mark.parametrize(("system", "hint"), [("win32", "--backend dshow or msmf"), ("darwin", "System Settings")])
+def test_a_camera_that_is_missing_has_a_hint_for_each_system(
+    monkeypatch: pytest.MonkeyPatch, system: str, hint: str
+) -> None:
+    monkeypatch.setattr(sources, "load_opencv", lambda: Camera(good=0))
+    monkeypatch.setattr(sys, "platform", system)
+    with pytest.raises(Failure, match=f"camera 9 cannot be opened: .*{hint}"):
+        Source("9")
+
+
+def test_cameras_of_linux_are_listed_by_name(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    for number, index in ((0, 0), (1, 1), (10, 0)):
+        (tmp_path / f"video{number}").mkdir()
+        (tmp_path / f"video{number}" / "index").write_text(f"{index}\n")
+        (tmp_path / f"video{number}" / "name").write_text("GelSight Mini\n" if number < 2 else "Webcam\n")
+    monkeypatch.setattr(sources, "CAMERAS", tmp_path)
+    monkeypatch.setattr(sources, "load_opencv", lambda: Camera(good=0))
+    monkeypatch.setattr(sys, "platform", "linux")
+    with pytest.raises(Failure, match=r"this computer has 0 \(GelSight Mini\), 10 \(Webcam\);"):
+        Source("2")
 
 
 def test_a_camera_that_is_not_there_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:

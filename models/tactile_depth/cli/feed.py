@@ -74,7 +74,7 @@ class PackageFeed:
                 yield None
                 continue
             try:
-                result = self._pipeline(frame.image, stream, f"frame {frame.index}")
+                result = self._pipeline(frame.image, stream, f"frame {frame.index}", frame.captured_at)
             except InputError as error:
                 if is_first and not isinstance(error, UnusablePicture):
                     raise

@@ -16,8 +16,13 @@ def pressed_keys() -> Iterator[Callable[[], str] | None]:
 
     The terminal is as before when the block ends, however it ends.
     """
-    if not sys.stdin.isatty():
+    if sys.stdin is None or not sys.stdin.isatty():
         yield None
+        return
+    if sys.platform == "win32":
+        import msvcrt
+
+        yield lambda: msvcrt.getwch() if msvcrt.kbhit() else ""
         return
     import termios
     import tty

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import io
+import os
 import sys
 import traceback
 import warnings
@@ -110,6 +111,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return FAILED
     except Failure as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
+        return FAILED
+    except BrokenPipeError:
+        print(f"{PROGRAM}: whatever reads the output has ended", file=sys.stderr)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python writes the rest at its end
         return FAILED
     except OSError as error:
         print(f"{PROGRAM}: {cause(error)}", file=sys.stderr)

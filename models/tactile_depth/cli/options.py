@@ -30,10 +30,11 @@ def size(text: str) -> tuple[int, int]:
     return int(match[2]), int(match[1])
 
 
-def add_pipeline_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add what `make_pipeline` reads, but for the reference."""
+def add_pipeline_arguments(parser: argparse.ArgumentParser, several: bool = False) -> None:
+    """Add what `make_pipeline` reads, but for the reference; with `several`, a list of calibrations is read."""
     parser.add_argument(
         "--calibration",
+        action="append" if several else "store",
         metavar="NAME_OR_FILE",
         help=f"{', '.join(BUILT_IN)}, or an .npz; by default the built-in one whose lighting the reference has",
     )

@@ -4,14 +4,16 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import queue
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,8 +23,14 @@ from tactile_depth.cli.failure import Failure
 from tactile_depth.pictures.frames import PICTURE_SUFFIXES, read_pictures
 
 QUEUED = 4  # frames that wait between the reader and the pipeline
-DEAD_AFTER = 30  # failed reads in a row of a camera
+DEAD_AFTER, DEAD_S = 30, 5.0  # failed reads in a row of a camera, and seconds without a frame
+CLOSING_S = 1.0  # that a read may take when a source is closed; V4L2 waits up to 10 s for a camera that is gone
 DEVICES = "/dev/"
+CAMERAS = Path("/sys/class/video4linux")  # of Linux
+HINTS = {
+    "win32": "try 0, 1, 2, and --backend dshow or msmf; close other programs that use it",
+    "darwin": "try 0, 1, 2; allow the terminal the camera in System Settings, Privacy & Security",
+}
 INSTALL = "pip install '.[live]' in the repository"
 
 Item = np.ndarray | InputError  # a frame, or why one could not be read
@@ -37,10 +45,34 @@ class Frame:
     index : int
         Its number in the source, from 0, dropped and unreadable ones included.
     image : uint8 array (rows, columns, 3), RGB
+    captured_at : float or None
+        When the camera delivered it, in seconds since the epoch, as `time.time` gives it; None for files.
     """
 
     index: int
     image: np.ndarray
+    captured_at: float | None = None
+
+
+class CameraChoice(NamedTuple):
+    """How to open a camera; what is "" or None is left to the system.
+
+    Attributes
+    ----------
+    backend : str
+        Name of OpenCV's backend, such as `v4l2`, `dshow`, `msmf` or `avfoundation`.
+    size : (rows, columns) or None
+        Of its pictures.
+    picture_format : str
+        Four letters, such as `MJPG` or `YUYV`.
+    """
+
+    backend: str = ""
+    size: tuple[int, int] | None = None
+    picture_format: str = ""
+
+
+AS_IT_IS = CameraChoice()
 
 
 @dataclass
@@ -95,6 +127,8 @@ class Source(AbstractContextManager["Source"]):
     ----------
     name : str
         Number or device of a camera, a video file, a picture, a `.npy` of frames, or a folder of pictures.
+    choice : CameraChoice
+        For a camera.
 
     Attributes
     ----------
@@ -105,10 +139,10 @@ class Source(AbstractContextManager["Source"]):
         OpenCV is missing, or the camera cannot be opened.
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, choice: CameraChoice = AS_IT_IS) -> None:
         self.name, self.counts = name, Counts()
         self.is_camera = name.isdecimal() or name.startswith(DEVICES)
-        items = _camera(name) if self.is_camera else _files(name)
+        items = _camera(name, choice) if self.is_camera else _files(name)
         self._queue: queue.Queue[Frame | InputError | Failure | None] = queue.Queue(QUEUED)
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._read, args=(items,), daemon=True)
@@ -116,7 +150,7 @@ class Source(AbstractContextManager["Source"]):
 
     def __exit__(self, *raised: object) -> None:
         self._stopped.set()
-        self._thread.join()
+        self._thread.join(CLOSING_S)
 
     def frames(self, patience_s: float = 0.1) -> Iterator[Frame | None]:
         """Give the frames to the end; None when none has arrived for a while.
@@ -146,7 +180,8 @@ class Source(AbstractContextManager["Source"]):
         end: Failure | None = None
         try:
             for index, item in enumerate(items):
-                self._put(item if isinstance(item, InputError) else Frame(index, item))
+                now = time.time() if self.is_camera else None
+                self._put(item if isinstance(item, InputError) else Frame(index, item, now))
                 if self._stopped.is_set():
                     return
         except Failure as error:
@@ -173,6 +208,8 @@ def load_opencv() -> Any:
     Failure
         It is not installed.
     """
+    os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")  # quiet: what fails is told here, in one line
+    os.environ.setdefault("OPENCV_LOG_LEVEL", "SILENT")
     try:
         import cv2
     except ImportError as error:
@@ -227,21 +264,74 @@ def _video_frames(cv2: Any, video: Any, name: str) -> Iterator[Item]:
         yield InputError(f"{name}: it claims {claimed} frames, {count} could be read: give an intact video")
 
 
-def _camera(name: str) -> Iterator[Item]:
+def _camera(name: str, choice: CameraChoice) -> Iterator[Item]:
     cv2 = load_opencv()
-    camera = cv2.VideoCapture(int(name) if name.isdecimal() else name)
+    device = os.path.realpath(name) if name.startswith(DEVICES) else name  # /dev/v4l/by-id/.. is a link
+    number = device.removeprefix(f"{DEVICES}video")
+    backend = [_backend(cv2, choice.backend)] if choice.backend else []
+    camera = cv2.VideoCapture(int(number) if number.isdecimal() else device, *backend)
     if not camera.isOpened():
-        raise Failure(f"camera {name} cannot be opened: look for its number with `v4l2-ctl --list-devices`")
+        raise Failure(f"camera {name} cannot be opened: {_hint()}")
+    if choice.picture_format:
+        camera.set(cv2.CAP_PROP_FOURCC, cv2.VideoWriter.fourcc(*choice.picture_format))
+    if choice.size is not None:
+        camera.set(cv2.CAP_PROP_FRAME_HEIGHT, choice.size[0])
+        camera.set(cv2.CAP_PROP_FRAME_WIDTH, choice.size[1])
+    try:
+        _require(cv2, camera, name, choice)
+    except InputError:
+        camera.release()
+        raise
     return _camera_frames(cv2, camera, name)
 
 
+def _backend(cv2: Any, name: str) -> int:
+    """Return the number of a backend; raise InputError, which lists those of this OpenCV, if it is none of them."""
+    registry = cv2.videoio_registry
+    known = {registry.getBackendName(each).lower(): each for each in registry.getCameraBackends()}
+    if name.lower() not in known:
+        raise InputError(f"--backend {name} is none of this OpenCV", accepted=sorted(known))
+    return known[name.lower()]
+
+
+def _require(cv2: Any, camera: Any, name: str, choice: CameraChoice) -> None:
+    """Raise InputError if a camera did not take the size or the format that was chosen."""
+    lists = "; `v4l2-ctl --list-formats-ext` lists them" if sys.platform == "linux" else ""
+    if choice.size is not None:
+        rows, columns = (round(camera.get(each)) for each in (cv2.CAP_PROP_FRAME_HEIGHT, cv2.CAP_PROP_FRAME_WIDTH))
+        if (rows, columns) != choice.size:
+            asked = "{1}x{0}".format(*choice.size)
+            raise InputError(
+                f"--picture-size {asked}: camera {name} sends {columns}x{rows}: give a size that it has{lists}"
+            )
+    code = round(camera.get(cv2.CAP_PROP_FOURCC)) if choice.picture_format else 0
+    if code > 0 and (taken := code.to_bytes(4, "little").decode("ascii", "replace")) != choice.picture_format:
+        raise InputError(
+            f"--picture-format {choice.picture_format}: camera {name} sends {taken}: give a format that it has{lists}"
+        )
+
+
+def _hint() -> str:
+    """Return how to find a camera on this system."""
+    if (hint := HINTS.get(sys.platform)) is not None:
+        return hint
+    names = []
+    for folder in sorted(CAMERAS.glob("video*"), key=lambda each: (len(each.name), each.name)):
+        with contextlib.suppress(OSError):
+            if (folder / "index").read_text().strip() == "0":  # the others of a camera carry no pictures
+                names.append(f"{folder.name.removeprefix('video')} ({(folder / 'name').read_text().strip()})")
+    if not names:
+        return "this computer has no camera: plug it in, and look for its number with `v4l2-ctl --list-devices`"
+    return f"this computer has {', '.join(names)}; another program may use it, or you are not in the group video"
+
+
 def _camera_frames(cv2: Any, camera: Any, name: str) -> Iterator[Item]:
-    failed = 0
+    failed, last = 0, time.monotonic()
     try:
-        while failed < DEAD_AFTER:
+        while failed < DEAD_AFTER and time.monotonic() < last + DEAD_S:
             is_read, image = camera.read()
             if is_read:
-                failed = 0
+                failed, last = 0, time.monotonic()
                 yield cv2.cvtColor(image, cv2.COLOR_BGR2RGB)
             else:
                 failed += 1
