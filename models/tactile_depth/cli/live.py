@@ -40,8 +40,8 @@ from tactile_depth.pictures.doubts import UnusablePicture
 from tactile_depth.pictures.frames import GREY
 from tactile_depth.pictures.picture_check import check_picture
 from tactile_depth.pictures.reference_check import STEADY
-from tactile_depth.sensor.sensor import Sensor
 from tactile_depth.sensor.built_in import read
+from tactile_depth.sensor.sensor import Sensor
 from tactile_depth.sensor.view import completed
 
 NAME = "live"
