@@ -30,6 +30,7 @@ BAD_REACH, GOOD_REACH = 0.1, 0.25
 # Largest ratio of the diameter that the presses of a ball show, by the colours of other balls, to that given. Real
 # balls that contradict each other by 8 %: 1.11; one of two diameters wrong by 30 %: 1.19 to 1.41.
 DIAMETERS_AGREE, FEWEST_OF_A_BALL = 1.15, 4
+LARGE_CONTACT = 0.85  # median of contact over ball radius: real presses of a Mini 0.51, drawn ones 0.3 to 0.7
 # Ratio of all diameters to those given at which slopes are linear in the colours. Drawn linear gels: 1.0, with 0.03 to
 # 0.04 of the slopes left; real gels: over 1.8, with 0.15 left. Colours of a lit gel never grow faster than slopes, as
 # they seem to with diameters that are too large: 30 %: 0.77. With diameters 30 % too small: 1.42, with 0.03 left, as of
@@ -38,9 +39,11 @@ LINEAR_AT, LEFT_OF_LINEAR = (0.88, 1.14), 0.06
 FACTORS = np.exp(np.linspace(-0.6, 0.6, 49))  # of a diameter
 RIDGE = 1e-3  # added to the diagonal of equations scaled to 1
 # Change of colour in a circle over that in the circle of its size that holds most: 0.70 to 1 for right circles, below
-# 0.55 for others on untouched gel. Ring of most change, in radii: 0.75 to 1.05 for right circles, 0.25 to 0.65 for
-# circles shifted by half a radius or more, or 1.4 times too large; 1.45 for circles of 0.65 times the right size.
-FULL_CIRCLE, RING = 0.62, (0.7, 1.25)
+# 0.55 for others on untouched gel. Ring of most change, in radii: right circles of a Mini and drawn ones 0.75 to 1.05,
+# of a DIGIT 0.65 to 0.75; 0.25 to 0.55 for circles shifted by half a radius or more, 1.45 for circles of 0.65 times the
+# right size. So its share of that of the larger rings, the upper quartile, or of 1: 0.75 to
+# 1.1 | 0.26 to 0.68, which circles of 1.4 times the right size have.
+FULL_CIRCLE, RING, ALIKE = 0.62, (0.4, 1.25), 0.72
 MOST_DOUBTFUL = 0.2  # share of the presses whose circles may be doubtful, or that may be left out
 # A dark spot has less than that share of the light around it, in a square so wide in a picture of 320 columns. Share of
 # the picture: real gels without markers 0.000; drawn markers 0.06 to 0.08.
@@ -131,6 +134,12 @@ def _diameters(presses: GridPresses) -> tuple[str, str]:
         if max(max(ratio, 1 / ratio) for ratio in apart.values()) > DIAMETERS_AGREE:
             balls = ", ".join(f"{ball:g} mm as {ball * ratio:.2g} mm" for ball, ratio in apart.items())
             return BAD, f"likely cause: a wrong diameter: by the colours of the other balls, {balls}"
+    size = float(np.median([view.press.contact_radius / view.press.ball_radius for view in presses.views]))
+    if size > LARGE_CONTACT:
+        return USABLE, (
+            "likely cause: diameters too small, a pitch too large, or presses too deep: contacts have "
+            f"{size:.2f} of the radius of their balls, where slopes have no bound"
+        )
     factor, left = _linear_at(list(samples.values()))
     low, high = LINEAR_AT
     if factor < low or (high < factor < FACTORS[-1] and left < LEFT_OF_LINEAR):
@@ -217,21 +226,27 @@ def _circles(presses: GridPresses) -> tuple[str, str]:
 
 
 def doubtful_circles(presses: GridPresses) -> list[str]:
-    """Return the names of presses whose circles do not hold the change of colour, the most of it near the edge."""
-    return [view.press.name for view in presses.views if not _is_full(view)]
+    """Return the names of presses whose circles do not hold the change of colour as those of the others do."""
+    if not presses.views:
+        return []
+    shares, rings = np.transpose([_change_in(view) for view in presses.views])
+    low, high = RING
+    low = max(low, ALIKE * min(float(np.percentile(rings, 75)), 1.0))
+    full = (shares >= FULL_CIRCLE) & (low <= rings) & (rings <= high)
+    return [view.press.name for view, is_full in zip(presses.views, full, strict=True) if not is_full]
 
 
-def _is_full(view: View) -> bool:
+def _change_in(view: View) -> tuple[float, float]:
+    """Return the change of colour in a circle over the most in any of its size, and its ring of most change."""
     change, press = np.linalg.norm(view.deviations, axis=-1), view.press
     reach = math.ceil(press.contact_radius)
     rows, columns = np.indices((2 * reach + 1,) * 2) - reach
     disc = np.hypot(rows, columns * press.aspect) < press.contact_radius
     most = fftconvolve(change, disc, mode="same").max()
-    ring = (press.distance * 10).astype(int)[press.distance < 2]  # a tenth of the radius wide
-    mean = np.bincount(ring, change[press.distance < 2]) / np.maximum(np.bincount(ring), 1)
-    low, high = RING
-    at = (mean[2:].argmax() + 2.5) / 10
-    return bool(change[press.distance < 1].sum() >= FULL_CIRCLE * most and low < at < high)
+    near = press.distance < 2
+    ring = (press.distance * 10).astype(int)[near]  # a tenth of the radius wide
+    mean = np.bincount(ring, change[near]) / np.maximum(np.bincount(ring), 1)
+    return float(change[press.distance < 1].sum() / most), float(mean[2:].argmax() + 2.5) / 10
 
 
 def _markers(presses: GridPresses) -> tuple[str, str]:
