@@ -473,3 +473,17 @@ def test_a_recording_that_cannot_be_written_is_named(tmp_path: Path, live: Any, 
     (tmp_path / "file").touch()
     printed = live(video, *background, "--headless", "--save", tmp_path / "file" / "run.rrd", status=2)
     assert "run.rrd cannot be written" in printed.err
+
+
+@needs_live
+def test_a_recording_replaces_a_recording_and_no_other_file(
+    tmp_path: Path, live: Any, background: Any, video: Any
+) -> None:
+    rrd = tmp_path / "run.rrd"
+    for frames in (2, 1):
+        live(video, *background, "--headless", "--save", rrd, "--frames", frames)
+    assert len(component(read_back(rrd), "/height", "buffer")) == 1
+    rrd.write_text("mine")
+    printed = live(video, *background, "--headless", "--save", rrd, status=2)
+    assert "is no recording of this command: move it away" in printed.err
+    assert rrd.read_text() == "mine"

@@ -21,6 +21,7 @@ from tactile_depth.depth.result import Result
 from tactile_depth.device.frame import DeviceFrame
 
 APPLICATION = "tactile-depth"
+MAGIC, HEAD = b"RRF", 1024  # an .rrd begins with these bytes, and names its application among so many
 NUMBER, TIME = "frame", "captured"  # timelines
 JPEG_QUALITY = 90  # of the camera picture: a recording is an eighth of the size, and heights are exact
 MM_PER_M = 1000.0
@@ -32,6 +33,15 @@ BAR_S = 1.0  # between two colour bars: a page that opens later shows what comes
 PAGE_S, PAGE_WIDTH = 0.1, 320  # seconds between frames of a page, and columns of its camera picture, which is no JPEG:
 # a browser without a graphics card takes 10 such frames/s, and decodes JPEGs too late to show them
 CLOSING_S = 1.0  # that a viewer has to take the last frames
+
+
+def require_recording(path: Path) -> None:
+    """Raise InputError, or OSError, if a file is there that is neither empty nor a recording of this command."""
+    if path.is_file():
+        with path.open("rb") as file:
+            head = file.read(HEAD)
+        if head and not (head.startswith(MAGIC) and APPLICATION.encode() in head):
+            raise InputError(f"{path} is there and is no recording of this command: move it away or give another name")
 
 
 class Display(AbstractContextManager["Display"]):
@@ -83,6 +93,7 @@ class Display(AbstractContextManager["Display"]):
         if save is not None:
             try:
                 save.parent.mkdir(parents=True, exist_ok=True)
+                require_recording(save)
                 save.open("wb").close()
             except OSError as error:
                 raise InputError(f"{save} cannot be written ({error.strerror}): give a path that can") from error
