@@ -400,8 +400,8 @@ def test_a_recording_holds_every_frame_as_the_pipeline_computes_it(
         np.testing.assert_array_equal(logged, result.height_mm.astype(np.float32))
     vertices = component(values, "/surface", "vertex_positions")
     np.testing.assert_array_equal(np.array(vertices[7])[:, 2], results[7].height_mm.astype(np.float32).ravel())
-    peaks = component(values, "/contact/peak_mm", "scalars")
-    assert [peaks[frame] for frame in range(25)] == [[result.contact.peak_mm] for result in results]
+    peaks = component(values, "/contact/peak_height_mm", "scalars")
+    assert [peaks[frame] for frame in range(25)] == [[result.contact.peak_height_mm] for result in results]
     touching = component(values, "/contact/touching", "scalars")
     assert [touching[frame] for frame in range(25)] == [[float(result.contact.touching)] for result in results]
     assert sorted(component(values, "/camera", "blob")) == list(range(25))

@@ -54,7 +54,7 @@ class Display(AbstractContextManager["Display"]):
         scale                 a picture of the colours of the height map, with heights in mm
         surface               a mesh in mm: x to the right, y up the picture from its upper left corner, z the height
         contact/touching      0 or 1
-        contact/peak_mm, contact/area_mm2
+        contact/peak_height_mm, contact/area_mm2
         contact/centroid_mm   x and y as in `surface`; NaN without contact
 
     With several sensors they are below `sensor_0`, `sensor_1`, ..
@@ -229,7 +229,7 @@ class _Screen:
         )
         row, column = contact.centroid_mm or (math.nan, math.nan)
         self._log("contact/touching", rerun.Scalars(float(contact.touching)))
-        self._log("contact/peak_mm", rerun.Scalars(contact.peak_mm))
+        self._log("contact/peak_height_mm", rerun.Scalars(contact.peak_height_mm))
         self._log("contact/area_mm2", rerun.Scalars(contact.area_mm2))
         self._log("contact/centroid_mm", rerun.Scalars([column, -row]))
 
@@ -302,7 +302,7 @@ def _row(views: Any, screen: _Screen, is_one_of_many: bool) -> Any:
         position=[right, -height / 2 - down, up], look_target=[width / 2, -height / 2, 0], eye_up=[0, 0, 1]
     )
     pictures = views.Horizontal if is_one_of_many else views.Vertical
-    series = {"peak_mm": "peak, mm", "area_mm2": "area, mm2"}
+    series = {"peak_height_mm": "peak height, mm", "area_mm2": "area, mm2"}
     if not is_one_of_many:
         series = {"touching": "touching", **series, "centroid_mm": "centroid, mm"}
     return views.Horizontal(

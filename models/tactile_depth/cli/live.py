@@ -435,7 +435,9 @@ def take(sensor: Watched) -> None:
 def state_of(shot: Shot) -> str:
     """Return the contact of a frame in words."""
     contact = shot.depth.contact
-    return f"peak {contact.peak_mm:.2f} mm, area {contact.area_mm2:.1f} mm2" if contact.touching else "no contact"
+    if not contact.touching:
+        return "no contact"
+    return f"peak height {contact.peak_height_mm:.2f} mm, area {contact.area_mm2:.1f} mm2"
 
 
 def progress(sensors: Sequence[Watched], seconds: float) -> str:
