@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import sys
 import time
 import warnings
@@ -153,6 +154,7 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
         raise InputError(f"--frames {options.frames}: accepted are 1 and more")
     address, names, each = device_of(options), options.source, options_of_each(options)
     with ExitStack() as stack:
+        stack.callback(gc.freeze)  # Python's end would search all objects of the libraries: 1.2 s on a busy computer
         # A wrong input is told before the viewer opens.
         choice = CameraChoice(options.backend, options.picture_size, options.picture_format or "")
         pictures = names if address is None else [options.pictures] if options.pictures else []
