@@ -65,6 +65,17 @@ def expected(inputs: Any, **choices: Any) -> Any:
     return pipeline(inputs / "press.png")
 
 
+def test_the_report_has_the_time_of_capture_that_a_picture_holds(tmp_path: Path, inputs: Any, depth: Any) -> None:
+    for name, zone in (("timed.png", {0x9011: "+02:00"}), ("vague.png", {})):
+        with Image.open(inputs / "press.png") as picture:
+            exif = picture.getexif()
+            exif[0x8769] = {0x9003: "2026:11:28 22:00:00", 0x9291: "25", **zone}
+            picture.save(tmp_path / name, exif=exif)
+    depth(pictures=[f"{tmp_path}/timed.png", f"{tmp_path}/vague.png"], out=tmp_path / "out")
+    pictures = json.loads((tmp_path / "out" / "report.json").read_text())["pictures"]
+    assert [each["captured_at"] for each in pictures] == [1795896000.25, None]
+
+
 def read_ply(path: Path) -> tuple[Any, ...]:
     """Return vertices and faces of a binary mesh, read as its header describes."""
     header, _, body = path.read_bytes().partition(b"end_header\n")

@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 from collections.abc import Iterator, Sequence
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PIL import Image
+from PIL import ExifTags, Image
 from PIL.PngImagePlugin import PngInfo
 
 from tactile_depth.base.files import new_files
@@ -19,7 +21,7 @@ from tactile_depth.cli.overview import draw_overview
 from tactile_depth.cli.ply import write_ply
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.depth.result import Contact, Result, least_area_mm2
-from tactile_depth.pictures.frames import read_pictures
+from tactile_depth.pictures.frames import PICTURE_SUFFIXES, read_pictures
 from tactile_depth.pictures.grid_sampler import middle
 
 NAME = "depth"
@@ -34,6 +36,7 @@ UNITS = {
     "depth_um.png": f"the same in micrometres, 16 bits, clipped at 0 and {LARGEST_UM}; viewers show it black, "
     "overview.png is for looking",
     "depth.ply": "the same as a mesh, mm",
+    "captured_at": "time of capture, seconds since the epoch; null if the EXIF data of the picture lack it or its zone",
     "peak_height_mm": "largest height; of a contact the height of its peak",
     "contacts": "the contacts, that with most pixels first; contact is the record of all together",
     "warnings": "of a picture: why its heights are uncertain",
@@ -75,8 +78,8 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     pipeline = make_pipeline(options, sensor, reference)
     with new_files(out, REPORT, "files") as folder:
         frames, heights = [], []
-        for label, image in _pictures(options.pictures):
-            result = pipeline(image, name=label)
+        for label, image, captured_at in _pictures(options.pictures):
+            result = pipeline(image, name=label, captured_at=captured_at)
             heights.append(result.height_mm.astype(np.float32))
             frames.append((label, middle(image, pipeline.reader.share), result))
         digits = len(str(len(frames) - 1))
@@ -96,11 +99,26 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     print(f"results: {out}; overview.png is for looking: viewers show depth_um.png, which is in micrometres, black")
 
 
-def _pictures(sources: Sequence[str]) -> Iterator[tuple[str, np.ndarray]]:
+def _pictures(sources: Sequence[str]) -> Iterator[tuple[str, np.ndarray, float | None]]:
+    """Give pictures with their names and, if it is known, when they were captured."""
     for source in sources:
         labels, images = read_pictures(source, f"PICTURE {source}")
         for label, image in zip(labels, images, strict=True):
-            yield (source if len(labels) == 1 else f"{source}: {label}"), image
+            path = Path(source) / label if Path(source).is_dir() else Path(source)
+            yield (source if len(labels) == 1 else f"{source}: {label}"), image, _captured_at(path)
+
+
+def _captured_at(path: Path) -> float | None:
+    """Return when a picture was captured, in seconds since the epoch; None if its EXIF data lack time or time zone."""
+    if path.suffix.lower() not in PICTURE_SUFFIXES:
+        return None
+    with Image.open(path) as picture:
+        exif = picture.getexif().get_ifd(ExifTags.IFD.Exif)
+    tags = ExifTags.Base
+    day, zone, part = map(exif.get, (tags.DateTimeOriginal, tags.OffsetTimeOriginal, tags.SubsecTimeOriginal))
+    with contextlib.suppress(ValueError):
+        return datetime.strptime(f"{day} {zone}", "%Y:%m:%d %H:%M:%S %z").timestamp() + float(f"0.{part or 0}")
+    return None
 
 
 def summary(result: Result) -> str:
@@ -182,6 +200,7 @@ def _describe(result: Result) -> dict[str, Any]:
     if not contact.touching:
         described |= {"area_threshold_mm": None, "is_central": None}
     return {
+        "captured_at": result.captured_at,
         "peak_height_mm": float(result.height_mm.max()),
         "contact": described,
         "contacts": [{"peak_height_mm": each.peak_height_mm, **_describe_contact(each)} for each in result.contacts],
