@@ -294,13 +294,13 @@ def own_camera(address: str, options: argparse.Namespace, reference: np.ndarray 
     """
     sensor = named_sensor(options)
     is_given = reference is not None
-    if not is_given and options.crop is not None and sensor.view is None:
-        sensor = completed(sensor, options.crop)
+    if not is_given:  # the picture that stands for a reference shows what the calibration's pictures show
+        if options.crop is not None and sensor.view is None:
+            sensor = completed(sensor, options.crop)
+        options = argparse.Namespace(**{**vars(options), "crop": None})
     with warnings.catch_warnings():
         if not is_given:
             warnings.simplefilter("ignore", InputWarning)  # of the picture that stands for a reference for a moment
-        if not is_given:
-            options.crop = None  # the picture that stands for a reference shows what the calibration's pictures show
         pipeline = make_pipeline(options, sensor, reference if is_given else stand_in(sensor))
     device = stack.enter_context(Device(address, pipeline, depth_format=options.depth_format or WORDS))
     device.load()

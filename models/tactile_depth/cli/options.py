@@ -115,8 +115,15 @@ def read_reference(path: str) -> np.ndarray:
 
 def choose_sensor(options: argparse.Namespace, reference: np.ndarray) -> Sensor:
     """Return the calibration that is named, else the built-in one that a reference looks like, and say so."""
-    if options.calibration is not None:
-        return named_sensor(options)
+    sensor = named_sensor(options) if options.calibration is not None else _identified(options, reference)
+    if options.crop is None and sensor.view is not None and min(sensor.view) < 1:
+        width, height = sensor.view
+        shown = f"{width:.3g} of the width and {height:.3g} of the height of the sensor's full picture"
+        print(f"view: pictures are taken to show {shown}; --crop says otherwise")
+    return sensor
+
+
+def _identified(options: argparse.Namespace, reference: np.ndarray) -> Sensor:
     if options.camera_size is not None:
         raise InputError("--camera-size without --calibration: it goes with a calibration file of version 0.1")
     sensor = identify(reference[0], crop=options.crop)
