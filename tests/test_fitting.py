@@ -329,7 +329,7 @@ def test_an_evaluation_on_the_fitted_presses_is_a_little_better_than_that_of_the
     assert view.startswith(
         "0.1 mm per pixel: the picture shows 16.0 x 11.2 mm of the gel, an unknown part (no crop) of the sensor's full"
     )
-    assert summary == [*quadratic.evaluation.summary.splitlines(), f"verdict: {quadratic.sensor.verdict}"]
+    assert summary == [*quadratic.evaluation.summary.splitlines(), f"verdict: {quadratic.verdict}"]
 
 
 def test_presses_that_the_picture_cuts_are_left_out_with_a_note(sensor: Any, folder: Path, presses: Any) -> None:

@@ -36,9 +36,7 @@ def presses(folder: Path) -> GridPresses:
 
 
 def verdict(presses: GridPresses) -> Verdict:
-    found = fit_presses(presses, ("quadratic",)).sensor.verdict
-    assert found is not None
-    return found
+    return fit_presses(presses, ("quadratic",)).verdict
 
 
 def changed(folder: Path, radii: bool = False, **change: Callable[[int, Any], Any]) -> GridPresses:
@@ -128,7 +126,7 @@ def test_a_bad_calibration_is_refused_unless_asked_for_and_told_when_it_is_loade
     words = ["calibrate", str(folder), "--pitch-mm", str(PITCH), "--model", "quadratic", "--out", str(out)]
     assert main(words) == 2
     captured = capsys.readouterr()
-    assert "verdict: bad; likely cause: diameters too large" in captured.out
+    assert "verdict: bad\n- likely cause: diameters too large" in captured.out
     assert "mine.npz is not written, because the verdict of the fit is bad: mend the cause" in captured.err
     assert {path.name for path in tmp_path.glob("mine*")} == {f"mine-circles.{kind}" for kind in ("csv", "html", "png")}
     assert main([*words, "--keep-bad"]) == 0

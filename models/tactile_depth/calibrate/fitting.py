@@ -55,7 +55,7 @@ from tactile_depth.depth.reference import pixel_terms
 from tactile_depth.pictures.pictures import Picture
 from tactile_depth.sensor.calibration_file import LONGEST_EXPOSURE_US, PIXEL_ASPECTS, PIXEL_PITCHES_MM
 from tactile_depth.sensor.sensor import CORRECTIONS, TABLE_BITS, Camera, Sensor, equal_areas, lighting
-from tactile_depth.sensor.verdict import BAD
+from tactile_depth.sensor.verdict import BAD, Verdict
 from tactile_depth.sensor.view import Crop, view_of
 
 FEWEST, FEWEST_MEASURED = 8, 2  # presses; those that lie completely in the middle square
@@ -84,11 +84,14 @@ class Fit:
         Scores of each whole press by a fit to all others.
     without : mapping of str to Sensor
         The fit to all presses but one, by the name of the one.
+    verdict : Verdict
+        That of `sensor`.
     """
 
     sensor: Sensor
     evaluation: Evaluation
     without: dict[str, Sensor]
+    verdict: Verdict
 
 
 def fit(
@@ -160,10 +163,10 @@ def fit(
     for note in on_grid.notes:
         warn(InputWarning(note), stacklevel=2)
     fitted = fit_presses(on_grid, wanted, bits, name or pictures.name, exposure_us)
-    if (verdict := fitted.sensor.verdict) and verdict.grade == BAD:
-        warn(InputWarning(f"the verdict of the fit is {verdict}"), stacklevel=2)
+    if fitted.verdict.grade == BAD:
+        warn(InputWarning(f"the verdict of the fit is {fitted.verdict}"), stacklevel=2)
     if not quiet:
-        print(on_grid.field_of_view, fitted.evaluation.summary, f"verdict: {fitted.sensor.verdict}", sep="\n")
+        print(on_grid.field_of_view, fitted.evaluation.summary, f"verdict: {fitted.verdict.lines}", sep="\n")
     return fitted.sensor
 
 
@@ -231,6 +234,7 @@ def fit_presses(
         for model in models:
             scores[model] += scores_of(fitted, presses, [view], model)
     evaluation = evaluation_of(presses, measured, scores)
+    verdict = judge(presses, evaluation)
     rows, columns = presses.background.shape[:2]
     sensor = replace(
         sensor,
@@ -239,10 +243,10 @@ def fit_presses(
         height_errors={model: evaluation.height_error(model) for model in models},
         lighting=lighting(presses.background),
         untouched=equal_areas(presses.background),
-        verdict=judge(presses, evaluation),
+        verdict=verdict,
         view=presses.view,
     )
-    return Fit(sensor, evaluation, without)
+    return Fit(sensor, evaluation, without, verdict)
 
 
 def fit_folds(presses: GridPresses, folds: Sequence[Collection[str]]) -> list[Sensor]:

@@ -232,8 +232,8 @@ def fitted(options: argparse.Namespace, presses: GridPresses, name: str) -> Fit:
     fit = fit_presses(presses, chosen(options), options.bits, name, options.exposure_us, _progress)
     evaluation = replace(fit.evaluation, notes=())  # they are warnings
     print("every whole press, by a fit to the others; cap height: recovered / true", evaluation, sep="\n")
-    print(f"the best model is {fit.sensor.model}", f"verdict: {fit.sensor.verdict}", sep="\n", flush=True)
-    if fit.sensor.verdict and fit.sensor.verdict.grade == BAD and not options.keep_bad:
+    print(f"the best model is {fit.sensor.model}", f"verdict: {fit.verdict.lines}", sep="\n", flush=True)
+    if fit.verdict.grade == BAD and not options.keep_bad:
         what = f"{name}.npz is not written, because the verdict of the fit is bad"
         raise InputError(what, remedy="mend the cause that is named, or give --keep-bad")
     return fit

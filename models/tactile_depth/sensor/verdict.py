@@ -25,3 +25,8 @@ class Verdict:
 
     def __str__(self) -> str:
         return "; ".join((self.grade, *self.reasons))
+
+    @property
+    def lines(self) -> str:
+        """The same with a line for each reason."""
+        return "\n- ".join((self.grade, *self.reasons))
