@@ -29,6 +29,7 @@ from commands.hardware.targets import DEFAULT_TARGET, TARGETS
 from commands.run.sim_table import coefficient_words
 from commands.study import baselines, budget, presses, trade_front
 from commands.study.accuracy import errors
+from commands.study.press_map import press_map
 from tactile_depth.chip import latency
 from tactile_depth.chip.configuration import COLOURS, DEFAULTS, NUMBERS, STORED, Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
@@ -412,7 +413,9 @@ def drawings() -> dict[Path, str]:
         file: subprocess.run([*draw, file], capture_output=True, text=True, check=True).stdout
         for file in docs.glob("*.dot")
     }
-    return {GENERATED / f"{file.stem}.svg": text for file, text in (waves | diagrams).items()}
+    digit = docs / "digit.csv"
+    drawn = waves | diagrams | {digit: press_map(digit)}
+    return {GENERATED / f"{file.stem}.svg": text for file, text in drawn.items()}
 
 
 def main() -> None:
