@@ -139,6 +139,27 @@ def test_real_presses_have_one_contact_and_their_background_none() -> None:
         assert not contact.is_mostly_empty
 
 
+def test_the_least_area_exceeds_what_the_reference_itself_reads() -> None:
+    """On a grid that ends within a block of the zero offset a corner of the real background reads 0.2 mm."""
+    background, rng = read_picture(real_folder() / "background.png"), np.random.default_rng(SEED)
+    pipeline = td.Pipeline(td.load("gelsight-mini"), background, grid=(100, 128))
+    results = pipeline(noisy(background, 1, rng, 8))
+    assert results.mask[0].sum() > 8
+    assert results.contacts == [[]] * 8
+
+
+def test_a_stream_begins_on_untouched_gel() -> None:
+    """As the record of a device does that has seen the reference: a corner of it is above the threshold."""
+    background = read_picture(real_folder() / "background.png")
+    press = read_presses(real_folder())[0][0].image
+    pipeline = td.Pipeline(td.load("gelsight-mini"), background, light_gains=False)
+    (first,) = pipeline.stream([press])
+    untouched, after = pipeline.stream([background, press])
+    assert not untouched.contact.touching
+    assert first.contact.record[3:] == after.contact.record[3:]
+    assert first.contact.record.frame == untouched.contact.record.frame == 1
+
+
 # Several contacts.
 
 

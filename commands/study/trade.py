@@ -268,12 +268,12 @@ def _measured(
     every = twin.codes(data.frames.pixels, monitor)
     pitch = sensor.pixel_pitch_mm
     lsb = config.depth_lsb_px * pitch
-    settings = settings_of(THRESHOLD_MM, THRESHOLD_MM, AREA_THRESHOLD_MM, lsb, pitch**2)
+    empty = np.zeros((0, 0, 2))
+    settings = settings_of(THRESHOLD_MM, THRESHOLD_MM, AREA_THRESHOLD_MM, lsb, pitch**2, empty)
     recorder = Recorder.of(config, settings)
     values: list[tuple[Measured, bool, float]] = []
     for number, press in data.presses.items():
         codes = every[number]
-        empty = np.zeros((0, 0, 2))
         result = td.Result(
             codes.astype(np.int32), codes * lsb, empty, empty[..., 0] > 0, None, {}, recorder, lsb, pitch, np.inf, None
         )

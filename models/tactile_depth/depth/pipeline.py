@@ -24,7 +24,7 @@ from tactile_depth.chip.limits import BOUNDARIES, LIGHT_GAIN, Boundary, Model, S
 from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.chip.tactile_depth import zeroed
 from tactile_depth.depth.result import Recorder, Result, settings_of, thresholds_of
-from tactile_depth.depth.stream import Stream
+from tactile_depth.depth.stream import Stream, timed, times
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.blocks import Rest
 from tactile_depth.pictures.doubts import Doubt, UnusablePicture, Warned, tell
@@ -163,12 +163,12 @@ class Pipeline:
         if not is_number(area_threshold_mm) or not 0 <= area_threshold_mm / self.depth_lsb_mm < 2**31:
             raise InputError(Argument("area_threshold_mm", area_threshold_mm), accepted="a depth, 0 or more")
         self._threshold_mm, self._area_threshold_mm = threshold_mm, area_threshold_mm
-        self._recorder = Recorder.of(self.config, self.settings(threshold_mm, threshold_mm, area_threshold_mm))
         self._zero = no_zero(self.config)
         self._exact_zero = np.zeros(self.grid)
         self._use_reference(rest)
         if zero_offset and rest is not None:
             self._use_zero(rest)
+        self._settle(rest)
 
     def __call__(
         self,
@@ -204,16 +204,9 @@ class Pipeline:
             The heights of a picture are uncertain.
         """
         frames, checked, single = self._checked(pictures, name or PICTURES)
-        captured = None if captured_at is None else _times(captured_at, len(frames))
-        monitor, twin, followed = Monitor(), self._twin, None if stream is None else stream.light
-        if self.arithmetic == "chip":
-            slope_codes, streamed_codes, gains = twin.chip(frames, monitor, followed)
-            slopes = slope_codes * self.config.gradient_lsb
-            depth = twin.upright(zeroed(streamed_codes, self.config, monitor, self._zero))
-        else:
-            gains = twin.light(frames, followed)
-            slopes = twin.exact_slopes(frames, gains)
-            depth = twin.solved(slopes) / self.config.depth_lsb_px - self._exact_zero
+        captured = None if captured_at is None else times(captured_at, len(frames))
+        monitor = Monitor()
+        slopes, depth, gains = self._solved(frames, monitor, None if stream is None else stream.light)
         codes, depth_mm = np.rint(depth).astype(np.int32), depth * self.depth_lsb_mm
         streamed = None
         if stream is not None:
@@ -222,7 +215,7 @@ class Pipeline:
             codes,
             depth_mm,
             slopes if self.sensor.pixel_aspect == 1 else slopes / (self.sensor.pixel_aspect, 1),
-            twin.dark(frames),
+            self._twin.dark(frames),
             None if gains is None else gains * LIGHT_GAIN.lsb,
             dict(monitor.saturations),
             self._recorder,
@@ -263,7 +256,7 @@ class Pipeline:
         """
         stream = self.new_stream() if stream is None else stream
         for item in pictures:
-            picture, captured_at = _timed(item)
+            picture, captured_at = timed(item)
             stream.taken += 1
             try:
                 result = self(picture, stream, f"picture {stream.taken - 1}", captured_at)
@@ -275,9 +268,9 @@ class Pipeline:
             yield result
 
     def new_stream(self) -> Stream:
-        """Return the state of a stream before its first picture: light gains of 1, no contact."""
+        """Return the state of a stream before its first picture: light gains of 1, untouched gel."""
         light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
-        return Stream(light, self._recorder.events(self.grid))
+        return Stream(light, self._recorder.events(self._at_rest))
 
     def __repr__(self) -> str:
         rows, columns = self.grid
@@ -337,7 +330,7 @@ class Pipeline:
     def settings(self, touch_mm: float, release_mm: float, area_mm: float) -> Settings:
         """Return the settings of the hardware for thresholds in mm: depth codes, and the least area in pixels."""
         pixel_mm2 = self.pixel_pitch_mm**2 * self.sensor.pixel_aspect
-        return settings_of(touch_mm, release_mm, area_mm, self.depth_lsb_mm, pixel_mm2)
+        return settings_of(touch_mm, release_mm, area_mm, self.depth_lsb_mm, pixel_mm2, self._at_rest)
 
     @property
     def zero_codes(self) -> np.ndarray:
@@ -360,7 +353,9 @@ class Pipeline:
             The number of pictures is not accepted, they are too dark, or the pipeline takes colours as sent.
         """
         require_flat_field(self.config)
-        self._use_reference(self._rest_of(pictures, PICTURES, largest_log2_frames(self.config)))
+        frames = self._rest_of(pictures, PICTURES, largest_log2_frames(self.config))
+        self._use_reference(frames)
+        self._settle(frames)
 
     def capture_zero(self, pictures: Pictures) -> None:
         """Take the depth of pictures without contact as the zero offset, as the hardware's capture does.
@@ -374,6 +369,7 @@ class Pipeline:
         frames, *_ = self._checked(pictures, PICTURES)
         power_of_two_of(len(frames), LARGEST_LOG2, PICTURES)
         self._use_zero(frames)
+        self._settle(frames)
 
     def hardware(self, folder: str | Path) -> Path:
         """Write the parameters of the top module and the tables, with which the RTL computes the same depth.
@@ -417,6 +413,27 @@ class Pipeline:
             self._zero = twin.captured_zero(frames)
         depth = twin.upright(twin.solved(twin.exact_slopes(frames, twin.light(frames))) / self.config.depth_lsb_px)
         self._exact_zero = twin.upright(-exact_zero(np.zeros(self.grid), depth, self.config))
+
+    def _settle(self, frames: np.ndarray | None) -> None:
+        """Measure what the last of some frames without contact reads; the least area of a contact follows from it."""
+        self._at_rest = np.zeros(self.grid, np.int32)
+        if frames is not None:
+            self._at_rest = np.rint(self._solved(frames[-1:], Monitor(), None)[1][0]).astype(np.int32)
+        settings = self.settings(self.threshold_mm, self.threshold_mm, self.area_threshold_mm)
+        self._recorder = Recorder.of(self.config, settings)
+
+    def _solved(
+        self, frames: np.ndarray, monitor: Monitor, followed: LightFilter | None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+        """Return slopes, depth in codes, which double precision does not round, and light gains of frames."""
+        twin = self._twin
+        if self.arithmetic == "chip":
+            slope_codes, streamed_codes, gains = twin.chip(frames, monitor, followed)
+            depth = twin.upright(zeroed(streamed_codes, self.config, monitor, self._zero))
+            return slope_codes * self.config.gradient_lsb, depth, gains
+        gains = twin.light(frames, followed)
+        slopes = twin.exact_slopes(frames, gains)
+        return slopes, twin.solved(slopes) / self.config.depth_lsb_px - self._exact_zero, gains
 
     # Checks of pictures.
 
@@ -465,24 +482,6 @@ def require_zero_offset(config: Configuration) -> None:
 def is_whole(number: object) -> bool:
     """Return True for a whole number."""
     return isinstance(number, int | np.integer) and not isinstance(number, bool)
-
-
-def _timed(item: Picture | tuple[Picture, float]) -> tuple[Picture, float | None]:
-    """Return a picture of a stream and when it was captured."""
-    if isinstance(item, tuple):
-        if len(item) != 2 or not is_number(item[1]):
-            raise InputError(PICTURES, " have a tuple", accepted="a picture, or a picture and its seconds")
-        return item
-    return item, None
-
-
-def _times(captured_at: float | Sequence[float] | np.ndarray, frames: int) -> np.ndarray:
-    """Return the capture time of each frame, float64 (frames,)."""
-    times = np.asarray(captured_at)
-    if times.dtype.kind not in "iuf" or times.shape not in ((), (frames,)):
-        accepted = "seconds since the epoch, one number or one for each picture"
-        raise InputError(Argument("captured_at", captured_at), accepted=accepted)
-    return np.full(frames, times, np.float64)
 
 
 def require_flag(argument: Argument) -> None:

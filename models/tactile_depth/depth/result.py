@@ -37,10 +37,20 @@ def least_area_mm2(threshold_mm: float) -> float:
     return max(SMALLEST_MM2, math.pi * LIGHTEST_BALL_MM * (LIGHTEST_MM - threshold_mm) / 2)
 
 
-def settings_of(touch_mm: float, release_mm: float, area_mm: float, lsb_mm: float, pixel_mm2: float) -> Settings:
-    """Return the settings of the hardware for thresholds in mm, with the least area for the first of them."""
+def settings_of(
+    touch_mm: float, release_mm: float, area_mm: float, lsb_mm: float, pixel_mm2: float, at_rest: np.ndarray
+) -> Settings:
+    """Return the settings of the hardware for thresholds in mm, with the least area for the first of them.
+
+    Parameters
+    ----------
+    at_rest : int array (rows, columns)
+        Depth codes of the untouched sensor. A contact has at least twice the pixels that these have above the
+        threshold: with noise they are up to 1.1 times as many, where a grid ends within a block of the zero offset.
+    """
     touch, release, area = (round(depth_mm / lsb_mm) for depth_mm in (touch_mm, release_mm, area_mm))
-    return Settings(touch, release, area, max(1, round(least_area_mm2(touch_mm) / pixel_mm2)), debounce=1)
+    least = max(1, round(least_area_mm2(touch_mm) / pixel_mm2), 2 * int(np.count_nonzero(at_rest > touch)))
+    return Settings(touch, release, area, least, debounce=1)
 
 
 def thresholds_of(settings: Settings) -> dict[str, int]:
@@ -191,9 +201,13 @@ class Recorder:
         """Return the recorder of a configuration."""
         return cls(settings, config.depth.width, config.solver == "tridiagonal")
 
-    def events(self, grid: tuple[int, int]) -> ContactEvents:
-        """Return the state before the first picture of a stream."""
-        return ContactEvents(*grid, self.width, self.bottom_first)
+    def events(self, at_rest: np.ndarray) -> ContactEvents:
+        """Return the state before the first picture of a stream: after codes without contact (rows, columns)."""
+        rows, columns = at_rest.shape
+        events = ContactEvents(rows, columns, self.width, self.bottom_first)
+        self.next(at_rest, events)
+        events.frames = 0
+        return events
 
     def next(self, codes: np.ndarray, events: ContactEvents) -> Record:
         """Return the record of the next picture of a stream, from codes in the order of the picture."""
@@ -201,10 +215,7 @@ class Recorder:
 
     def record(self, codes: np.ndarray) -> Record:
         """Return the record of codes (rows, columns) in the order of the picture."""
-        rows, columns = codes.shape
-        events = self.events((rows, columns))
-        self.next(codes, events)
-        return self.next(codes, events)
+        return self.next(codes, self.events(codes))
 
     def contacts(self, codes: np.ndarray, untouched: int) -> list[tuple[Flags, Record]]:
         """Return pixels and record of each contact in codes (rows, columns), that with most pixels first.

@@ -3,11 +3,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from tactile_depth.base.errors import Argument, InputError, is_number
 from tactile_depth.chip.contact.contact_events import ContactEvents
 from tactile_depth.chip.gradient.light_gains import LightFilter
 from tactile_depth.pictures.doubts import Warned
+from tactile_depth.pictures.pictures import Picture
 
 
 @dataclass
@@ -31,3 +36,21 @@ class Stream:
     taken: int = 0
     failed: int = 0
     warned: Warned = field(default_factory=Warned)
+
+
+def timed(item: Picture | tuple[Picture, float]) -> tuple[Picture, float | None]:
+    """Return a picture of a stream and when it was captured."""
+    if isinstance(item, tuple):
+        if len(item) != 2 or not is_number(item[1]):
+            raise InputError(Argument("pictures"), " have a tuple", accepted="a picture, or a picture and its seconds")
+        return item
+    return item, None
+
+
+def times(captured_at: float | Sequence[float] | np.ndarray, frames: int) -> np.ndarray:
+    """Return the capture time of each frame, float64 (frames,)."""
+    seconds = np.asarray(captured_at)
+    if seconds.dtype.kind not in "iuf" or seconds.shape not in ((), (frames,)):
+        accepted = "seconds since the epoch, one number or one for each picture"
+        raise InputError(Argument("captured_at", captured_at), accepted=accepted)
+    return np.full(frames, seconds, np.float64)

@@ -131,6 +131,7 @@ class Device(AbstractContextManager["Device"]):
                     exchange.depth_of(self._untouched)
 
                 load_tables(line, self.pipeline, untouched)
+                self._settings = self.pipeline.settings(**self._thresholds_mm)
                 write_words(line, list(thresholds_of(self._settings).items()))
                 wait_in_use(line, untouched)
         self._reference_gains = reference_gains(self.pipeline.sensor, config) if config.flat_field else None
