@@ -29,7 +29,6 @@ LEAST_RANGE_MM = 0.5  # that the colours of the height map span at first; it gro
 TIMES_AS_TALL = 3.0  # the surface is drawn; its points are in mm
 EYE = (0.5, 1.0, 0.85)  # where the surface is seen from: to the right, down the picture and up, in widths of the gel
 BAR, LETTERS, MARGIN = (480, 24), 26, 40  # pixels of the colour bar
-BAR_S = 1.0  # between two colour bars: a page that opens later shows what comes from then on
 PAGE_S, PAGE_WIDTH = 0.1, 320  # seconds between frames of a page, and columns of its camera picture, which is no JPEG:
 # a browser without a graphics card takes 10 such frames/s, and decodes JPEGs too late to show them
 CLOSING_S = 1.0  # that a viewer has to take the last frames
@@ -159,7 +158,7 @@ class _Output:
         self.stream = rerun.RecordingStream(APPLICATION)
         self.stream.set_sinks(sink)
         prefixes = [f"sensor_{index}/" for index in range(len(names))] if len(names) > 1 else [""]
-        self._screens = [_Screen(rerun, self.stream, *each) for each in zip(prefixes, names, strict=True)]
+        self._screens = [_Screen(rerun, self.stream, is_page, *each) for each in zip(prefixes, names, strict=True)]
 
     def show(self, number: int, picture: np.ndarray | None, result: Result | DeviceFrame, sensor: int) -> None:
         screen, now = self._screens[sensor], time.monotonic()
@@ -196,9 +195,9 @@ class _Screen:
         When a frame was shown, as `time.monotonic` gives it.
     """
 
-    def __init__(self, rerun: Any, stream: Any, prefix: str, name: str) -> None:
-        self._rerun, self._stream, self.prefix, self.name = rerun, stream, prefix, name
-        self._highest_mm, self._bar_s = LEAST_RANGE_MM, -math.inf
+    def __init__(self, rerun: Any, stream: Any, is_page: bool, prefix: str, name: str) -> None:
+        self._rerun, self._stream, self._is_page, self.prefix, self.name = rerun, stream, is_page, prefix, name
+        self._highest_mm = 0.0
         self._shape: tuple[int, ...] = ()
         self.extent_mm: tuple[float, float] | None = None
         self.last_s = -math.inf
@@ -210,10 +209,10 @@ class _Screen:
             self._begin(height.shape)
             rows, columns = height.shape
             self.extent_mm = (columns * result.pixel_pitch_mm * result.pixel_aspect, rows * result.pixel_pitch_mm)
-        highest, now = max(self._highest_mm, float(height.max())), time.monotonic()
-        if highest > self._highest_mm or now > self._bar_s + BAR_S:
-            self._highest_mm, self._bar_s = highest, now
-            self._log("scale", rerun.Image(_bar(Scale(0.0, highest))))
+        if (highest := max(LEAST_RANGE_MM, float(height.max()))) > self._highest_mm:
+            self._highest_mm = highest
+            bar = rerun.Image(_bar(Scale(0.0, highest)))
+            self._log("scale", bar, static=self._is_page)  # a page that opens later gets what is static first
         if camera is not None:
             self._log("camera", camera)
         heights = [0.0, self._highest_mm]
