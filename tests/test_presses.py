@@ -76,8 +76,9 @@ def test_the_largest_slope_is_that_at_the_edge_of_the_contact() -> None:
 @pytest.mark.parametrize("index", range(0, 24, 3))
 def test_a_circle_is_found_in_the_picture(index: int) -> None:
     name, _, x, y, contact, ball = places()[index]
-    found = find_circle(pictures()[name], pictures()["background.png"], 0.8 * ball)
+    found = find_circle(pictures()[name], pictures()["background.png"], ball)
     assert found is not None
+    assert found.stretch is not None
     assert math.hypot(found.circle.x - x, found.circle.y - y) < 2.5
     assert abs(found.circle.radius - contact) < 2.5
     assert abs(found.stretch - 1) < 0.03
@@ -240,7 +241,8 @@ OUTSIDE = "03.png: the press is outside the picture: left out"
         (
             None,
             {"diameter_mm": 3.9, "ball_radius_px": ""},
-            "03.png: a contact of 20.0 pixels does not lie on a ball of 19.5: left out",
+            "03.png: a contact of 20.0 pixels (2.00 mm) does not lie on a ball of radius 19.5 pixels (1.95 mm): "
+            "diameter or pitch is wrong: left out",
         ),
     ],
     ids=lambda value: str(value)[:50] if isinstance(value, str) else "",

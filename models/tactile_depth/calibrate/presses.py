@@ -31,7 +31,6 @@ FITTED_SHARE = 0.9  # fraction of the contact's radius: beyond it the gel leaves
 NOTHING_TOUCHES = 2.0  # distance from the centre in contact radii: beyond it the gel is flat
 AT_REST = 2.5  # distance from the centre in contact radii: beyond it depth is that of untouched gel
 LARGEST_CONTACT = 0.999  # fraction of the ball's radius: slopes grow without bound towards 1
-LARGEST_CIRCLE = 0.8  # largest circle that is searched for, as a fraction of the ball's radius
 BACKGROUND = Argument("background")
 ROTATIONS = (0, 90, 180, 270)
 TOP_PX = 2  # radius of the top of a cap, in grid pixels
@@ -409,14 +408,17 @@ def to_grid(
             ball = press.diameter_mm / 2 / pitch_mm
             seen = None
             if find_circles or compare_circles or press.circle is None:
-                largest = min(LARGEST_CIRCLE * ball, min(camera) / 2)
-                found = find_circle(image, background, largest, aspect)
+                found = find_circle(image, background, ball, aspect)
                 seen = None if found is None else found.circle
-                stretches += [] if found is None else [found.stretch]
+                stretches += [] if found is None or found.stretch is None else [found.stretch]
             given = None if press.circle is None else Circle(*press.circle)
             circle = seen if find_circles else given or seen
             if circle is None:
                 raise InputError(f"{press.name}: no circle to be seen")
+            if circle.radius >= LARGEST_CONTACT * ball:
+                contact = f"{press.name}: a contact of {circle.radius:.1f} pixels ({circle.radius * pitch_mm:.2f} mm)"
+                ball_px = f"radius {ball:.1f} pixels ({press.diameter_mm / 2:.2f} mm)"
+                raise InputError(f"{contact} does not lie on a ball of {ball_px}: diameter or pitch is wrong")
             at = _grid_press(press.name, circle, ball, sampler, grid, aspect)
         except InputError as error:
             notes.append(str(InputError(f"{error}: left out")))
@@ -473,8 +475,6 @@ def _grid_press(
     name: str, circle: Circle, ball: float, sampler: GridSampler, grid: tuple[int, int], aspect: float
 ) -> GridPress:
     """Return the geometry of a circle and a ball's radius in camera pixels; raise InputError if it cannot be used."""
-    if circle.radius >= LARGEST_CONTACT * ball:
-        raise InputError(f"{name}: a contact of {circle.radius:.1f} pixels does not lie on a ball of {ball:.1f}")
     top, left = sampler.origin
     press = GridPress(
         name,
