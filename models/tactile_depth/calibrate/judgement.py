@@ -250,13 +250,13 @@ def _change_in(view: View) -> tuple[float, float]:
 
 
 def _markers(presses: GridPresses) -> tuple[str, str]:
-    """Return whether the gel without contact has dark spots."""
+    """Return whether the gel without contact has dark spots, which other contacts move even if the presses did not."""
     step = max(presses.background.shape[1] // COLUMNS, 1)
     light = presses.background[::step, ::step].mean(axis=-1)
     share = float((light < DARK_SPOT * median_filter(light, SPOT_PX * light.shape[1] // COLUMNS | 1)).mean())
     if share < MOST_SPOTS:
         return GOOD, ""
-    return USABLE, (
+    return BAD, (
         f"likely cause: markers: dark spots cover {100 * share:.0f} % of the gel; they move with it, so its reference "
         "does not cancel them"
     )
