@@ -371,3 +371,54 @@ def test_a_mirrored_real_pair_is_refused(real: Any) -> None:
     for picture in (real[1], *real[2][::9]):
         with pytest.raises(td.InputError, match="mirrored left to right"):
             td.Pipeline(td.load("gelsight-mini"), mirrored(picture))
+
+
+# Light that drifts after the reference was taken, and exchanges that the reference does not show.
+
+
+DRIFTS = [
+    1 + sign * 0.01 * across * np.array(colours)
+    for colours in ((1, 1, 1), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, -1))
+    for across in (X, Y, (X + Y) / 2, (X - Y) / 2)
+    for sign in (1, -1)
+]
+
+
+@pytest.mark.parametrize("noise", [0, 1, 2])
+def test_untouched_gel_in_drifting_light_touches_nothing_silently(real: Any, noise: float) -> None:
+    pipeline, background, _ = real
+    warned = 0
+    for index, light in enumerate(DRIFTS):
+        levels = background * light + np.random.default_rng(index).normal(0, noise, background.shape)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            result = pipeline(np.clip(np.rint(levels), 0, 255).astype(np.uint8))
+        warned += bool(result.warnings)
+        assert result.warnings or not result.contact.touching
+    assert warned >= 15
+    certain(pipeline, in_light(1 + np.random.default_rng(9).normal(0, noise / 100, background.shape))(background))
+
+
+def test_presses_in_drifting_light_are_right_or_warned_of(real: Any) -> None:
+    """Contacts that are central, for which the calibration states its error; beside the edge 10 % at worst."""
+    pipeline, _, presses = real
+    for index, press in enumerate(presses):
+        height = pipeline(press).height_mm.max()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            result = pipeline(in_light(DRIFTS[7 * index % len(DRIFTS)])(press))
+        if result.contact.is_central and not result.warnings:
+            assert result.height_mm.max() == pytest.approx(height, rel=0.05)
+
+
+EXCHANGES = ["red and blue", "red and green", "green and blue", "blue first", "red last", "mirrored", "upside down"]
+
+
+@pytest.mark.parametrize("name", BENCH)
+@pytest.mark.parametrize("kind", [*EXCHANGES, "rotated"])
+def test_exchanges_are_warned_of_where_the_light_is_the_same_everywhere(name: str, kind: str) -> None:
+    sample = td.sample(name)
+    pipeline = td.Pipeline(sample.sensor, sample.reference)
+    with pytest.warns(td.InputWarning, match="as if colours were exchanged or sides mirrored|stands out|across it"):
+        result = pipeline(REFUSED[kind][0](sample.image))
+    assert result.height_error is None

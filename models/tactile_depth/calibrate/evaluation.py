@@ -235,7 +235,7 @@ def evaluate(
             f"{by_balls:.4g}: give presses of that sensor, or correct ball_radius_px"
         )
     sensor.require_reference(True)
-    check_reference(sensor, middle(pictures.background[None], share))
+    check_reference(sensor, middle(pictures.background[None], share), share=share)
     on_grid = to_grid(pictures, pitch, find_circles, aspect=sensor.pixel_aspect, share=share)
     measured = [view for view in on_grid.views if view.is_whole]
     cut = [view.press.name for view in on_grid.views if not view.is_whole]

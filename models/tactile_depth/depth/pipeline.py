@@ -224,7 +224,7 @@ class Pipeline:
             self.sensor.steepest(self.config),
             self.sensor.height_errors.get(self.config.gradient_model),
             streamed,
-            self._warned(checked, gains, depth_mm, None if stream is None else stream.warned),
+            self._warned(checked, gains, depth_mm, slopes, None if stream is None else stream.warned),
             self.sensor.pixel_aspect,
             captured,
         )
@@ -440,7 +440,7 @@ class Pipeline:
     def _rest_of(self, pictures: Pictures, name: Argument, largest_log2: int) -> np.ndarray:
         """Return pictures without contact on the grid, uint8 (frames, rows, columns, 3)."""
         images, frames = self._reader.reference(pictures, name, largest_log2)
-        self._doubts = check_reference(self._reader.sensor, images, name)
+        self._doubts = check_reference(self._reader.sensor, images, name, self._reader.share)
         return frames
 
     def _checked(self, pictures: Pictures, name: Part) -> tuple[np.ndarray, list[Checked], bool]:
@@ -453,13 +453,19 @@ class Pipeline:
         return np.stack(frames), checked, single
 
     def _warned(
-        self, checked: Sequence[Checked], gains: np.ndarray | None, depth_mm: np.ndarray, warned: Warned | None
+        self,
+        checked: Sequence[Checked],
+        gains: np.ndarray | None,
+        depth_mm: np.ndarray,
+        slopes: np.ndarray,
+        warned: Warned | None,
     ) -> tuple[tuple[str, ...], ...]:
         """Return for each picture why its heights are uncertain; warn of it, and in a stream only of what is new."""
         light = [None] * len(checked) if gains is None else gains * LIGHT_GAIN.lsb
         texts = []
-        for each, gain, depth in zip(checked, light, depth_mm, strict=True):
-            doubts = doubts_of(each, gain, depth, self.threshold_mm)
+        for each, gain, depth, slope in zip(checked, light, depth_mm, slopes, strict=True):
+            steps = slope * self.pixel_pitch_mm if self.config.neumann else None
+            doubts = doubts_of(each, gain, depth, self.threshold_mm, steps)
             tell(doubts if warned is None else warned.new(doubts))
             texts.append(tuple(map(str, (*self._doubts, *doubts))))
         return tuple(texts)

@@ -163,7 +163,7 @@ class Device(AbstractContextManager["Device"]):
             self._reference_gains = None
             return
         images, taken = self.pipeline.reader.reference(pictures, PICTURES, largest)
-        check_reference(self.pipeline.reader.sensor, images, PICTURES)
+        check_reference(self.pipeline.reader.sensor, images, PICTURES, self.pipeline.reader.share)
         gains = captured_gains(taken, config)
         require_light(gains, config, PICTURES)
         with self._open_line() as line:

@@ -35,25 +35,25 @@ class Rest:
 
 
 def block_means(picture: np.ndarray) -> np.ndarray:
-    """Return means of `BLOCKS` of a picture (rows, columns, 3), float32; a remainder at the far edges is left out.
+    """Return means of `BLOCKS` of a picture (rows, columns, n), float32; a remainder at the far edges is left out.
 
     A square picture has as many columns of blocks as rows, so that it can be rotated.
     """
-    across, down = _averages(picture.shape[0], picture.shape[1])
+    across, down = _averages(*picture.shape)
     rows = down @ picture.reshape(picture.shape[0], -1).astype(np.float32)
-    return (rows.reshape(len(rows), -1) @ across).reshape(len(rows), -1, 3)
+    return (rows.reshape(len(rows), -1) @ across).reshape(len(rows), -1, picture.shape[2])
 
 
 @cache
-def _averages(rows: int, columns: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the matrices that average columns, (columns * 3, block columns * 3), and rows, (block rows, rows)."""
+def _averages(rows: int, columns: int, values: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the matrices that average columns, (columns * n, block columns * n), and rows, (block rows, rows)."""
     counts = (BLOCKS[0], BLOCKS[0]) if rows == columns else BLOCKS
     height, width = (-(-length // count) for count, length in zip(counts, (rows, columns), strict=True))
     down, across = (
         np.repeat(np.eye(length // size), size, axis=1) / size for length, size in ((rows, height), (columns, width))
     )
     down, across = (np.pad(each, ((0, 0), (0, n - each.shape[1]))) for each, n in ((down, rows), (across, columns)))
-    return np.kron(across.T, np.eye(3)).astype(np.float32), down.astype(np.float32)
+    return np.kron(across.T, np.eye(values)).astype(np.float32), down.astype(np.float32)
 
 
 def differences(blocks: np.ndarray, rest: np.ndarray) -> np.ndarray:

@@ -156,7 +156,7 @@ def on_grid(sensor: Sensor, frames: Frames) -> Sensor:
     sensor.require_reference(frames.reference is not None)
     zoom = 1.0 if frames.picture_size is None else sensor.zoom(frames.picture_size, frames.name, frames.share)
     if frames.no_contact is not None:
-        check_reference(sensor, middle(frames.no_contact[None], frames.share))
+        check_reference(sensor, middle(frames.no_contact[None], frames.share), share=frames.share)
     placed = sensor
     if frames.camera is not None:
         columns, rows = frames.camera.centre_shift

@@ -9,6 +9,7 @@ from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.pictures.exchanges import exchange_of
 from tactile_depth.pictures.grid_sampler import middle
 from tactile_depth.pictures.pictures import HasArray, HasInterface, is_array
+from tactile_depth.pictures.view_check import share_shown
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import BUILT_IN
 from tactile_depth.sensor.sensor import LIGHTING_AGREES, Sensor
@@ -51,6 +52,8 @@ def identify(reference: np.ndarray | HasArray | HasInterface, *, crop: Crop | No
             camera = sensor.camera
             reasons.append(f"{sensor.name} takes {camera.columns} x {camera.rows}, this has {columns} x {rows} pixels")
             continue
+        if seen.untouched is not None and share_shown(cut, seen.untouched) != 1:
+            return sensor  # in another view, which a pipeline names
         exchange = exchange_of(seen, cut)
         if difference > LIGHTING_AGREES or exchange:
             reasons.append(

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.base.errors import Argument, Part
+from tactile_depth.chip.resampling import WHOLE, Share
 from tactile_depth.pictures.blocks import block_means, differences, largest, medians, smooth
 from tactile_depth.pictures.doubts import REFERENCE, TAKE_ANOTHER, Doubt, UnusablePicture, clipped, doubt, tell
 from tactile_depth.pictures.exchanges import CORRECT_IT, DARKEST, exchange_of
@@ -25,13 +26,17 @@ DENT, DENT_OF_MEDIAN, DENT_DEGREE = 0.01, 8, 7
 STEADY = 0.05  # brightness of the frames of one reference, relative to their median
 
 
-def check_reference(sensor: Sensor, pictures: np.ndarray, name: Part = REFERENCE) -> tuple[Doubt, ...]:
+def check_reference(
+    sensor: Sensor, pictures: np.ndarray, name: Part = REFERENCE, share: Share = WHOLE
+) -> tuple[Doubt, ...]:
     """Check pictures without contact; warn of each doubt and return them.
 
     Parameters
     ----------
     pictures : uint8 array (frames, rows, columns, 3), RGB
-        Full pictures of the sensor's camera. One that is too dark is refused later (`require_light`).
+        Of the sensor's camera. One that is too dark is refused later (`require_light`).
+    share : Share
+        Part of the pictures that the user gave that these are.
 
     Raises
     ------
@@ -51,7 +56,7 @@ def check_reference(sensor: Sensor, pictures: np.ndarray, name: Part = REFERENCE
             problem = f": picture {number} differs from the others by {100 * differs.max():.0f} %, as if touched"
             raise UnusablePicture(name, problem, remedy="take all with the sensor untouched")
     rest = pictures.mean(axis=0, dtype=np.float32)
-    doubts = [*clipped(pictures, name), *_other_lighting(sensor, rest, name)]
+    doubts = [*clipped(pictures, name), *_other_lighting(sensor, rest, name, share)]
     doubts = doubts or _contact(sensor, rest, blocks.mean(axis=0), name)
     tell(doubts)
     return tuple(doubts)
@@ -84,14 +89,14 @@ def _averaged(values: np.ndarray) -> np.ndarray:
     return values
 
 
-def _other_lighting(sensor: Sensor, rest: np.ndarray, name: Part) -> list[Doubt]:
+def _other_lighting(sensor: Sensor, rest: np.ndarray, name: Part, share: Share) -> list[Doubt]:
     """Compare a reference with the lighting of the calibration; refuse another order of it."""
     if sensor.lighting is None:
         return []
     own, seen = np.maximum(sensor.lighting, DARKEST), np.maximum(lighting(rest), DARKEST)
     if is_grey(seen, own):
         raise UnusablePicture(name, ": it is grey, its colours do not differ", remedy="take it in colour, as RGB")
-    if other := other_view(sensor, rest, name):
+    if other := other_view(sensor, rest, name, share):
         return other
     if exchange := exchange_of(sensor, rest):
         raise UnusablePicture(name, f": {exchange}, by the lighting of {sensor.name}", remedy=CORRECT_IT)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_depth.base.errors import Argument, Part
+from tactile_depth.chip.resampling import Share
 from tactile_depth.pictures.blocks import RIDGE
 from tactile_depth.pictures.doubts import Doubt, doubt
 from tactile_depth.sensor.sensor import UNTOUCHED_AREAS, Sensor, equal_areas, overlaps
@@ -70,16 +71,22 @@ def share_shown(reference: np.ndarray, untouched: np.ndarray) -> float:
     return best.scale if fits and abs(np.log(best.scale)) > SAME_VIEW else 1.0
 
 
-def other_view(sensor: Sensor, reference: np.ndarray, name: Part) -> list[Doubt]:
-    """Doubt a reference (rows, columns, 3) that shows more or less of the gel than the calibration's pictures."""
+def other_view(sensor: Sensor, reference: np.ndarray, name: Part, share: Share) -> list[Doubt]:
+    """Doubt a reference that shows more or less of the gel than the calibration's pictures.
+
+    Parameters
+    ----------
+    reference : array (rows, columns, 3)
+        A share of what the user gave.
+    """
     if sensor.untouched is None or (scale := share_shown(reference, sensor.untouched)) == 1:
         return []
     size = "large" if scale < 1 else "small"
     text = f": by its light it shows {scale:.2f} of the width and height that it should, so heights are too {size}"
     remedy: tuple[Part, ...] = ("give pictures that show as much of the gel as those of the calibration",)
     if sensor.view is not None:
-        width, height = sensor.view
-        remedy = ("give ", Argument("crop", _named(width * scale, height * scale)), ", what the pictures show")
+        width, height = (scale * view / float(part) for view, part in zip(sensor.view, share[::-1], strict=True))
+        remedy = ("give ", Argument("crop", _named(width, height)), ", what the pictures show")
     return [doubt("view", name, text, remedy=remedy)]
 
 
