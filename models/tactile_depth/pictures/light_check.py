@@ -13,10 +13,10 @@ from tactile_depth.pictures.picture_check import Checked
 
 # Change of the light across the picture, 5th to 95th percentile of a plane and of a quadratic in the position, fitted
 # to what nothing touches. Plane, right: 0.012 at most, with noise of 2 grey levels or as JPEG of quality 75 0.0125, of
-# quality 60 0.019; 1 % up at one side and down at the other, in one colour or in all: median 0.017; of 1,440 presses
-# 20 are then more than 5 % off, 3 of these, up to 5.2 %, below the limit. Quadratic, right: 0.020 at most, as JPEG of
-# quality 50 0.040; a vignette of 5 %: 0.062 and more. A fit counts if enough blocks are near it: right 0.80 and more of
-# them, with presses twice as large 0.5; of less, untouched gel and contact are not told apart.
+# quality 60 0.019; 1 % up at one side and down at the other, in one colour or in all: median 0.017. Of 1,800 such
+# presses, 53 are more than 5 % off, of which 9, beside the edge, are below the limit. Quadratic,
+# right: 0.020 at most, as JPEG of quality 50 0.040; a vignette of 5 %: 0.062 and more. A fit counts if enough blocks
+# are near it: right 0.80 and more, with presses twice as large 0.5; of less, gel and contact are not told apart.
 PLANE, QUADRATIC = 0.014, 0.05
 NEAR, NEAR_SHARE = 0.025, 0.6
 # The same where no block is far from the fit: nothing touches, but depth is read. Largest distance, right, with noise
@@ -30,8 +30,8 @@ UNCOMPENSATED = 0.03
 # enlarged 1.7 times and cut by the picture's edge 0.24, drawn contacts 0.003; drawn contacts with exchanged colours or
 # mirrored sides 0.31 and more.
 OF_NO_SURFACE = 0.27
-# Lowest height of 99.5 % of the pixels over the peak, if it is below -2 thresholds. Right: -0.42 at worst, with the
-# model `lut` -0.65; press and reference exchanged: -0.97 and beyond.
+# Lowest height of 99.5 % of the pixels over the peak, if it is below -2 thresholds. Right: -0.49 at worst, with the
+# model `lut` -0.66; press and reference exchanged: -1.2 and beyond.
 PRESSED_OUT = 0.75
 
 

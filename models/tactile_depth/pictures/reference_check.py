@@ -21,7 +21,7 @@ ROUGH, SMOOTH_DEGREE = 0.068, 5
 # degree: more than the first number and, so that another specimen and noise are no contact, more than the second times
 # its median. Right, Mini and DIGIT in other light, with noise of 3 grey levels, as JPEG of quality 50: 3.0 times at
 # most, 240 drawn specimens: 7.2. Presses at 20 % of their depth: 15 (as JPEG of quality 90: 5 to 14) times and more; at
-# 10 %: 4.2 and more, of 45 on a Mini 41 beyond the limit, on a DIGIT all.
+# 10 %: 4.2 and more, of 45 on a Mini 40 beyond the limit, on a DIGIT all.
 DENT, DENT_OF_MEDIAN, DENT_DEGREE = 0.01, 8, 7
 STEADY = 0.05  # brightness of the frames of one reference, relative to their median
 
