@@ -355,7 +355,7 @@ def _alone(
             result = pipeline(frame)
     except InputError as error:
         return None, f"refused: {error}"
-    return None if height_mm is None else errors_of(result.depth_mm, height_mm), "; ".join(result.warnings)
+    return None if height_mm is None else errors_of(result.depth_mm, height_mm), "; ".join(map(str, result.warnings))
 
 
 def faults(case: Case, row: SensorRow) -> list[str]:
