@@ -165,13 +165,30 @@ def dented(background: np.ndarray, press: np.ndarray, share: float) -> np.ndarra
     return levels(background + share * (press.astype(np.float64) - background))
 
 
-@pytest.mark.parametrize(("share", "least"), [(0.1, 0.85), (0.2, 1), (0.3, 1)])
+@pytest.mark.parametrize(("share", "least"), [(0.1, 0.95), (0.2, 1), (0.3, 1)])
 def test_a_dent_in_the_reference_is_warned_of(mini: Own, digit: Own, share: float, least: float) -> None:
     for sensor, background, presses in (mini, digit):
         seen = [DENTED in doubts(sensor, dented(background, press, share)) for press in presses]
         assert np.mean(seen) >= least
         if share == 0.2:
             assert all(DENTED in doubts(sensor, noisy(dented(background, press, share))) for press in presses)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_drawn_dent_is_warned_of(drawn: Own, seed: int) -> None:
+    sensor, background, _ = drawn
+    chance = np.random.default_rng(seed)
+    x, y, radius = chance.uniform(-0.7, 0.7), chance.uniform(-0.7, 0.7), chance.uniform(0.12, 0.2)
+    offset = np.stack(np.broadcast_arrays((X - x) * 4 / 3, Y - y), axis=-1)[:, :, 0] / radius
+    distance = np.hypot(*np.moveaxis(offset, -1, 0))[..., None]
+    steepness = 0.2 * 0.5 * np.where(distance < 1, 1, np.exp(3 * (1 - distance)))
+    colours = offset @ np.array([[0.55, -0.35, -0.25], [0.1, 0.5, -0.55]]) * steepness
+    assert DENTED in doubts(sensor, noisy(background, 1 - colours))
+
+
+def test_a_reference_in_another_view_is_identified(mini: Own) -> None:
+    for share in (1, 0.9, 0.6):
+        assert td.identify(view(mini[1], share)).name == "gelsight-mini"
 
 
 def test_a_calibration_without_its_picture_has_the_limit_of_one_mini(mini: Own) -> None:
