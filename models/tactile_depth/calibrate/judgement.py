@@ -15,12 +15,12 @@ from scipy.ndimage import median_filter
 from scipy.signal import fftconvolve
 
 from tactile_depth.base.errors import InputError
-from tactile_depth.calibrate.evaluation import Evaluation
+from tactile_depth.calibrate.evaluation import Evaluation, scores_of
 from tactile_depth.calibrate.presses import FITTED_SHARE, GridPresses, View
 from tactile_depth.chip.limits import COEFFICIENTS, DEVIATION
 from tactile_depth.depth.reference import pixel_terms
 from tactile_depth.pictures.identify import identify
-from tactile_depth.sensor.sensor import equal_areas
+from tactile_depth.sensor.sensor import Sensor, equal_areas
 from tactile_depth.sensor.verdict import BAD, GOOD, GRADES, USABLE, Verdict
 from tactile_depth.sensor.view import shown
 
@@ -33,9 +33,9 @@ DIAMETERS_AGREE, FEWEST_OF_A_BALL = 1.15, 4
 LARGE_CONTACT = 0.85  # median of contact over ball radius: real presses of a Mini 0.51, drawn ones 0.3 to 0.7
 # Ratio of all diameters to those given at which slopes are linear in the colours. Drawn linear gels: 1.0, with 0.03 to
 # 0.04 of the slopes left; real gels: over 1.8, with 0.15 left. Colours of a lit gel never grow faster than slopes, as
-# they seem to with diameters that are too large: 30 %: 0.77. With diameters 30 % too small: 1.42, with 0.03 left, as of
-# a gel whose colours saturate a little.
-LINEAR_AT, LEFT_OF_LINEAR = (0.88, 1.14), 0.06
+# they seem to with diameters that are too large: 30 %: 0.77. With diameters 30 % too small: 1.32 to 1.42, with 0.03
+# left. Drawn gels whose colours are 1 / (1 + 0.1 slope) of linear: 1.16; with 0.2, as if diameters were wrong: 1.45.
+LINEAR_AT, FAR_FROM_LINEAR, LEFT_OF_LINEAR = (0.88, 1.14), 1.25, 0.06
 FACTORS = np.exp(np.linspace(-0.6, 0.6, 49))  # of a diameter
 RIDGE = 1e-3  # added to the diagonal of equations scaled to 1
 # Change of colour in a circle over that in the circle of its size that holds most: 0.70 to 1 for right circles, below
@@ -60,16 +60,17 @@ def judge(presses: GridPresses, evaluation: Evaluation) -> Verdict:
     numbers = evaluation.faults(model)
     grades = [GOOD if not numbers else BAD if evaluation.severity(model) > 1 else USABLE]
     causes = []
-    circles, expected_mm = _circles(presses), expected_pitch_mm(presses)
+    circles, known = _circles(presses), known_sensor(presses)
     diameters = (GOOD, "") if circles[0] == BAD else _diameters(presses)  # which need right circles
-    for grade, cause in (circles, _pitch(presses, expected_mm), diameters, _markers(presses), _spread(presses)):
+    against_known = (GOOD, "") if known is None else _against(known, presses)
+    for grade, cause in (circles, against_known, diameters, _markers(presses), _spread(presses)):
         if cause:
             grades.append(grade)
             causes.append(cause)
     worst = max(grades, key=GRADES.index)
     if worst == BAD and not causes:
         causes = ["no likely cause found: look at the circles, and whether the camera adjusts itself"]
-    unchecked = [] if presses.ball_pitches or expected_mm else [NOT_CHECKED]
+    unchecked = [] if presses.ball_pitches or known else [NOT_CHECKED]
     return Verdict(worst, (*numbers, *causes, *unchecked))
 
 
@@ -77,11 +78,11 @@ def _joined(names: Sequence[str]) -> str:
     return ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
 
 
-# Pitch.
+# A built-in calibration.
 
 
-def expected_pitch_mm(presses: GridPresses) -> float | None:
-    """Return the pitch by a built-in calibration with the lighting of the background, None if there is none.
+def known_sensor(presses: GridPresses) -> Sensor | None:
+    """Return the built-in calibration with the lighting of the background, for that size of picture; None: there is none.
 
     What the pictures show must be known, or the same as there.
     """
@@ -97,16 +98,26 @@ def expected_pitch_mm(presses: GridPresses) -> float | None:
             return None
     known, share = shown(known, presses.view)
     rows, columns = background.shape[:2]
-    return known.pixel_pitch_mm / known.zoom((rows, columns), share=share)
+    return known.scaled(1 / known.zoom((rows, columns), share=share))
 
 
-def _pitch(presses: GridPresses, expected_mm: float | None) -> tuple[str, str]:
-    """Return whether the pitch is far from that of the same kind of sensor."""
-    if expected_mm is None or abs(presses.pitch_mm / expected_mm - 1) < PITCH_AGREES:
+def _against(known: Sensor, presses: GridPresses) -> tuple[str, str]:
+    """Return whether the pitch, or the heights of the balls, are far from those of the same kind of sensor."""
+    pitch_mm = known.pixel_pitch_mm
+    if abs(presses.pitch_mm / pitch_mm - 1) > PITCH_AGREES:
+        return BAD, (
+            f"likely cause: a wrong pitch or crop: {presses.pitch_mm:.3g} mm per pixel, but {pitch_mm:.3g} by a "
+            "built-in calibration for the same lighting and view"
+        )
+    views = [view for view in presses.views if view.is_whole and view.press.is_central]
+    if not views:
+        return GOOD, ""
+    caps = float(np.median([score.cap_height for score in scores_of(known, presses, views, known.model)]))
+    if max(caps, 1 / caps) < DIAMETERS_AGREE:
         return GOOD, ""
     return BAD, (
-        f"likely cause: a wrong pitch or crop: {presses.pitch_mm:.3g} mm per pixel, but {expected_mm:.3g} by a "
-        "built-in calibration for the same lighting and view"
+        f"likely cause: wrong diameters: a built-in calibration for the same lighting reads caps of {caps:.2f} times "
+        "the height of these balls"
     )
 
 
@@ -144,7 +155,7 @@ def _diameters(presses: GridPresses) -> tuple[str, str]:
     low, high = LINEAR_AT
     if factor < low or (high < factor < FACTORS[-1] and left < LEFT_OF_LINEAR):
         wrong = "too large, or a pitch too small" if factor < low else "too small, or a pitch too large"
-        return BAD if factor < low else USABLE, (
+        return BAD if factor < low or factor > FAR_FROM_LINEAR else USABLE, (
             f"likely cause: diameters {wrong}: colours are those of balls of {factor:.2f} times the diameters given"
         )
     return GOOD, ""
