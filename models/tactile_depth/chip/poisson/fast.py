@@ -86,13 +86,13 @@ def _fft(
 
 
 @cache
-def _graph(size: int, inverse: bool, coefficient_width: int) -> Graph:
+def _graph(size: int, inverse: bool, factor_width: int) -> Graph:
     """Return the stages of an FFT, int64 (stages, 5): the fields of `Stage`, first factor; and all factors (.., 2)."""
     table, factors = [], [np.zeros((0, 2), np.int64)]
     for stage in stages(size, inverse):
         table.append((stage.block, stage.delay, stage.rotate, stage.halve, sum(map(len, factors))))
         if not stage.delay:
-            factors.append(twiddle_factors(stage.block, inverse, coefficient_width))
+            factors.append(twiddle_factors(stage.block, inverse, factor_width))
     return read_only(np.array(table, np.int64)), read_only(np.concatenate(factors))
 
 
@@ -215,8 +215,8 @@ def _settle(ratios: np.ndarray, lsb: np.float32, limit: float, rounds: int, enou
 
 
 def _dst(x: np.ndarray, formats: Transform, inverse: bool, monitor: Monitor | None, node: str) -> np.ndarray:
-    size, drop, width = x.shape[-1], formats.factor_drop, formats.coefficient_width
-    graph, phase = _graph(size, inverse, width), (phase_factors(size, inverse, width), mirror(size))
+    size, drop, factor_width = x.shape[-1], formats.factor_drop, formats.factor_width
+    graph, phase = _graph(size, inverse, factor_width), (phase_factors(size, inverse, factor_width), mirror(size))
     steps, drops = ["input", "phase"], (formats.input_drop, drop + formats.output_drop)
     if inverse:
         steps, drops = ["phase", "output"], (drop + formats.input_drop, formats.output_drop)

@@ -41,9 +41,9 @@ def dst_forward(
     -------
     int64 array (..., N): sum over n of x[n] sin(pi (2n + 1) (N - k) / 2N) at position p,
     k = bit_reversed(N)[p], times the gain
-    2**-halvings (1 - 2**(1 - coefficient_width)) ** (twiddle_stages + 1).
+    2**-halvings (1 - 2**(1 - factor_width)) ** (twiddle_stages + 1).
     """
-    width, coefficients = formats.width, formats.coefficient_width
+    width, coefficients = formats.width, formats.factor_width
     signs = alternate_sign(x) if formats.alternate else x
     signed = round_saturate(signs, formats.input_drop, width, monitor, node + ".input")
     re, im = sdf_fft(signed, np.zeros_like(signed), False, width, coefficients, monitor, node + ".fft")

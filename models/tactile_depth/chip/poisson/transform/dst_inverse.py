@@ -30,10 +30,10 @@ def dst_inverse(
     Returns
     -------
     int64 array (..., N), Makhoul order: dst_inverse(dst_forward(x)) is x, times the coefficients' gain
-    (1 - 2**(1 - coefficient_width)) ** (2 (twiddle_stages + 1)).
+    (1 - 2**(1 - factor_width)) ** (2 (twiddle_stages + 1)).
     """
     mode, mirrored = mode_pairs(modes)
-    width, coefficients = formats.width, formats.coefficient_width
+    width, coefficients = formats.width, formats.factor_width
     factors, drop = phase_factors(modes.shape[-1], True, coefficients), formats.factor_drop + formats.input_drop
     re, im = twiddle_multiply(mirrored, mode, factors, drop, width, monitor, node + ".phase")
     re, im = sdf_fft(re, im, True, width, coefficients, monitor, node + ".fft")

@@ -62,7 +62,7 @@ def sdf_fft(
     im: np.ndarray,
     inverse: bool,
     width: int,
-    coefficient_width: int,
+    factor_width: int,
     monitor: Monitor | None = None,
     node: str = "fft",
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -72,14 +72,14 @@ def sdf_fft(
     ----------
     re, im : int64 arrays (..., N)
         Forward: natural order. Inverse: bit-reversed order.
-    width, coefficient_width : int
+    width, factor_width : int
         Bits of a data word and of a twiddle factor.
 
     Returns
     -------
     re, im : int64 arrays (..., N)
         Forward: bit-reversed order. Inverse: natural order. The gain is
-        2**-halvings (1 - 2**(1 - coefficient_width)) ** twiddle_stages, relative to the sum without a factor.
+        2**-halvings (1 - 2**(1 - factor_width)) ** twiddle_stages, relative to the sum without a factor.
     """
     re, im = _position_major(re), _position_major(im)
     for index, stage in enumerate(stages(re.shape[-1], inverse)):
@@ -87,8 +87,8 @@ def sdf_fft(
         if stage.delay:
             re, im = sdf_butterfly(re, im, stage, inverse, width, monitor, name)
         else:
-            factors = twiddle_factors(stage.block, inverse, coefficient_width)
-            re, im = twiddle_multiply(re, im, factors, coefficient_width - 1, width, monitor, name)
+            factors = twiddle_factors(stage.block, inverse, factor_width)
+            re, im = twiddle_multiply(re, im, factors, factor_width - 1, width, monitor, name)
     return re, im
 
 

@@ -15,7 +15,7 @@ class Transform:
     input_drop, output_drop : int
         Fraction bits dropped between the input and the `width` bits of the arithmetic (negative: added), and between
         the arithmetic and the `output_width` bits of the output.
-    coefficient_width : int
+    factor_width : int
         Bits of the coefficients.
     alternate : bool
         If False, the sign (-1)^n is left out, and the transform is a DCT-II or its inverse.
@@ -23,7 +23,7 @@ class Transform:
 
     input_drop: int
     width: int
-    coefficient_width: int
+    factor_width: int
     output_drop: int
     output_width: int
     alternate: bool = True
@@ -31,4 +31,4 @@ class Transform:
     @property
     def factor_drop(self) -> int:
         """Fraction bits of a coefficient."""
-        return self.coefficient_width - 1
+        return self.factor_width - 1

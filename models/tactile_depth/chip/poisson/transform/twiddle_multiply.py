@@ -13,39 +13,39 @@ from tactile_depth.chip.poisson.transform.orders import bit_reversed, read_only
 LATENCY = 7
 
 
-def coefficient(x: np.ndarray, coefficient_width: int) -> np.ndarray:
+def coefficient(x: np.ndarray, factor_width: int) -> np.ndarray:
     """Return factors in [-1, 1] as signed words; 1 is 2**(w-1) - 1, so every product has the same gain 1 - 2**(1-w).
 
     This gain is common to all words of a stage and is compensated once (`Configuration.transform_gain`).
     """
-    return np.rint(np.asarray(x) * (2 ** (coefficient_width - 1) - 1)).astype(np.int64)
+    return np.rint(np.asarray(x) * (2 ** (factor_width - 1) - 1)).astype(np.int64)
 
 
-def coefficient_gain(coefficient_width: int) -> float:
+def coefficient_gain(factor_width: int) -> float:
     """Return the gain of a multiplication by a `coefficient` of 1."""
-    return 1 - 2.0 ** (1 - coefficient_width)
+    return 1 - 2.0 ** (1 - factor_width)
 
 
-def _factors(angle: np.ndarray, coefficient_width: int) -> np.ndarray:
-    return read_only(coefficient(np.stack((np.cos(angle), np.sin(angle)), axis=-1), coefficient_width))
+def _factors(angle: np.ndarray, factor_width: int) -> np.ndarray:
+    return read_only(coefficient(np.stack((np.cos(angle), np.sin(angle)), axis=-1), factor_width))
 
 
 @cache
-def twiddle_factors(block: int, inverse: bool, coefficient_width: int) -> np.ndarray:
+def twiddle_factors(block: int, inverse: bool, factor_width: int) -> np.ndarray:
     """Return exp(-+2 pi j e / block) of each word of a block, int64 (block, 2); e is 0, 2n, n, 3n in its quarters."""
     n = np.arange(block // 4)
     exponent = np.concatenate((0 * n, 2 * n, n, 3 * n))
-    return _factors(2 * np.pi * exponent / block * (1 if inverse else -1), coefficient_width)
+    return _factors(2 * np.pi * exponent / block * (1 if inverse else -1), factor_width)
 
 
 @cache
-def phase_factors(size: int, inverse: bool, coefficient_width: int) -> np.ndarray:
+def phase_factors(size: int, inverse: bool, factor_width: int) -> np.ndarray:
     """Return the phase factor of Makhoul's method for the mode k at each position of a burst, int64 (size, 2).
 
     Forward: exp(-j pi k / 2N). Inverse: exp(j pi k / 2N) / j, for words C[N-k] + j C[k].
     """
     angle = np.pi * bit_reversed(size) / (2 * size)
-    return _factors(angle - np.pi / 2 if inverse else -angle, coefficient_width)
+    return _factors(angle - np.pi / 2 if inverse else -angle, factor_width)
 
 
 def twiddle_multiply(

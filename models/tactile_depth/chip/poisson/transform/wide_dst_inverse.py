@@ -41,7 +41,7 @@ def wide_dst_inverse(
     first, second = modes[..., 0::2, :], modes[..., 1::2, :]
     if rows % 2:
         second = np.concatenate((second, np.zeros_like(first[..., -1:, :])), axis=-2)
-    width, coefficients = formats.width, formats.coefficient_width
+    width, coefficients = formats.width, formats.factor_width
     re, im = wide_row_pairs(first, second, width, monitor, node + ".pair")
     factors, drop = phase_factors(size, True, coefficients), formats.factor_drop + formats.input_drop
     re, im = twiddle_multiply(re, im, factors, drop, width, monitor, node + ".phase")

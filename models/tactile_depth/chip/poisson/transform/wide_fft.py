@@ -23,7 +23,7 @@ def wide_fft(
     im: np.ndarray,
     inverse: bool,
     width: int,
-    coefficient_width: int,
+    factor_width: int,
     monitor: Monitor | None = None,
     node: str = "fft",
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -32,7 +32,7 @@ def wide_fft(
     high, low = beats.bit_length() - 1, 0
     before, behind = (low, high) if inverse else (high, low)
     re, im = from_beats(re, before), from_beats(im, before)
-    out_re, out_im = sdf_fft(re, im, inverse, width, coefficient_width, monitor, node)
+    out_re, out_im = sdf_fft(re, im, inverse, width, factor_width, monitor, node)
     return to_beats(out_re, paths, behind), to_beats(out_im, paths, behind)
 
 
@@ -46,10 +46,10 @@ def twiddle_window(size: int, paths: int, block: int, inverse: bool) -> int:
     return min(bits - 2, size.bit_length() - 1 - path_bits)
 
 
-def wide_factors(size: int, paths: int, block: int, inverse: bool, coefficient_width: int) -> np.ndarray:
+def wide_factors(size: int, paths: int, block: int, inverse: bool, factor_width: int) -> np.ndarray:
     """Return the twiddle factors of a block for each beat and path, int64 (beats, paths, 2)."""
     window = twiddle_window(size, paths, block, inverse)
-    return twiddle_factors(block, inverse, coefficient_width)[positions(size, paths, window) % block]
+    return twiddle_factors(block, inverse, factor_width)[positions(size, paths, window) % block]
 
 
 def constant_paths(size: int, paths: int, block: int, inverse: bool) -> int:

@@ -30,9 +30,9 @@ def wide_twiddle(
     return out_re.reshape(re.shape), out_im.reshape(re.shape)
 
 
-def ones(factors: np.ndarray, coefficient_width: int) -> int:
+def ones(factors: np.ndarray, factor_width: int) -> int:
     """Return a word with a bit for each path, 1 where the factor is 1 in every beat."""
-    one = factors == (2 ** (coefficient_width - 1) - 1, 0)
+    one = factors == (2 ** (factor_width - 1) - 1, 0)
     return sum(int(path) << index for index, path in enumerate(np.all(one, axis=(0, 2))))
 
 
