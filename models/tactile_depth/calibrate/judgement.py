@@ -82,7 +82,7 @@ def _joined(names: Sequence[str]) -> str:
 
 
 def known_sensor(presses: GridPresses) -> Sensor | None:
-    """Return the built-in calibration with the lighting of the background, at the size of its pictures; None without one.
+    """Return the built-in calibration with the lighting of the background, at its size; None without one.
 
     What the pictures show must be known, or the same as there.
     """
