@@ -44,11 +44,16 @@ def block_means(picture: np.ndarray) -> np.ndarray:
     return (rows.reshape(len(rows), -1) @ across).reshape(len(rows), -1, picture.shape[2])
 
 
+def block_size(rows: int, columns: int) -> tuple[int, int]:
+    """Return rows and columns of a block of a picture."""
+    counts = (BLOCKS[0], BLOCKS[0]) if rows == columns else BLOCKS
+    return -(-rows // counts[0]), -(-columns // counts[1])
+
+
 @cache
 def _averages(rows: int, columns: int, values: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the matrices that average columns, (columns * n, block columns * n), and rows, (block rows, rows)."""
-    counts = (BLOCKS[0], BLOCKS[0]) if rows == columns else BLOCKS
-    height, width = (-(-length // count) for count, length in zip(counts, (rows, columns), strict=True))
+    height, width = block_size(rows, columns)
     down, across = (
         np.repeat(np.eye(length // size), size, axis=1) / size for length, size in ((rows, height), (columns, width))
     )

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.base.errors import Part
-from tactile_depth.pictures.blocks import block_means, largest, medians, smooth, spread
+from tactile_depth.pictures.blocks import block_means, block_size, largest, medians, smooth, spread
 from tactile_depth.pictures.doubts import LIGHT, TAKE_ANOTHER, Doubt, doubt, percents
 from tactile_depth.pictures.exchanges import CORRECT_IT
 from tactile_depth.pictures.picture_check import Checked
@@ -73,12 +73,14 @@ def doubts_of(
 
 def _no_surface(depth_mm: np.ndarray, slopes_mm: np.ndarray, name: Part) -> list[Doubt]:
     """Doubt a picture whose slopes are those of no surface."""
-    parts = np.empty((*(length - 1 for length in depth_mm.shape), 4), np.float32)
-    parts[..., :2] = slopes_mm[:-1, :-1]
-    parts[..., 2] = parts[..., 0] - (depth_mm[:-1, 1:] - depth_mm[:-1, :-1])
-    parts[..., 3] = parts[..., 1] - (depth_mm[1:, :-1] - depth_mm[:-1, :-1])
-    squares = (block_means(parts) ** 2).sum(axis=(0, 1))
-    share = float((squares[2] + squares[3]) / (squares[0] + squares[1]))
+    slopes = block_means(slopes_mm[:-1, :-1])
+    rows, columns = slopes.shape[:2]
+    height, width = block_size(depth_mm.shape[0] - 1, depth_mm.shape[1] - 1)
+    # The mean of differences over a block is the difference of its far and near edge.
+    across = depth_mm[: rows * height, : columns * width + 1 : width].reshape(rows, height, columns + 1).mean(axis=1)
+    down = depth_mm[: rows * height + 1 : height, : columns * width].reshape(rows + 1, columns, width).mean(axis=2)
+    left = slopes - np.stack((np.diff(across, axis=1) / width, np.diff(down, axis=0) / height), axis=-1)
+    share = float((left**2).sum() / (slopes**2).sum())
     if share <= OF_NO_SURFACE:
         return []
     text = f": {100 * share:.0f} % of its slopes belong to no surface, as if colours were exchanged or sides mirrored"
@@ -123,12 +125,11 @@ def _uneven(difference: np.ndarray, touches: bool) -> np.ndarray | None:
     """Return how much each colour of untouched gel changes across the picture, (3,); None for little."""
     for degree, limit, slight in ((2, QUADRATIC, SLIGHT_QUADRATIC), (1, PLANE, SLIGHT_PLANE)):
         surface = smooth(difference, degree, rounds=4)
-        change = spread(surface, 0.05)
-        if change.max() < (SLIGHT_PLANE if touches else PLANE):  # a quadratic so small leaves no plane that is larger
+        change, off = spread(surface, 0.05), largest(np.abs(difference - surface))
+        untouched = touches and off.max() < UNTOUCHED
+        if change.max() < (SLIGHT_PLANE if untouched else PLANE):  # a quadratic so small leaves no plane that is larger
             return None
-        off = largest(np.abs(difference - surface))
-        if change.max() > limit and float((off < NEAR).mean()) > NEAR_SHARE:
-            return change
-        if touches and change.max() > slight and off.max() < UNTOUCHED:
+        is_sure = untouched or float((off < NEAR).mean()) > NEAR_SHARE
+        if change.max() > (slight if untouched else limit) and is_sure:
             return change
     return None
