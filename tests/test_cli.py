@@ -153,6 +153,18 @@ def test_options_reach_the_pipeline(tmp_path: Path, inputs: Any, depth: Any, opt
     assert report["zero_offset"] == choices.get("zero_offset", True)
 
 
+def test_portrait_pictures_are_refused_until_they_are_rotated(tmp_path: Path, inputs: Any, arguments: Any) -> None:
+    folder = tmp_path / "portrait"
+    folder.mkdir()
+    for name in ("press.png", "background.png"):
+        Image.fromarray(np.rot90(np.asarray(Image.open(inputs / name)), -1)).save(folder / name)
+    words = [f"{folder}/press.png", *arguments, "--reference", f"{folder}/background.png", "--out", f"{tmp_path}/out"]
+    assert main(["depth", *words]) == 2
+    assert main(["depth", *words, "--rotate", "90"]) == 0
+    heights = np.load(tmp_path / "out" / "depth_mm.npy")
+    np.testing.assert_array_equal(heights, expected(inputs).height_mm.astype(np.float32))
+
+
 def test_several_pictures_share_one_array(tmp_path: Path, inputs: Any, depth: Any) -> None:
     depth(pictures=[f"{inputs}/press.png", f"{inputs}/background.png"])
     height = np.load(tmp_path / "depth_mm.npy")

@@ -82,6 +82,14 @@ def test_a_camera_that_is_too_fast_loses_its_oldest_frames_and_they_are_counted(
     assert source.counts.read == 50
 
 
+def test_frames_are_rotated(tmp_path: Path) -> None:
+    pictures = np.random.default_rng(1).integers(0, 256, (2, 4, 3, 3), np.uint8)
+    np.save(tmp_path / "portrait.npy", pictures)
+    with Source(str(tmp_path / "portrait.npy"), rotate=90) as source:
+        images = [frame.image for frame in source.frames() if frame is not None]
+    np.testing.assert_array_equal(images, [np.rot90(picture) for picture in pictures])
+
+
 def test_a_silent_source_gives_none_meanwhile(camera: Any) -> None:
     released = threading.Event()
 

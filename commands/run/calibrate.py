@@ -14,10 +14,10 @@ from commands.common.press_data import data_folder
 from commands.common.run_request import camera_choice
 from commands.common.variables import EQUAL, Name, Place, Several, one, real, whole
 from tactile_depth.calibrate.fitting import DEFAULT_BITS
-from tactile_depth.calibrate.presses import ROTATIONS
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.limits import MODELS
 from tactile_depth.cli import calibrate
+from tactile_depth.pictures.pictures import ROTATIONS
 from tactile_depth.sensor.calibration_file import LONGEST_EXPOSURE_US, PIXEL_PITCHES_MM
 from tactile_depth.sensor.sensor import TABLE_BITS
 

@@ -23,7 +23,7 @@ from tactile_depth.chip.gradient.light_gains import Light, settled
 from tactile_depth.chip.resampling import WHOLE, Share
 from tactile_depth.pictures.frames import read_picture
 from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler, picture_grid
-from tactile_depth.pictures.pictures import Picture
+from tactile_depth.pictures.pictures import ROTATIONS, Picture, rotated
 
 SMALLEST_GRID = 16  # columns
 PITCHES_AGREE = 0.02  # largest relative difference between the given pitch and the pitch from the balls' radii
@@ -32,7 +32,6 @@ NOTHING_TOUCHES = 2.0  # distance from the centre in contact radii: beyond it th
 AT_REST = 2.5  # distance from the centre in contact radii: beyond it depth is that of untouched gel
 LARGEST_CONTACT = 0.999  # fraction of the ball's radius: slopes grow without bound towards 1
 BACKGROUND = Argument("background")
-ROTATIONS = (0, 90, 180, 270)
 TOP_PX = 2  # radius of the top of a cap, in grid pixels
 # Standard deviation of the colours in the contacts, second over first principal axis. Colour pictures of 45 real
 # presses: 0.58; the same pictures in grey: 0.
@@ -495,4 +494,4 @@ def _picture(image: Picture, name: Part, rotate: int) -> np.ndarray:
     image = read_picture(Path(image)) if isinstance(image, str | Path) else np.asarray(image)
     if image.dtype != np.uint8 or image.ndim != 3 or image.shape[-1] != 3 or not image.size:
         raise InputError(name, f": {image.dtype} {image.shape}", accepted="uint8 (rows, columns, 3), RGB")
-    return np.ascontiguousarray(np.rot90(image, rotate // 90))
+    return rotated(image, rotate)

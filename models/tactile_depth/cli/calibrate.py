@@ -17,7 +17,6 @@ from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
 from tactile_depth.calibrate.fitting import DEFAULT_BITS, Fit, check_arguments, fit_presses, pixel_size
 from tactile_depth.calibrate.press_folder import BACKGROUND, HEAD, TABLE, background_path, table_rows
 from tactile_depth.calibrate.presses import (
-    ROTATIONS,
     SMALLEST_GRID,
     BallPress,
     GridPresses,
@@ -33,8 +32,8 @@ from tactile_depth.cli.circle_page import circle_page
 from tactile_depth.cli.measure import DEVICE, address_of, grid_of, measure
 from tactile_depth.cli.options import (
     add_build_arguments,
-    add_crop_argument,
     add_light_and_zero_arguments,
+    add_picture_arguments,
     build_choices,
     size,
 )
@@ -90,13 +89,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--bits", type=int, default=DEFAULT_BITS, metavar="N", help=f"of each colour, for lut (default {DEFAULT_BITS})"
     )
     parser.add_argument(
-        "--rotate",
-        type=int,
-        default=0,
-        choices=ROTATIONS,
-        help="degrees counter-clockwise, by which to rotate pictures",
-    )
-    parser.add_argument(
         "--circles",
         type=Path,
         metavar="FILE.csv",
@@ -115,7 +107,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--bayer", default=PHASES[0], metavar="PHASE", help=f"of its Bayer pattern: {', '.join(PHASES)} (default first)"
     )
-    add_crop_argument(parser, "it is kept in FILE.npz, and unknown by default")
+    add_picture_arguments(parser, "it is kept in FILE.npz, and unknown by default")
     parser.add_argument("--exposure-us", type=float, metavar="US", help="exposure time of the camera, to be kept")
     parser.add_argument("--out", type=Path, metavar="FILE.npz", help="default: <name of PRESSES>.npz")
     parser.add_argument("--picture", action="store_true", help="draw three of the presses beside FILE.npz, as FILE.png")

@@ -23,6 +23,7 @@ from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.depth.result import Contact, Result, least_area_mm2
 from tactile_depth.pictures.frames import PICTURE_SUFFIXES, read_pictures
 from tactile_depth.pictures.grid_sampler import middle
+from tactile_depth.pictures.pictures import rotated
 
 NAME = "depth"
 HELP = "Write the height maps of pictures: arrays, pictures, meshes and a report."
@@ -73,12 +74,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     """Write all files of all pictures, or none."""
     out: Path = options.out or Path(f"{Path(options.pictures[0]).resolve().stem}-depth")
-    reference = read_reference(options.reference)
+    reference = read_reference(options.reference, options.rotate)
     sensor = choose_sensor(options, reference)
     pipeline = make_pipeline(options, sensor, reference)
     with new_files(out, REPORT, "files") as folder:
         frames, heights = [], []
-        for label, image, captured_at in _pictures(options.pictures):
+        for label, image, captured_at in _pictures(options.pictures, options.rotate):
             result = pipeline(image, name=label, captured_at=captured_at)
             heights.append(result.height_mm.astype(np.float32))
             frames.append((label, middle(image, pipeline.reader.share), result))
@@ -99,13 +100,13 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     print(f"results: {out}; overview.png is for looking: viewers show depth_um.png, which is in micrometres, black")
 
 
-def _pictures(sources: Sequence[str]) -> Iterator[tuple[str, np.ndarray, float | None]]:
+def _pictures(sources: Sequence[str], rotate: int) -> Iterator[tuple[str, np.ndarray, float | None]]:
     """Give pictures with their names and, if it is known, when they were captured."""
     for source in sources:
         labels, images = read_pictures(source, f"PICTURE {source}")
         for label, image in zip(labels, images, strict=True):
             path = Path(source) / label if Path(source).is_dir() else Path(source)
-            yield (source if len(labels) == 1 else f"{source}: {label}"), image, _captured_at(path)
+            yield (source if len(labels) == 1 else f"{source}: {label}"), rotated(image, rotate), _captured_at(path)
 
 
 def _captured_at(path: Path) -> float | None:

@@ -158,8 +158,8 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
         # A wrong input is told before the viewer opens.
         choice = CameraChoice(options.backend, options.picture_size, options.picture_format or "")
         pictures = names if address is None else [options.pictures] if options.pictures else []
-        sources = [stack.enter_context(Source(name, choice)) for name in pictures]
-        references = [None if one.reference == CAPTURE else read_reference(one.reference) for one in each]
+        sources = [stack.enter_context(Source(name, choice, options.rotate)) for name in pictures]
+        references = [None if one.reference == CAPTURE else read_reference(one.reference, one.rotate) for one in each]
         for one in each:
             if one.calibration is not None:
                 require_calibration(one)
@@ -257,6 +257,8 @@ def device_of(options: argparse.Namespace) -> str | None:
             f"{source} sends no camera pictures, by whose light a calibration could be chosen: give "
             "--calibration NAME_OR_FILE"
         )
+    if options.pictures is None and options.rotate:
+        raise InputError(f"--rotate {options.rotate}: {source} takes its own camera's pictures as they are: omit it")
     return address
 
 

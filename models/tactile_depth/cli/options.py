@@ -15,6 +15,7 @@ from tactile_depth.chip.limits import BOUNDARIES, MODELS, Solver
 from tactile_depth.depth.pipeline import AREA_THRESHOLD_MM, ARITHMETICS, THRESHOLD_MM, Pipeline
 from tactile_depth.pictures.frames import read_stack
 from tactile_depth.pictures.identify import identify
+from tactile_depth.pictures.pictures import ROTATIONS, rotated
 from tactile_depth.sensor.built_in import load, read
 from tactile_depth.sensor.calibration_file import BUILT_IN
 from tactile_depth.sensor.presets import SENSOR
@@ -41,7 +42,7 @@ def add_pipeline_arguments(parser: argparse.ArgumentParser, several: bool = Fals
     parser.add_argument(
         "--camera-size", type=size, metavar="WxH", help="pictures that a calibration of format 1 was made from"
     )
-    add_crop_argument(parser, "by default what those of the calibration show")
+    add_picture_arguments(parser, "by default what those of the calibration show")
     parser.add_argument("--grid", type=size, metavar="WxH", help="of the depth map, 128x96 by default for 4:3")
     parser.add_argument(
         "--arithmetic",
@@ -70,11 +71,18 @@ def add_pipeline_arguments(parser: argparse.ArgumentParser, several: bool = Fals
     add_light_and_zero_arguments(parser)
 
 
-def add_crop_argument(parser: argparse.ArgumentParser, otherwise: str) -> None:
-    """Add the option that says what the pictures show."""
+def add_picture_arguments(parser: argparse.ArgumentParser, otherwise: str) -> None:
+    """Add the options that say what the pictures show, and how they lie."""
     conventions = ", ".join(CONVENTIONS)
     what = f"what the pictures show of the sensor's full picture: {conventions}, a share as 0.8, or WIDTH,HEIGHT"
     parser.add_argument("--crop", metavar="CROP", help=f"{what}; {otherwise}")
+    parser.add_argument(
+        "--rotate",
+        type=int,
+        default=0,
+        choices=ROTATIONS,
+        help="degrees, counter-clockwise, to rotate pictures by first",
+    )
 
 
 def add_light_and_zero_arguments(parser: argparse.ArgumentParser) -> None:
@@ -108,9 +116,9 @@ def build_choices(options: argparse.Namespace) -> dict[str, Any]:
     }
 
 
-def read_reference(path: str) -> np.ndarray:
-    """Read pictures without contact, uint8 (frames, rows, columns, 3); raise InputError if that is not possible."""
-    return read_stack(path, f"--reference {path}")
+def read_reference(path: str, rotate: int) -> np.ndarray:
+    """Read and rotate pictures without contact, uint8 (frames, rows, columns, 3); raise InputError if that fails."""
+    return rotated(read_stack(path, f"--reference {path}"), rotate)
 
 
 def choose_sensor(options: argparse.Namespace, reference: np.ndarray) -> Sensor:

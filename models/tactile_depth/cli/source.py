@@ -21,6 +21,7 @@ from tactile_depth.base.errors import InputError
 from tactile_depth.base.npy import is_file
 from tactile_depth.cli.failure import Failure
 from tactile_depth.pictures.frames import PICTURE_SUFFIXES, read_pictures
+from tactile_depth.pictures.pictures import rotated
 
 QUEUED = 4  # frames that wait between the reader and the pipeline
 DEAD_AFTER, DEAD_S = 30, 5.0  # failed reads in a row of a camera, and seconds without a frame
@@ -129,6 +130,8 @@ class Source(AbstractContextManager["Source"]):
         Number or device of a camera, a video file, a picture, a `.npy` of frames, or a folder of pictures.
     choice : CameraChoice
         For a camera.
+    rotate : int
+        Degrees, counter-clockwise, by which frames are rotated.
 
     Attributes
     ----------
@@ -139,8 +142,8 @@ class Source(AbstractContextManager["Source"]):
         OpenCV is missing, or the camera cannot be opened.
     """
 
-    def __init__(self, name: str, choice: CameraChoice = AS_IT_IS) -> None:
-        self.name, self.counts = name, Counts()
+    def __init__(self, name: str, choice: CameraChoice = AS_IT_IS, rotate: int = 0) -> None:
+        self.name, self.counts, self._rotate = name, Counts(), rotate
         self.is_camera = name.isdecimal() or name.startswith(DEVICES)
         items = _camera(name, choice) if self.is_camera else _files(name)
         self._queue: queue.Queue[Frame | InputError | Failure | None] = queue.Queue(QUEUED)
@@ -181,7 +184,7 @@ class Source(AbstractContextManager["Source"]):
         try:
             for index, item in enumerate(items):
                 now = time.time() if self.is_camera else None
-                self._put(item if isinstance(item, InputError) else Frame(index, item, now))
+                self._put(item if isinstance(item, InputError) else Frame(index, rotated(item, self._rotate), now))
                 if self._stopped.is_set():
                     return
         except Failure as error:

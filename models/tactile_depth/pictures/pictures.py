@@ -33,6 +33,14 @@ def is_array(value: object) -> bool:
     return hasattr(value, "__array__") or hasattr(value, "__array_interface__")
 
 
+ROTATIONS = (0, 90, 180, 270)  # degrees, counter-clockwise
+
+
+def rotated(pictures: np.ndarray, degrees: int) -> np.ndarray:
+    """Return pictures (.., rows, columns, 3), rotated counter-clockwise by one of `ROTATIONS`."""
+    return np.ascontiguousarray(np.rot90(pictures, degrees // 90, axes=(-3, -2)))
+
+
 Picture = np.ndarray | HasArray | HasInterface | str | Path
 Pictures = Picture | Sequence[Picture]
 

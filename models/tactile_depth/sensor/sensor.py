@@ -217,12 +217,15 @@ class Sensor(ByValue):
             return 1.0
         rows, columns = (float(length * part) for length, part in zip(picture_size, share, strict=True))
         if abs(columns * self.camera.rows / (rows * self.camera.columns) - 1) > ASPECTS_AGREE:
+            is_turned = abs(rows * self.camera.rows / (columns * self.camera.columns) - 1) <= ASPECTS_AGREE
             kept = "" if share == WHOLE else f", of which {columns:.0f} x {rows:.0f} are used"
             raise InputError(
                 name,
                 f": {picture_size[1]} x {picture_size[0]} pixels (columns x rows){kept}, but {self.name} is calibrated "
                 f"for pictures of {self.camera.columns} x {self.camera.rows}",
-                remedy=(
+                remedy="rotate them by 90 or 270 degrees: --rotate, or numpy.rot90"
+                if is_turned
+                else (
                     *("give pictures of that camera, of the same aspect ratio, say with ", Argument("crop")),
                     " what part of the sensor's full picture they show, or calibrate for this one",
                 ),
