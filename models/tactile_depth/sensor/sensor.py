@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tactile_depth.base import files
 from tactile_depth.base.by_value import ByValue
 from tactile_depth.base.errors import Argument, InputError, Part, is_number
 from tactile_depth.base.npy import Bytes, Floats
@@ -388,6 +387,8 @@ class Sensor(ByValue):
         OSError
             The machine failed, with a full disk for example.
         """
+        from tactile_depth.base import files  # not for who only reads a file
+
         if not isinstance(path, str | Path):
             raise InputError(Argument("path"), f" is a {type(path).__name__}", accepted="the path of an .npz file")
         path = Path(path)
