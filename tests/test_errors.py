@@ -30,8 +30,9 @@ PYTHON = {  # arguments that neither a variable of make nor an option of the com
         "circle",
         "diameter_mm",
         "exposure_lines",
+        "find_circles",
     ),
-    *("flat_field", "frames", "gains", "gradient_limit", "name", "path", "pictures", "pipeline", "register"),
+    *("flat_field", "frames", "gains", "gradient_limit", "name", "path", "pictures", "pipeline", "quiet", "register"),
     *("release_mm", "sensor", "stream", "zero", "zero_offset"),
 }
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Python interface: from pictures to millimetres, equal to the models bit for bit, and near the drawn height."""
 
+import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -348,6 +349,37 @@ def test_captures_take_drift_away(ball: Any, arithmetic: Any) -> None:
     assert np.abs(pipeline(press).height_mm - fresh).max() < 0.02 * fresh.max()
 
 
+def test_a_zero_offset_with_a_contact_is_warned_of(ball: Any) -> None:
+    pipeline = td.Pipeline(ball.sensor, ball.reference)
+    with pytest.warns(td.InputWarning, match="from the reference, as if something touched the gel: capture the zero"):
+        pipeline.capture_zero(ball.image)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", td.InputWarning)
+        touched = pipeline(ball.image)
+    assert "capture the zero offset with the gel untouched" in touched.warnings[0]
+    assert touched.height_error is None
+    pipeline.capture_zero(ball.reference)
+    assert pipeline(ball.image).warnings == ()
+
+
+def test_depths_that_are_clipped_are_warned_of(ball: Any) -> None:
+    right = td.Pipeline(ball.sensor, ball.reference, depth_range_mm=2)(ball.image)
+    assert right.warnings == ()
+    pipeline = td.Pipeline(ball.sensor, ball.reference, depth_range_mm=0.6)
+    with pytest.warns(td.InputWarning, match="of its depths are clipped, .*: give a larger depth_range_mm"):
+        clipped = pipeline(np.stack([ball.image, ball.reference]))
+    assert clipped.height_mm.max() < 0.9 * right.height_mm.max()
+    assert (len(clipped.warnings[0]), clipped.warnings[1], clipped[0].height_error) == (1, (), None)
+
+
+def test_a_stream_takes_a_path(ball: Any, tmp_path: Path) -> None:
+    Image.fromarray(ball.image).save(tmp_path / "press.png")
+    pipeline = td.Pipeline(ball.sensor, ball.reference)
+    for path in (tmp_path, str(tmp_path / "press.png")):
+        (result,) = pipeline.stream(path)
+        assert (result.codes == next(pipeline.stream([ball.image])).codes).all()
+
+
 def test_a_capture_takes_a_power_of_two_of_pictures(small: Any, ball: Any) -> None:
     three = np.stack([ball.reference] * 3)
     for capture in (small.capture_reference, small.capture_zero):
@@ -460,7 +492,7 @@ def test_a_pipeline_that_cannot_be_is_refused(ball: Any, choices: Any, message: 
         (np.zeros((240, 240, 3), np.uint8), "240 x 240 pixels .* calibrated for pictures of 320 x 240"),
         (np.zeros((12, 16, 3), np.uint8), "are smaller than the grid of 32 x 24"),
         ("none.png", "none.png: no such file or folder"),
-        (None, "pictures are NoneType: accepted is a uint8 array or a path"),
+        (None, "pictures are NoneType: accepted is a uint8 array or a path, or a sequence of them$"),
         (iter([]), "pictures are list_iterator: accepted is .*: give them to `stream`"),
         ([], "pictures are empty: accepted is one picture or more"),
         ([np.zeros((240, 320), np.uint8)], r"pictures\[0\] are uint8 \(240, 320\): accepted is uint8"),

@@ -307,6 +307,22 @@ def test_a_folder_without_background_or_table_is_named(folder: Path) -> None:
     assert "no presses.csv in it: give a folder with background.png" in refused(lambda: gather(absent))
 
 
+def test_a_table_without_presses_or_with_a_part_of_the_circles_is_refused(folder: Path) -> None:
+    write_table(folder, [])
+    assert "no presses: give pictures of ball presses" in refused(lambda: gather(folder))
+    write_table(folder, table_rows(), ["frame", "diameter_mm", "centre_x_px", "contact_radius_px"])
+    assert "no column centre_y_px: give all of centre_x_px, centre_y_px" in refused(lambda: gather(folder))
+
+
+def test_words_are_no_flags_and_text_is_no_diameter(folder: Path) -> None:
+    sensor: Any = td.sample().sensor
+    word: Any = "no"
+    assert "find_circles=no: accepted are True" in refused(lambda: td.fit(folder, find_circles=word))
+    assert "quiet=no: accepted are True" in refused(lambda: td.fit(folder, quiet=word))
+    assert "find_circles=no: accepted are True" in refused(lambda: td.evaluate(sensor, folder, find_circles=word))
+    assert "diameter_mm is no: accepted is a number" in refused(lambda: td.BallPress("a.png", word))
+
+
 @pytest.mark.parametrize(
     "table",
     [

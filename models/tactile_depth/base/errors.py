@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterable
 from numbers import Real
 from typing import Any, NamedTuple
 
+import numpy as np
+
 LONGEST = 1000  # characters
 
 
@@ -53,7 +55,7 @@ class _Message(Exception):
         self.argument: str | None = named.name or None
         self.value: Any = None if named.value is ... else named.value
         self.accepted = accepted if isinstance(accepted, str | range | None) else tuple(accepted)
-        mend: tuple[Part, ...] = (remedy,) if isinstance(remedy, str) else tuple(remedy)
+        mend: tuple[Part, ...] = (remedy,) * bool(remedy) if isinstance(remedy, str) else tuple(remedy)
         self.remedy = "".join(map(str, mend))
         if isinstance(self.accepted, range):
             parts += (f": accepted are {self.accepted[0]} to {self.accepted[-1]}",)
@@ -85,6 +87,12 @@ def warn(warning: InputWarning) -> None:
     while frame.f_back is not None and os.path.abspath(frame.f_code.co_filename).startswith(inside):
         frame, level = frame.f_back, level + 1
     warnings.warn(warning, stacklevel=level)
+
+
+def require_flag(argument: Argument) -> None:
+    """Raise InputError unless the value is True or False: a word such as "no" would count as True."""
+    if not isinstance(argument.value, bool | np.bool_):
+        raise InputError(argument, accepted=("True", "False"))
 
 
 def one_of(argument: Argument, accepted: Iterable[str]) -> None:

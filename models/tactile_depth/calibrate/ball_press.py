@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_depth.base.by_value import ByValue
-from tactile_depth.base.errors import Argument, InputError
+from tactile_depth.base.errors import Argument, InputError, is_number
 from tactile_depth.pictures.pictures import is_array
 
 LARGEST_NUMBER = 1e6  # millimetres or pixels
@@ -64,8 +64,8 @@ class BallPress(ByValue):
         if is_array(self.image):
             object.__setattr__(self, "image", np.asarray(self.image))
         for length in (Argument("diameter_mm", self.diameter_mm), Argument("ball_radius_px", self.ball_radius_px)):
-            if length.value is not None and not 0 < length.value < LARGEST_NUMBER:
-                raise InputError(Argument(length.name), f" is {length.value:g}", accepted="a number above 0")
+            if length.value is not None and not (is_number(length.value) and 0 < length.value < LARGEST_NUMBER):
+                raise InputError(Argument(length.name), f" is {length.value}", accepted="a number above 0")
         if self.circle is None:
             return
         try:

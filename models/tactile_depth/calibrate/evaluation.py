@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from tactile_depth.base.by_value import ByValue
-from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
+from tactile_depth.base.errors import Argument, InputError, InputWarning, require_flag, warn
 from tactile_depth.calibrate.presses import (
     BACKGROUND,
     NOTHING_TOUCHES,
@@ -224,6 +224,7 @@ def evaluate(
     InputError
         The pictures do not fit the sensor's camera, or no complete press is left.
     """
+    require_flag(Argument("find_circles", find_circles))
     pictures = gather(presses, background)
     rows, columns = pictures.background.shape[:2]
     sensor, share = shown(sensor, crop)

@@ -33,7 +33,7 @@ from warnings import warn
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError, InputWarning
+from tactile_depth.base.errors import Argument, InputError, InputWarning, require_flag
 from tactile_depth.calibrate.evaluation import Evaluation, Score, evaluation_of, scores_of
 from tactile_depth.calibrate.judgement import judge
 from tactile_depth.calibrate.presses import (
@@ -154,6 +154,8 @@ def fit(
     ------
     InputError
     """
+    require_flag(Argument("find_circles", find_circles))
+    require_flag(Argument("quiet", quiet))
     wanted = check_arguments(models, bits, pitch_mm, exposure_us)
     pictures = gather(presses, background, rotate)
     height, aspect = pixel_size(pitch_mm)

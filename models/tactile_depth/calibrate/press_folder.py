@@ -52,6 +52,8 @@ def read_presses(folder: Path, table: Path | None = None) -> tuple[list[BallPres
             f"{path}: columns {', '.join(head) or 'none'}: needed are frame and diameter_mm, each column once; "
             f"accepted are {', '.join(KNOWN)}"
         )
+    if 0 < len(missing := [name for name in CIRCLE if name not in head]) < len(CIRCLE):
+        raise InputError(f"{path}: no column {', '.join(missing)}: give all of {', '.join(CIRCLE)}, or none")
     presses: dict[str, BallPress] = {}
     notes = []
     if unknown := [name for name in head if name not in KNOWN]:

@@ -321,11 +321,14 @@ def gather(
         if not is_sequence or not all(isinstance(press, BallPress) for press in presses):
             raise InputError(Argument("presses"), accepted=("the path of a folder", "or a sequence of BallPress"))
         if background is None:
-            remedy = "give a picture of the sensor without contact"
-            raise InputError(BACKGROUND, " is missing", remedy=remedy)
+            raise InputError(BACKGROUND, " is missing", remedy="give a picture of the sensor without contact")
         name = "fitted"
         numbered = [f"press {n}" if isinstance(p.image, np.ndarray) else str(p.image) for n, p in enumerate(presses, 1)]
         listed = [replace(press, name=press.name or other) for press, other in zip(presses, numbered, strict=True)]
+    if not listed:
+        raise InputError(
+            f"{name}: no presses{''.join(f': {note}' for note in notes[:1])}: give pictures of ball presses"
+        )
     names = [press.name for press in listed]
     if repeated := next((one for one in names if names.count(one) > 1), None):
         problem = f": the name {repeated} stands twice"

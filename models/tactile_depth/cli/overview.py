@@ -107,6 +107,8 @@ def draw_circles(pictures: PressPictures, presses: GridPresses) -> Image.Image:
             y = (circle.y + 0.5 + circle.radius * np.sin(angle)) / rows
             curves = [(OUTSIDE if press.name in doubtful else INK, np.stack((x, y)).clip(0, 1))]
         panels.append(Panel(press.name, pixels, curves=curves))
+    if not panels:
+        raise InputError(f"{presses.name}: no press can be read: give pictures of ball presses")
     lines = [panels[first : first + IN_A_ROW] for first in range(0, len(panels), IN_A_ROW)]
     size_mm = (columns * presses.pitch_mm * presses.aspect, rows * presses.pitch_mm)
     notes = [(INK, "circle"), (OUTSIDE, "beside the change of colour"), (BACKGROUND, "no circle: left out")]

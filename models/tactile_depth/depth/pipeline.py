@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
+from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, require_flag, warn
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration, ExactConfiguration
 from tactile_depth.chip.contact.contact_events import Settings
@@ -32,9 +32,9 @@ from tactile_depth.pictures.frames import camera_scale
 from tactile_depth.pictures.grid_sampler import picture_grid
 from tactile_depth.pictures.light_check import doubts_of
 from tactile_depth.pictures.picture_check import Checked, check_picture
-from tactile_depth.pictures.pictures import Picture, Pictures
+from tactile_depth.pictures.pictures import Picture, Pictures, pictures_of
 from tactile_depth.pictures.reader import Reader, power_of_two_of
-from tactile_depth.pictures.reference_check import check_reference
+from tactile_depth.pictures.reference_check import check_reference, check_zero
 from tactile_depth.sensor.presets import SENSOR
 from tactile_depth.sensor.sensor import Sensor
 from tactile_depth.sensor.view import Crop, shown
@@ -144,6 +144,7 @@ class Pipeline:
         self._reader = Reader(sensor, self._grid, share)
         self._rest: Rest | None = None
         self._doubts: tuple[Doubt, ...] = ()
+        self._zero_doubts: tuple[Doubt, ...] = ()
         pitch_mm = sensor.pixel_pitch_mm * camera_scale(sensor, kind(**shape))
         rest = None if reference is None else self._rest_of(reference, REFERENCE, LARGEST_LOG2)
         self._sensor = replace(sensor, pixel_pitch_mm=pitch_mm, reference=rest)
@@ -224,14 +225,14 @@ class Pipeline:
             self.sensor.steepest(self.config),
             self.sensor.height_errors.get(self.config.gradient_model),
             streamed,
-            self._warned(checked, gains, depth_mm, slopes, None if stream is None else stream.warned),
+            self._warned(checked, gains, depth_mm, slopes, monitor, None if stream is None else stream.warned),
             self.sensor.pixel_aspect,
             captured,
         )
         return result[0] if single else result
 
     def stream(
-        self, pictures: Iterable[Picture | tuple[Picture, float]], stream: Stream | None = None
+        self, pictures: str | Path | Iterable[Picture | tuple[Picture, float]], stream: Stream | None = None
     ) -> Iterator[Result]:
         """Give the depth of the pictures of a stream, as the hardware does.
 
@@ -240,7 +241,7 @@ class Pipeline:
 
         Parameters
         ----------
-        pictures : iterable of pictures, each as for a call, or of pairs of a picture and its `captured_at`
+        pictures : path, or iterable of pictures, each as for a call, or of pairs of a picture and its `captured_at`
         stream : Stream, optional
             The stream, `new_stream`, that the pictures continue.
 
@@ -255,6 +256,8 @@ class Pipeline:
             Once for each kind of doubt, and for the first picture that is left out.
         """
         stream = self.new_stream() if stream is None else stream
+        if isinstance(pictures, str | Path):
+            pictures = (picture for _, picture in pictures_of(pictures, PICTURES)[0])
         for item in pictures:
             picture, captured_at = timed(item)
             stream.taken += 1
@@ -368,6 +371,7 @@ class Pipeline:
         require_zero_offset(self.config)
         frames, *_ = self._checked(pictures, PICTURES)
         power_of_two_of(len(frames), LARGEST_LOG2, PICTURES)
+        self._zero_doubts = check_zero(frames, self._rest, PICTURES)
         self._use_zero(frames)
         self._settle(frames)
 
@@ -458,17 +462,26 @@ class Pipeline:
         gains: np.ndarray | None,
         depth_mm: np.ndarray,
         slopes: np.ndarray,
+        monitor: Monitor,
         warned: Warned | None,
     ) -> tuple[tuple[str, ...], ...]:
         """Return for each picture why its heights are uncertain; warn of it, and in a stream only of what is new."""
         light = [None] * len(checked) if gains is None else gains * LIGHT_GAIN.lsb
+        limit = 2 ** (self.config.depth.width - 1) - 1 - int(np.abs(self._zero).max())  # a clipped code reaches it
+        limit_mm = limit * self.depth_lsb_mm if monitor.saturations else np.inf
         texts = []
         for each, gain, depth, slope in zip(checked, light, depth_mm, slopes, strict=True):
-            steps = slope * self.pixel_pitch_mm if self.config.neumann else None
-            doubts = doubts_of(each, gain, depth, self.threshold_mm, steps)
+            # A contact in the zero offset would be a part of the slopes that no surface has.
+            steps = slope * self.pixel_pitch_mm if self.config.neumann and not self._zero_doubts else None
+            doubts = doubts_of(each, gain, depth, self.threshold_mm, steps, limit_mm)
             tell(doubts if warned is None else warned.new(doubts))
-            texts.append(tuple(map(str, (*self._doubts, *doubts))))
+            texts.append(tuple(map(str, (*self._doubts, *self._zero_doubts, *doubts))))
         return tuple(texts)
+
+
+def is_whole(number: object) -> bool:
+    """Return True for a whole number."""
+    return isinstance(number, int | np.integer) and not isinstance(number, bool)
 
 
 def require_flat_field(config: Configuration) -> None:
@@ -483,14 +496,3 @@ def require_zero_offset(config: Configuration) -> None:
     if not config.zero_offset:
         problem = ": this pipeline has no zero offset"
         raise InputError(PICTURES, problem, remedy=("make it with ", Argument("zero_offset", True)))
-
-
-def is_whole(number: object) -> bool:
-    """Return True for a whole number."""
-    return isinstance(number, int | np.integer) and not isinstance(number, bool)
-
-
-def require_flag(argument: Argument) -> None:
-    """Raise InputError unless the value is True or False: a word such as "no" would count as True."""
-    if not isinstance(argument.value, bool | np.bool_):
-        raise InputError(argument, accepted=("True", "False"))

@@ -10,14 +10,14 @@ from typing import cast
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, warn
+from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, require_flag, warn
 from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gains, require_light
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.depth.pipeline import PICTURES, Pipeline, require_flag, require_flat_field, require_zero_offset
+from tactile_depth.depth.pipeline import PICTURES, Pipeline, require_flat_field, require_zero_offset
 from tactile_depth.depth.result import Recorder, thresholds_of
 from tactile_depth.device import captures
 from tactile_depth.device.addresses import open_channel
@@ -33,7 +33,7 @@ from tactile_depth.pictures.frames import GREY
 from tactile_depth.pictures.picture_check import check_picture
 from tactile_depth.pictures.pictures import Picture, Pictures, is_array
 from tactile_depth.pictures.reader import power_of_two_of
-from tactile_depth.pictures.reference_check import check_reference
+from tactile_depth.pictures.reference_check import check_reference, check_zero
 
 CAPTURED = 8
 """Pictures of the device's camera that a capture takes the mean of."""
@@ -182,6 +182,7 @@ class Device(AbstractContextManager["Device"]):
             return
         taken = np.stack([frame for _, frame in self.pipeline.reader.pictures(pictures, PICTURES)[0]])
         power_of_two_of(len(taken), LARGEST_LOG2, PICTURES)
+        check_zero(taken, self.pipeline.rest, PICTURES)
         gains = None
         if config.light_gains and self._reference_gains is not None:
             gains = captures.gains_of(taken, self._reference_gains, config)

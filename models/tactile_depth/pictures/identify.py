@@ -49,8 +49,9 @@ def identify(reference: np.ndarray | HasArray | HasInterface, *, crop: Crop | No
         try:
             seen.zoom((rows, columns), share=share)
         except InputError:
-            camera = sensor.camera
-            reasons.append(f"{sensor.name} takes {camera.columns} x {camera.rows}, this has {columns} x {rows} pixels")
+            takes = f"{sensor.name} takes {sensor.camera.columns} x {sensor.camera.rows}"
+            used = "" if crop is None else f", of which {cut.shape[1]} x {cut.shape[0]} are used"
+            reasons.append(f"{takes}, this has {columns} x {rows} pixels{used}")
             continue
         if seen.untouched is not None and share_shown(cut, seen.untouched) != 1:
             return sensor  # in another view, which a pipeline names
@@ -63,8 +64,9 @@ def identify(reference: np.ndarray | HasArray | HasInterface, *, crop: Crop | No
         elif nearest is None or difference < nearest[0]:
             nearest = difference, sensor
     if nearest is None:
+        correct = () if crop is None else (", or correct ", Argument("crop", crop), ", the share that pictures show")
         raise InputError(
             f"the reference looks like no sensor with a built-in calibration ({'; '.join(reasons)})",
-            remedy=("give the ", Argument("calibration"), " of the sensor that took it"),
+            remedy=("give the ", Argument("calibration"), " of the sensor that took it", *correct),
         )
     return nearest[1]

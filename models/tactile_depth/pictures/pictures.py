@@ -52,8 +52,11 @@ def pictures_of(given: Pictures, name: Part) -> tuple[Iterator[tuple[Part, np.nd
     """
     if isinstance(given, str | Path):
         labels, read = read_pictures(given)
-        named = ((f"{given}: {label}", picture) for label, picture in zip(labels, read, strict=True))
-        return named, Path(given).is_file() and labels == (Path(given).name,)
+        single = Path(given).is_file() and labels == (Path(given).name,)
+        named = (
+            (str(given) if single else f"{given}: {each}", image) for each, image in zip(labels, read, strict=True)
+        )
+        return named, single
     if is_array(given):
         array = np.asarray(given)
         if array.dtype != np.uint8 or array.ndim not in (3, 4) or array.shape[-1] != 3 or not array.size:

@@ -7,7 +7,7 @@ import numpy as np
 
 from tactile_depth.base.errors import Argument, Part
 from tactile_depth.chip.resampling import WHOLE, Share
-from tactile_depth.pictures.blocks import block_means, differences, largest, medians, smooth
+from tactile_depth.pictures.blocks import Rest, block_means, differences, largest, medians, smooth
 from tactile_depth.pictures.doubts import REFERENCE, TAKE_ANOTHER, Doubt, UnusablePicture, clipped, doubt, tell
 from tactile_depth.pictures.exchanges import CORRECT_IT, DARKEST, exchange_of
 from tactile_depth.pictures.picture_check import is_grey
@@ -68,17 +68,43 @@ def _contact(sensor: Sensor, rest: np.ndarray, blocks: np.ndarray, name: Part) -
     if sensor.untouched is None:
         colours = np.log(blocks)
         colours -= colours.mean(axis=-1, keepdims=True)
-        rough, limit, of = largest(np.abs(colours - smooth(colours, SMOOTH_DEGREE))), ROUGH, ""
+        differs = float(np.percentile(largest(np.abs(colours - smooth(colours, SMOOTH_DEGREE))), 99))
+        is_touched, of = differs > ROUGH, ""
     else:
-        ratios = np.log(np.maximum(equal_areas(rest), 1) / np.maximum(sensor.untouched, 1))
-        ratios -= medians(ratios)
-        rough = largest(np.abs(_averaged(ratios - smooth(ratios, DENT_DEGREE, rounds=6, scale=SMOOTH_SCALE))))
-        limit, of = DENT + DENT_OF_MEDIAN * float(np.median(rough)), " from the calibration's own picture"
-    differs = float(np.percentile(rough, 99))
-    if differs <= limit:
+        differs, is_touched = _dents(equal_areas(rest), sensor.untouched)
+        of = " from the calibration's own picture"
+    if not is_touched:
         return []
     text = f": it is not smooth (differences of {100 * differs:.0f} %{of}), as if something touched the gel"
     return [doubt("contact in the reference", name, text, remedy=TAKE_ANOTHER)]
+
+
+def check_zero(frames: np.ndarray, rest: Rest | None, name: Part) -> tuple[Doubt, ...]:
+    """Check pictures for the zero offset; warn, and return a doubt, if something touches that does not in `rest`.
+
+    Parameters
+    ----------
+    frames : uint8 array (frames, rows, columns, 3)
+        On the grid, as the reference `rest` is.
+    """
+    if rest is None:
+        return ()
+    differs, is_touched = _dents(equal_areas(frames.mean(axis=0)), equal_areas(rest.pixels))
+    if not is_touched:
+        return ()
+    text = f": differences of {100 * differs:.0f} % from the reference, as if something touched the gel"
+    doubts = (doubt("contact in the zero offset", name, text, remedy="capture the zero offset with the gel untouched"),)
+    tell(doubts)
+    return doubts
+
+
+def _dents(areas: np.ndarray, own: np.ndarray) -> tuple[float, bool]:
+    """Return how far a picture is from another of untouched gel, both in areas, and True for more than noise leaves."""
+    ratios = np.log(np.maximum(areas, 1) / np.maximum(own, 1))
+    ratios -= medians(ratios)
+    rough = largest(np.abs(_averaged(ratios - smooth(ratios, DENT_DEGREE, rounds=6, scale=SMOOTH_SCALE))))
+    differs = float(np.percentile(rough, 99))
+    return differs, differs > DENT + DENT_OF_MEDIAN * float(np.median(rough))
 
 
 def _averaged(values: np.ndarray) -> np.ndarray:

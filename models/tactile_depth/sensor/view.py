@@ -19,7 +19,7 @@ CONVENTIONS = {"none": 1.0, "gs_sdk": 5 / 7, "gsrobotics": 0.70}
 SMALLEST_VIEW = 0.05
 ACCEPTED = (
     *CONVENTIONS,
-    f"or the share of the full picture's width and height that pictures show, {SMALLEST_VIEW:g} to 1",
+    f"or the share of the full picture's width and height that pictures show, {SMALLEST_VIEW:g} to 1, as 0.7",
 )
 
 VIEWS_AGREE = 0.01  # largest relative difference between two values of one view: 5/7 is also written 0.71
