@@ -193,7 +193,10 @@ def test_a_sensor_is_identified_by_its_lighting(mini: Any, zoom: float) -> None:
         (lambda picture: np.full_like(picture, 128), "its lighting differs from gelsight-mini by 25 %"),
         (lambda picture: picture[..., ::-1], "its lighting differs from gelsight-mini"),
         (lambda picture: np.rot90(picture, 2), "its lighting differs from gelsight-mini"),
-        (lambda picture: np.rot90(picture), "gelsight-mini takes 320 x 240, this has 240 x 320 pixels"),
+        (
+            lambda picture: np.rot90(picture),
+            "takes 320 x 240, this has 240 x 320 pixels.*rotate all pictures by 90 or 270",
+        ),
         (lambda picture: picture[..., 0], r"the reference is uint8 \(240, 320\)"),
         (lambda picture: picture[:2], r"the reference is uint8 \(2, 320, 3\)"),
         (lambda picture: picture / 255, "the reference is float64"),
@@ -204,6 +207,13 @@ def test_a_sensor_is_identified_by_its_lighting(mini: Any, zoom: float) -> None:
 def test_a_picture_of_no_known_sensor_is_not_identified(mini: Any, change: Any, reason: Any) -> None:
     with pytest.raises(InputError, match=reason):
         identify(change(rest_of(mini)))
+
+
+def test_a_crop_of_what_is_cut_off_is_named(mini: Any) -> None:
+    with pytest.raises(InputError, match=r"or correct crop=0\.15, what the pictures show"):
+        identify(rest_of(mini), crop=0.15)
+    with pytest.raises(InputError, match=r"of which 320 x 172 are used.*or correct crop=\(0\.7, 1\)"):
+        identify(rest_of(mini), crop=(0.7, 1))
 
 
 @needs_real_data

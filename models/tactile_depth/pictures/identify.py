@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError
-from tactile_depth.pictures.exchanges import exchange_of
+from tactile_depth.base.errors import Argument, InputError, Part
+from tactile_depth.pictures.exchanges import CORRECT_IT, exchange_of
 from tactile_depth.pictures.grid_sampler import middle
 from tactile_depth.pictures.pictures import HasArray, HasInterface, is_array
 from tactile_depth.pictures.view_check import share_shown
@@ -40,6 +40,9 @@ def identify(reference: np.ndarray | HasArray | HasInterface, *, crop: Crop | No
         raise InputError("the ", Argument("reference"), f" is {reference.dtype} {reference.shape}", accepted=PICTURE)
     rows, columns = reference.shape[:2]
     nearest, reasons = None, []
+    mend: tuple[Part, ...] = (
+        () if crop is None else (", or correct ", Argument("crop", crop), ", what the pictures show")
+    )
     for sensor in map(load, BUILT_IN):
         if sensor.camera is None or sensor.lighting is None:
             continue
@@ -52,11 +55,14 @@ def identify(reference: np.ndarray | HasArray | HasInterface, *, crop: Crop | No
             takes = f"{sensor.name} takes {sensor.camera.columns} x {sensor.camera.rows}"
             used = "" if crop is None else f", of which {cut.shape[1]} x {cut.shape[0]} are used"
             reasons.append(f"{takes}, this has {columns} x {rows} pixels{used}")
+            if (columns < rows) != (sensor.camera.columns < sensor.camera.rows):
+                mend = (", or rotate all pictures by 90 or 270 degrees: --rotate, or numpy.rot90",)
             continue
         if seen.untouched is not None and share_shown(cut, seen.untouched) != 1:
             return sensor  # in another view, which a pipeline names
         exchange = exchange_of(seen, cut)
         if difference > LIGHTING_AGREES or exchange:
+            mend = (f", or {CORRECT_IT}",) if exchange else mend
             reasons.append(
                 f"its lighting differs from {sensor.name} by {100 * difference:.0f} %, accepted are "
                 f"{100 * LIGHTING_AGREES:.0f} %{exchange and f', but {exchange}'}"
@@ -64,9 +70,8 @@ def identify(reference: np.ndarray | HasArray | HasInterface, *, crop: Crop | No
         elif nearest is None or difference < nearest[0]:
             nearest = difference, sensor
     if nearest is None:
-        correct = () if crop is None else (", or correct ", Argument("crop", crop), ", the share that pictures show")
         raise InputError(
             f"the reference looks like no sensor with a built-in calibration ({'; '.join(reasons)})",
-            remedy=("give the ", Argument("calibration"), " of the sensor that took it", *correct),
+            remedy=("give the ", Argument("calibration"), " of the sensor that took it", *mend),
         )
     return nearest[1]
