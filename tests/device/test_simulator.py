@@ -77,6 +77,19 @@ def test_the_command_of_the_repository(tmp_path: Path) -> None:
     assert simulator.command_of(tmp_path, pins=False)[0] == command[:-1]
 
 
+def test_another_python_of_a_clone_takes_that_of_make_setup(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(simulator, "find_spec", lambda name: None)
+    own = tmp_path / ".venv" / "bin" / "python"
+    for path in (tmp_path / "commands" / "run" / "device_sim.py", own):
+        path.parent.mkdir(parents=True)
+        path.touch()
+    monkeypatch.setattr(td, "__file__", str(tmp_path / "models" / "tactile_depth" / "__init__.py"))
+    assert simulator.command_of(tmp_path, pins=False)[0][0] == str(own)
+    own.unlink()
+    with pytest.raises(td.DeviceError, match=r"needs a clone .*: run `make setup` in a clone"):
+        simulator.command_of(tmp_path, pins=False)
+
+
 def test_a_wheel_has_no_simulator(steady: td.Pipeline, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(td, "__file__", str(tmp_path / "lib" / "tactile_depth" / "__init__.py"))
     with pytest.raises(td.DeviceError, match="a simulated device needs a clone of the repository with its RTL: run"):

@@ -9,6 +9,7 @@ import select
 import subprocess
 import sys
 import threading
+from importlib.util import find_spec
 from pathlib import Path
 
 import tactile_depth
@@ -39,13 +40,15 @@ def command_of(folder: Path, pins: bool) -> tuple[list[str], Path]:
     Raises
     ------
     DeviceError
-        This package is not in a clone of the repository.
+        This package is not in a clone of the repository, or the clone is not set up.
     """
     root = Path(tactile_depth.__file__).resolve().parents[2]
-    if not (root / "commands" / "run" / "device_sim.py").is_file():
+    # The simulator needs packages that `make setup` installs; another Python, as one with a viewer, may lack them.
+    python = sys.executable if find_spec("cocotb_tools") else str(root / ".venv" / "bin" / "python")
+    if not (root / "commands" / "run" / "device_sim.py").is_file() or not Path(python).exists():
         problem = "a simulated device needs a clone of the repository with its RTL"
-        raise DeviceError(problem, remedy="run make setup in a clone, and use the Python of its .venv")
-    return [sys.executable, "-m", COMMAND, str(folder), *([PINS] if pins else [])], root
+        raise DeviceError(problem, remedy="run `make setup` in a clone, and use the Python of its .venv")
+    return [python, "-m", COMMAND, str(folder), *([PINS] if pins else [])], root
 
 
 class Simulator:
