@@ -62,6 +62,14 @@ def grey(picture: np.ndarray) -> np.ndarray:
     return np.repeat(picture.mean(axis=-1, keepdims=True), 3, axis=-1).astype(np.uint8)
 
 
+def saturated(share: float) -> Edit:
+    def edit(picture: np.ndarray) -> np.ndarray:
+        level = picture.mean(axis=-1, keepdims=True)
+        return np.clip(np.rint(level + share * (picture - level)), 0, 255).astype(np.uint8)
+
+    return edit
+
+
 def ordered(*order: int) -> Edit:
     return lambda picture: np.ascontiguousarray(picture[..., order])
 
@@ -109,6 +117,7 @@ DOUBTED: dict[str, tuple[Edit, str]] = {
     "lower side brighter": (in_light(1 + 0.02 * Y), "changes across it by"),
     "one lamp": (in_light(1 + 0.03 * X * (1, 0, 0)), "changes across it by [56] % in red, 0 % in green, 0 % in blue"),
     "vignette": (in_light(1 - 0.06 * (X * X + Y * Y)), "changes across it by"),
+    "saturated": (saturated(1.3), "changes across it by"),
     "30 % across": (in_light(1 + 0.3 * X), "changes across it by"),
     "a quarter of the light": (in_light(0.25), "differs from that of the reference by -75 % in red, -75 % in green"),
     "a little clipped": (in_light(1.62), "of its pixels are clipped, heights there are too small"),

@@ -19,6 +19,9 @@ from tactile_depth.pictures.picture_check import Checked
 # are near it: right 0.80 and more, with presses twice as large 0.5; of less, gel and contact are not told apart.
 PLANE, QUADRATIC = 0.014, 0.05
 NEAR, NEAR_SHARE = 0.025, 0.6
+# A larger change counts if fewer blocks are near. Right, with 0.4 and more near: 0.22 at most, presses enlarged 2.5
+# times; colours of 1.3 times the saturation of the reference's: 0.33 and more, with 0.52 to 0.69 near.
+GROSS, GROSS_NEAR_SHARE = 0.27, 0.4
 # The same where no block is far from the fit: nothing touches, but depth is read. Largest distance, right, with noise
 # of 3 grey levels 0.014, as JPEG of quality 75 0.034; presses 0.25 and more. Plane, right: 0.0016, as JPEG 0.0034;
 # 0.5 % up at one side and down at the other: 0.0089 and more. Quadratic: 0.0029, as JPEG 0.0058.
@@ -135,7 +138,7 @@ def _uneven(difference: np.ndarray, touches: bool) -> np.ndarray | None:
         untouched = touches and off.max() < UNTOUCHED
         if change.max() < (SLIGHT_PLANE if untouched else PLANE):  # a quadratic so small leaves no plane that is larger
             return None
-        is_sure = untouched or float((off < NEAR).mean()) > NEAR_SHARE
+        is_sure = untouched or float((off < NEAR).mean()) > (GROSS_NEAR_SHARE if change.max() > GROSS else NEAR_SHARE)
         if change.max() > (slight if untouched else limit) and is_sure:
             return change
     return None
