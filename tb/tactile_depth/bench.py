@@ -16,7 +16,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.chip.video.frame_guard import Word
+from tactile_depth.chip.video.frame_guard import Word, frame_guard
 from tactile_depth.sensor.synthetic import synthetic
 from tb import functional_coverage
 from tb.axil import Master, RegisterClient
@@ -110,6 +110,45 @@ class Pipeline:
         self.into.forget()
         self.out.forget()
         self.contact.forget()
+
+    # What a test has reached.
+
+    def phases(self) -> set[str]:
+        """Return the phases of this cycle: a frame may enter while another one leaves."""
+        dut, guarded = self.dut, frame_guard(self.into.words, self.rows, self.columns)
+        broken = [frame.first for frame in guarded.frames if frame.bad]
+        whole = len(guarded.frames) - len(broken)
+        inside, offered = bool(guarded.open), bool(dut.m_axis_tvalid.value)
+        filling = bool(broken) and self.into.clock_count < self.into.taken[broken[-1]] + self.pixels
+        stalled = offered and not dut.m_axis_tready.value
+        left = len(self.out.words) == whole * self.pixels
+        phases = {
+            "mid_frame": inside,
+            "filling": filling,
+            "waiting": not inside and not offered and not left,
+            "output": offered and not stalled,
+            "stalled": stalled,
+            "full": stalled and dut.s_axis_tvalid.value and not dut.s_axis_tready.value,
+            "idle": not inside and not filling and not offered and left,
+        }
+        return {phase for phase, reached in phases.items() if reached}
+
+    def handshakes(self) -> set[tuple[str, str]]:
+        """Return what input and output did in the same cycle since the last check: "idle", "held" or "taken".
+
+        At the input a start of frame, held or taken, is "start".
+        """
+        into, out = (
+            {
+                clock: "held" if clock < taken else "taken"
+                for since, taken in zip(monitor.offered, monitor.taken, strict=True)
+                for clock in range(since, taken + 1)
+            }
+            for monitor in (self.into, self.out)
+        )
+        for word, since, taken in zip(self.into.words, self.into.offered, self.into.taken, strict=True):
+            into |= dict.fromkeys(range(since, taken + 1), "start") if word.user else {}
+        return {(into.get(clock, "idle"), out.get(clock, "idle")) for clock in range(min(into), max(out) + 1)}
 
     # Frames.
 

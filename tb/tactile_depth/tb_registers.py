@@ -217,27 +217,30 @@ async def written_phase_by_phase(dut: Any) -> None:
     pipeline = await started(dut)
     columns, first = pipeline.columns, pipeline.tables.content.entries["gradient"][0].tolist()
 
-    async def write_all() -> None:
+    async def write_all(phase: str) -> None:
+        await RisingEdge(dut.clk)
         for name in WRITABLE:
+            reached = pipeline.phases()
+            assert phase in reached, f"the test is void: {name} is written in {reached}, not {phase}"
             assert await pipeline.write(name, 0) == Response.OKAY, name
         assert await pipeline.tables.write_entry("gradient", 0, *first) == Response.OKAY
 
-    await write_all()
+    await write_all("idle")
     frame, silence = pipeline.frame(), [None] * 100
     sending = cocotb.start_soon(pipeline.send(frame[:columns], silence, frame[columns:]))
     await ClockCycles(dut.clk, columns + 10)
-    await write_all()  # inside the frame
+    await write_all("mid_frame")
     await sending
-    await write_all()  # before its first depth
+    await write_all("waiting")
     await pipeline.until(lambda: pipeline.out.words)
-    await write_all()  # while the frame leaves
+    await write_all("output")
     pipeline.sink.stall(repeat(False))
     await ClockCycles(dut.clk, 4)
-    await write_all()
+    await write_all("stalled")
     pipeline.sink.stall(repeat(True))
     await pipeline.idle()
     await pipeline.send(broken(pipeline.frame(), "row_short", 0, columns)[:1])
-    await write_all()  # while the guard fills it up
+    await write_all("filling")
     await pipeline.check()
 
 

@@ -35,13 +35,13 @@ async def resets(dut: Any, clocks: int, phase: str) -> None:
     pipeline = await started(dut)
     await pipeline.write("THRESHOLD", -5)
     await pipeline.write("CONTROL", CONTROL.pack(hold_contact=1))
-    first = pipeline.pixels + pipeline.random.randrange(pipeline.pixels // 2)
+    first = pipeline.pixels + 1 + pipeline.random.randrange(pipeline.pixels // 2)
     streams: list[Stream] = [pipeline.frame() for _ in range(5)]
     wait = {
         "mid_frame": first,
         "filling": first + 50,
         "waiting": pipeline.pixels + 50,
-        "output": first_depth_latency(pipeline.config) + pipeline.random.randrange(3 * pipeline.pixels),
+        "output": first_depth_latency(pipeline.config) + 1 + pipeline.random.randrange(3 * pipeline.pixels),
         "stalled": first_depth_latency(pipeline.config) + pipeline.pixels,
         "full": first_depth_latency(pipeline.config) + 3 * pipeline.pixels,
         "idle": first_depth_latency(pipeline.config) + pipeline.pixels + 10,
@@ -54,6 +54,9 @@ async def resets(dut: Any, clocks: int, phase: str) -> None:
         pipeline.sink.stall(repeat(False) if phase == "full" else profile("alternate"))
     cocotb.start_soon(pipeline.send(*streams))
     await ClockCycles(dut.clk, wait)
+    if phase == "stalled":
+        await pipeline.until(lambda: phase in pipeline.phases())
+    assert phase in pipeline.phases(), f"the test is void: the phase is {pipeline.phases()}"
     await pipeline.reset(clocks)
     pipeline.sink.stall(repeat(True))
     assert not dut.contact.value
