@@ -48,8 +48,8 @@ override need_icarus := command -v iverilog > /dev/null || { \
 
 # Targets that run the command of their name; those of WITH_ICARUS need Icarus whatever the variables say.
 override WITH_ICARUS := lint mutate netlists quick regress test upsets
-override COMMANDS := $(WITH_ICARUS) asic baselines budget calibrate certify coverage extremes figures formal fpga \
-  presses reflex registers report sign-off sim sweep synth trade tune wrap
+override COMMANDS := $(WITH_ICARUS) asic baselines budget calibrate certify extremes figures formal fpga presses \
+  reflex registers report sign-off sim sweep synth trade tune wrap
 
 .PHONY: help live-test system-tools setup clean $(COMMANDS)
 override .DEFAULT_GOAL := sim
@@ -144,9 +144,6 @@ formal: $(TOOLS)
 
 # Run mutants of cores through their testbenches, and settle survivors by proof. CORE=a,b
 mutate: $(TOOLS)
-
-# Count lines, branches, terms and toggles of hdl/ that the suite reaches, and bins of the fault list.
-coverage: $(TOOLS)
 
 # Flip bits of registers and memories while frames stream through, and count the damage.
 upsets: $(STAMP)

@@ -11,9 +11,6 @@
 #include "Vtop.h"
 #include "verilated.h"
 #include "verilated_vpi.h"
-#if VM_COVERAGE
-#include "verilated_cov.h"
-#endif
 
 extern "C" void vlog_startup_routines_bootstrap();  // of cocotb
 
@@ -89,8 +86,5 @@ int main(int argc, char** argv) {
   }
   top.final();
   VerilatedVpi::callCbs(cbEndOfSimulation);
-#if VM_COVERAGE
-  VerilatedCov::write();
-#endif
   return Verilated::threadContextp()->errorCount() > 0 ? 1 : 0;
 }

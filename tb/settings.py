@@ -30,8 +30,6 @@ class RunSettings:
         Frames or bursts of tests whose cases are rare: ties, values that just clip. 0: 15 in full, otherwise 2.
     power_ups : int
         Random states from which the first structure of a core begins.
-    coverage : bool
-        Verilator counts coverage, in separate builds; all structures run on Verilator.
     cores : tuple of str
         Cores whose files `make lint` checks, and whose netlists `make netlists` runs; none: all.
     level : str
@@ -49,7 +47,6 @@ class RunSettings:
     full: bool = False
     repeats: int = 0
     power_ups: int = 1
-    coverage: bool = False
     cores: tuple[str, ...] = ()
     level: str = ""
     second_client: bool = False

@@ -25,7 +25,7 @@ gc.set_threshold(200_000, 50, 100)
 
 CLOCK_NS = 6
 REGRESS = RUN.full  # play the full product instead of a selection
-# Frames or bursts of tests whose cases are rare: ties, values that just clip. Mutants and coverage get more.
+# Frames or bursts of tests whose cases are rare: ties, values that just clip. Mutants get more.
 MANY = RUN.repeats or (15 if REGRESS else 2)
 
 

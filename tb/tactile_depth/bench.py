@@ -18,7 +18,6 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.video.frame_guard import Word, frame_guard
 from tactile_depth.sensor.synthetic import synthetic
-from tb import functional_coverage
 from tb.axil import Master, RegisterClient
 from tb.axis import AxisMonitor, AxisSink, AxisSource, BeatMonitor, positions, profile, video
 from tb.pixels import pack
@@ -75,7 +74,6 @@ class Pipeline:
         start_clock(self.dut.clk)
         at_every_edge(self.dut.clk, self.contact.watch_contact())
         cocotb.start_soon(self.contact.watch_events())
-        functional_coverage.start(self.dut, self.config, *self.profiles)
         await self.reset(RESET_CLOCKS)
         if device_tables.changed:
             await self.tables.restore()
