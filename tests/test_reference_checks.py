@@ -161,6 +161,38 @@ def test_another_specimen_is_no_other_view(own: Own, seed: int) -> None:
             assert DENTED not in doubts(sensor, other)
 
 
+TONES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+    "gamma 0.9": lambda p: 255 * (p / 255) ** 0.9,
+    "gamma 1.1": lambda p: 255 * (p / 255) ** 1.1,
+    "4 levels brighter": lambda p: p + 4,
+    "10 levels darker": lambda p: p - 10,
+    "more contrast": lambda p: 128 + 1.1 * (p - 128),
+    "less saturation": lambda p: p + 0.1 * (p.mean(axis=-1, keepdims=True) - p),
+    "limited range": lambda p: 16 + p * 219 / 255,
+}
+
+
+@pytest.mark.parametrize("tone", TONES)
+def test_another_tone_of_the_camera_is_warned_of(mini: Own, tone: str) -> None:
+    sensor, background, _ = mini
+    text = "another gamma, brightness, contrast or saturation"
+    assert text in doubts(sensor, levels(TONES[tone](background.astype(np.float64))))
+    for right in (
+        background,
+        levels(0.85 * background),
+        noisy(background),
+        levels(background * (1 + 0.05 * X)),
+    ):
+        assert text not in doubts(sensor, right)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_another_specimen_is_no_other_tone(own: Own, seed: int) -> None:
+    sensor, background, _ = own
+    with contextlib.suppress(UnusablePicture):
+        assert "gamma" not in doubts(sensor, specimen(background, seed))
+
+
 def dented(background: np.ndarray, press: np.ndarray, share: float) -> np.ndarray:
     return levels(background + share * (press.astype(np.float64) - background))
 

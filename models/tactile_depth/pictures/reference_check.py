@@ -11,6 +11,7 @@ from tactile_depth.pictures.blocks import Rest, block_means, differences, larges
 from tactile_depth.pictures.doubts import REFERENCE, TAKE_ANOTHER, Doubt, UnusablePicture, clipped, doubt, tell
 from tactile_depth.pictures.exchanges import CORRECT_IT, DARKEST, exchange_of
 from tactile_depth.pictures.picture_check import is_grey
+from tactile_depth.pictures.tone_check import other_tone
 from tactile_depth.pictures.view_check import other_view
 from tactile_depth.sensor.sensor import LIGHTING_AGREES, TOO_DARK, Sensor, equal_areas, lighting
 
@@ -123,9 +124,12 @@ def _other_lighting(sensor: Sensor, rest: np.ndarray, name: Part, share: Share) 
     own, seen = np.maximum(sensor.lighting, DARKEST), np.maximum(lighting(rest), DARKEST)
     if is_grey(seen, own):
         raise UnusablePicture(name, ": it is grey, its colours do not differ", remedy="take it in colour, as RGB")
+    exchange = exchange_of(sensor, rest)
+    if sensor.untouched is not None and not exchange and (other := other_tone(rest, sensor.untouched, name)):
+        return other
     if other := other_view(sensor, rest, name, share):
         return other
-    if exchange := exchange_of(sensor, rest):
+    if exchange:
         raise UnusablePicture(name, f": {exchange}, by the lighting of {sensor.name}", remedy=CORRECT_IT)
     differs = float(np.sqrt(((seen - own) ** 2).mean()))
     if differs > LIGHTING_AGREES:
