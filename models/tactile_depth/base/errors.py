@@ -9,8 +9,6 @@ from collections.abc import Callable, Iterable
 from numbers import Real
 from typing import Any, NamedTuple
 
-import numpy as np
-
 LONGEST = 1000  # characters
 
 
@@ -91,7 +89,9 @@ def warn(warning: InputWarning) -> None:
 
 def require_flag(argument: Argument) -> None:
     """Raise InputError unless the value is True or False: a word such as "no" would count as True."""
-    if not isinstance(argument.value, bool | np.bool_):
+    from numpy import bool_  # not for a command that has yet to guard itself against signals
+
+    if not isinstance(argument.value, bool | bool_):
         raise InputError(argument, accepted=("True", "False"))
 
 

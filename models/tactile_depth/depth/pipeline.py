@@ -27,7 +27,7 @@ from tactile_depth.depth.result import Recorder, Result, settings_of, thresholds
 from tactile_depth.depth.stream import Stream, timed, times
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.blocks import Rest
-from tactile_depth.pictures.doubts import Doubt, UnusablePicture, Warned, tell
+from tactile_depth.pictures.doubts import Doubt, UnusablePicture, Warned, doubt, tell
 from tactile_depth.pictures.frames import camera_scale
 from tactile_depth.pictures.grid_sampler import picture_grid
 from tactile_depth.pictures.light_check import doubts_of
@@ -401,8 +401,6 @@ class Pipeline:
         thresholds = thresholds_of(self._recorder.settings)
         return write_hardware(Path(folder), self.sensor, self.config, self._zero, self._gains, thresholds)
 
-    # Captures.
-
     def _use_reference(self, frames: np.ndarray | None) -> None:
         if frames is not None:
             require_light(captured_gains(frames, self.config), self.config)
@@ -471,9 +469,14 @@ class Pipeline:
         limit_mm = limit * self.depth_lsb_mm if monitor.saturations else np.inf
         texts = []
         for each, gain, depth, slope in zip(checked, light, depth_mm, slopes, strict=True):
-            # A contact in the zero offset would be a part of the slopes that no surface has.
-            steps = slope * self.pixel_pitch_mm if self.config.neumann and not self._zero_doubts else None
-            doubts = doubts_of(each, gain, depth, self.threshold_mm, steps, limit_mm)
+            # Clipped depths and a contact in the zero offset would be a part of the slopes that no surface has.
+            clipped = int((np.abs(depth) >= limit_mm).sum())
+            has_steps = self.config.neumann and not (clipped or self._zero_doubts)
+            steps = slope * self.pixel_pitch_mm if has_steps else None
+            doubts = doubts_of(each, gain, depth, self.threshold_mm, steps)
+            if clipped and not doubts:
+                text, larger = f": {clipped} of its depths are clipped", ("give a larger ", Argument("depth_range_mm"))
+                doubts = (doubt("clipped depth", each.name, f"{text}, heights there are too small", remedy=larger),)
             tell(doubts if warned is None else warned.new(doubts))
             texts.append(tuple(map(str, (*self._doubts, *self._zero_doubts, *doubts))))
         return tuple(texts)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, Part
+from tactile_depth.base.errors import Part
 from tactile_depth.pictures.blocks import block_means, block_size, largest, medians, smooth, spread
 from tactile_depth.pictures.doubts import LIGHT, TAKE_ANOTHER, Doubt, doubt, percents
 from tactile_depth.pictures.exchanges import CORRECT_IT
@@ -44,7 +44,6 @@ def doubts_of(
     depth_mm: np.ndarray,
     threshold_mm: float,
     slopes_mm: np.ndarray | None = None,
-    limit_mm: float = np.inf,
 ) -> tuple[Doubt, ...]:
     """Return why the heights of a picture are uncertain.
 
@@ -57,17 +56,12 @@ def doubts_of(
         Depth above which a pixel touches.
     slopes_mm : float64 array (rows, columns, 2) or None
         Change of depth from a pixel to the next, in mm; None where the depth is held at the edges.
-    limit_mm : float
-        Depth from which the words of the hardware may have been clipped, either way.
     """
     name, doubts = checked.name, list(checked.doubts)
     if checked.ratios is not None and not any(each.kind == "pattern" for each in doubts):
         doubts += _other_light(checked.ratios, gains, bool(depth_mm.max() > threshold_mm), name)
     if doubts:  # other light explains gel that stands out
         return tuple(doubts)
-    if clipped := int((np.abs(depth_mm) >= limit_mm).sum()):
-        text = f": {clipped} of its depths are clipped, heights there are too small"
-        return (doubt("clipped depth", name, text, remedy=("give a larger ", Argument("depth_range_mm"))),)
     some = depth_mm[::2, ::2].ravel()
     rank = len(some) // 200
     lowest, peak = float(np.partition(some, rank)[rank]), float(some.max())

@@ -8,7 +8,7 @@ import numpy as np
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.limits import COEFFICIENTS, CUBIC
 from tactile_depth.sensor.scenes import GAIN, LIGHTS, REST, SYNTHETIC_PIXEL_PITCH_MM
-from tactile_depth.sensor.sensor import CORRECTIONS, Sensor
+from tactile_depth.sensor.sensor import CORRECTIONS, LIGHTING_BLOCKS, Sensor
 
 LARGEST_SLOPE = 0.99  # largest slope of the table, so that its gradient limit is 1
 
@@ -28,7 +28,9 @@ def synthetic(bits: int = 4) -> Sensor:
     cubic, corrections = np.zeros(CUBIC), np.zeros(CORRECTIONS)
     cubic[..., 0] = coefficients[..., 0]
     pitch = SYNTHETIC_PIXEL_PITCH_MM
-    return Sensor("synthetic", within, pitch, coefficients, LARGEST_SLOPE, cubic=cubic, corrections=corrections)
+    models = (within, pitch, coefficients, LARGEST_SLOPE)
+    light = np.ones((*LIGHTING_BLOCKS, 3))
+    return Sensor("synthetic", *models, cubic=cubic, corrections=corrections, lighting=light)
 
 
 def synthetic_for(config: Configuration) -> Sensor:
