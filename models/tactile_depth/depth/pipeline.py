@@ -437,8 +437,6 @@ class Pipeline:
         slopes = twin.exact_slopes(frames, gains)
         return slopes, twin.solved(slopes) / self.config.depth_lsb_px - self._exact_zero, gains
 
-    # Checks of pictures.
-
     def _rest_of(self, pictures: Pictures, name: Argument, largest_log2: int) -> np.ndarray:
         """Return pictures without contact on the grid, uint8 (frames, rows, columns, 3)."""
         images, frames = self._reader.reference(pictures, name, largest_log2)
