@@ -112,7 +112,7 @@ def test_the_least_area_is_in_pixels_of_the_grid(drawn: DrawnLight) -> None:
 
 
 def test_specks_have_no_values(seen: Any) -> None:
-    """What is above the threshold without a contact stays in the record of the hardware alone."""
+    """Pixels above the threshold without a contact stay in the record of the hardware alone."""
     result = seen(ball(6.31, 0.8))
     assert result.contact.touching
     codes = np.full_like(result.codes, 0)

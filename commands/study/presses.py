@@ -102,7 +102,7 @@ def codes_differ(simulator: str, pipeline: td.Pipeline, picture: np.ndarray, res
 
 @dataclass(frozen=True)
 class Accuracy:
-    """How accurate heights and contacts are: over the presses of a place, means unless the head says otherwise."""
+    """Accuracy of heights and contacts over the presses of a place: means unless the head says otherwise."""
 
     place: Annotated[str, Column("where")]
     presses: Annotated[int, Column("presses")]

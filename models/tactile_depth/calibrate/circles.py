@@ -54,7 +54,7 @@ class Found(NamedTuple):
     stretch: float | None
 
 
-def find_circle(image: np.ndarray, background: np.ndarray, largest_radius: float, aspect: float = 1.0) -> Found | None:
+def find_circle(image: np.ndarray, background: np.ndarray, ball_radius: float, aspect: float = 1.0) -> Found | None:
     """Return the contact's circle in pixels of a picture; None if there is no visible circle.
 
     Larger pictures are averaged to 320 columns first, because lengths and filters below are meant for such pictures.
@@ -62,16 +62,16 @@ def find_circle(image: np.ndarray, background: np.ndarray, largest_radius: float
     Parameters
     ----------
     image, background : uint8 array (rows, columns, 3)
-    largest_radius : float
-        That of the ball, in pixels, down the rows. Circles up to twice as large are found, to tell of a wrong ball.
+    ball_radius : float
+        In pixels, down the rows. Circles up to twice as large are found, to tell of a wrong ball.
     aspect : float
         Width of a pixel over its height.
     """
     rows, columns = image.shape[:2]
     if columns <= MOST_COLUMNS:
-        return _find(image.astype(np.float64), background.astype(np.float64), largest_radius, aspect)
+        return _find(image.astype(np.float64), background.astype(np.float64), ball_radius, aspect)
     plan = resampling((rows, columns), (rows * MOST_COLUMNS // columns, MOST_COLUMNS))
-    found = _find(plan.average(image), plan.average(background), largest_radius / plan.scale, aspect)
+    found = _find(plan.average(image), plan.average(background), ball_radius / plan.scale, aspect)
     if found is None:
         return None
     (x, y, radius), (top, left) = found.circle, plan.origin
@@ -79,7 +79,7 @@ def find_circle(image: np.ndarray, background: np.ndarray, largest_radius: float
     return Found(Circle(x, y, radius * plan.scale), found.stretch)
 
 
-def _find(image: np.ndarray, background: np.ndarray, largest_radius: float, aspect: float) -> Found | None:
+def _find(image: np.ndarray, background: np.ndarray, ball_radius: float, aspect: float) -> Found | None:
     from skimage.transform import resize
 
     if aspect != 1:  # square pixels, from edge to edge
@@ -87,7 +87,7 @@ def _find(image: np.ndarray, background: np.ndarray, largest_radius: float, aspe
         shape = (rows, round(columns * aspect), 3)
         aspect = shape[1] / columns
         image, background = resize(image, shape), resize(background, shape)
-    soft = _soft_circle(image, background, min(2.0 * largest_radius, *image.shape[:2]))
+    soft = _soft_circle(image, background, min(2.0 * ball_radius, *image.shape[:2]))
     found = None if soft is None else _edge_circle(image, background, soft)
     if found is None and soft is not None:
         centre_is_seen = 0 < soft.x < image.shape[1] - STEP and 0 < soft.y < image.shape[0] - STEP

@@ -56,7 +56,7 @@ class Frame:
 
 
 class CameraChoice(NamedTuple):
-    """How to open a camera; what is "" or None is left to the system.
+    """Choices with which a camera is opened; those that are "" or None are left to the system.
 
     Attributes
     ----------

@@ -287,7 +287,7 @@ class Pipeline:
 
     @property
     def reader(self) -> Reader:
-        """What reads pictures onto the grid."""
+        """Reader of pictures onto the grid."""
         return self._reader
 
     @property

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.ndimage import uniform_filter
 
 from tactile_depth.base.errors import Argument, Part
 from tactile_depth.chip.resampling import WHOLE, Share
@@ -103,18 +104,10 @@ def _dents(areas: np.ndarray, own: np.ndarray) -> tuple[float, bool]:
     """Return how far a picture is from another of untouched gel, both in areas, and True for more than noise leaves."""
     ratios = np.log(np.maximum(areas, 1) / np.maximum(own, 1))
     ratios -= medians(ratios)
-    rough = largest(np.abs(_averaged(ratios - smooth(ratios, DENT_DEGREE, rounds=6, scale=SMOOTH_SCALE))))
+    left = ratios - smooth(ratios, DENT_DEGREE, rounds=6, scale=SMOOTH_SCALE)
+    rough = largest(np.abs(uniform_filter(left, (3, 3, 0), mode="nearest")))
     differs = float(np.percentile(rough, 99))
     return differs, differs > DENT + DENT_OF_MEDIAN * float(np.median(rough))
-
-
-def _averaged(values: np.ndarray) -> np.ndarray:
-    """Return means of 3 x 3 areas (rows, columns, 3); those beyond the edge are as the nearest."""
-    for axis in (0, 1):
-        wide = np.pad(values, [(1, 1) if each == axis else (0, 0) for each in range(3)], mode="edge")
-        first, middle, last = (np.take(wide, range(at, at + values.shape[axis]), axis) for at in range(3))
-        values = (first + middle + last) / 3
-    return values
 
 
 def _other_lighting(sensor: Sensor, rest: np.ndarray, name: Part, share: Share) -> list[Doubt]:

@@ -12,7 +12,7 @@ from tactile_depth.chip.resampling import Share
 from tactile_depth.pictures.blocks import RIDGE
 from tactile_depth.pictures.doubts import Doubt, doubt
 from tactile_depth.sensor.sensor import UNTOUCHED_AREAS, Sensor, equal_areas, overlaps
-from tactile_depth.sensor.view import CONVENTIONS
+from tactile_depth.sensor.view import CONVENTIONS, VIEWS_AGREE
 
 # RMS of log(reference / calibration's picture) after scale, shift, and a plane for each colour. The same specimen in
 # another view, in light times 0.8 to 1.1 that changes by 1 % to each side, with noise, as JPEG of quality 85: 0.0064 at
@@ -23,7 +23,6 @@ AS_IS = 0.004  # what is left at scale 1 from which another view can fit; views 
 SAME_VIEW = 0.035  # difference of two views that changes heights by less than 5 %; views of 0.95 are right by 0.002
 SCALES, FARTHEST = (0.4, 2.5), 0.15  # largest scale either way, and largest shift, of the picture
 STARTS, STEPS, SMALLEST_STEP = (1.0, 0.63, 1.6), 8, 1e-3
-CONVENTION_AGREES = 0.01
 FINE = (4 * UNTOUCHED_AREAS[0], 4 * UNTOUCHED_AREAS[1])  # areas of a reference, from which those of a scale are made
 
 
@@ -93,7 +92,7 @@ def other_view(sensor: Sensor, reference: np.ndarray, name: Part, share: Share) 
 def _named(width: float, height: float) -> str | float:
     """Return a view as `crop` takes it: a convention that is near, or shares."""
     name, share = min(CONVENTIONS.items(), key=lambda each: abs(each[1] - width) + abs(each[1] - height))
-    if max(abs(width / share - 1), abs(height / share - 1)) < CONVENTION_AGREES or min(width, height) > 1:
+    if max(abs(width / share - 1), abs(height / share - 1)) < VIEWS_AGREE or min(width, height) > 1:
         return name
     shares = round(min(width, 1), 2), round(min(height, 1), 2)
     return shares[0] if shares[0] == shares[1] else "{:g},{:g}".format(*shares)
