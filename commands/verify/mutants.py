@@ -5,7 +5,6 @@ The structure of the core stands in its test (tb/structures.py).
 """
 
 import json
-import re
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -13,7 +12,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from commands.common import repository
+from commands.common import header, repository
 from commands.common import simulator as simulation
 from tb.settings import RunSettings
 from tb.structures import Structure
@@ -171,10 +170,9 @@ def instance(core: str, folder: Path, selector: str = SELECTOR) -> str:
 
 def wrapper(core: str, folder: Path, selector: str = SELECTOR) -> str:
     """Return a module with the ports of the core around the netlist and the selecting register, if any."""
-    header = re.search(rf"^module {core}\b.*?^\);\n", repository.cores()[core].hdl.read_text(), re.S | re.M)
-    assert header is not None, core
     selecting = f"  logic [11:0] {selector} = 12'd0;\n" if selector else ""
-    return f"{header.group()}\n{selecting}{instance(core, folder, selector)}\nendmodule\n"
+    head = header.read(repository.cores()[core].hdl).text
+    return f"{head}\n{selecting}{instance(core, folder, selector)}\nendmodule\n"
 
 
 def run(
