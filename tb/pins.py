@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Functions that read a pin as a number, and write it where it changes, for what happens in every clock.
+"""The clock, and functions that read a pin as a number, and write it where it changes, for what happens in every clock.
 
 The objects that cocotb makes of a value take several times as long as the read itself. A function raises ValueError if
 a bit is unknown.
@@ -10,7 +10,15 @@ from collections.abc import Callable
 from functools import cache, partial
 from typing import Any
 
+from cocotb.clock import Clock
+
+CLOCK_NS = 6
 Read = Callable[[], int]
+
+
+def start_clock(clock: Any) -> None:
+    """Start a clock, low at first, of the period that all testbenches of one clock have."""
+    Clock(clock, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
 
 
 def unsigned(handle: Any) -> Read:
@@ -44,10 +52,16 @@ def value(handle: Any) -> Callable[[], Any]:
     return read
 
 
-def by_name(dut: Any) -> Callable[[str], int]:
-    """Return the function that reads a pin of a device by its name, as an unsigned number; it finds each pin once."""
+def text_by_name(dut: Any) -> Callable[[str], str]:
+    """Return the function that reads the bits of a pin of a device by its name; it finds each pin once."""
     text = cache(lambda name: getattr(dut, name)._handle.get_signal_val_binstr)
-    return lambda name: int(text(name)(), 2)
+    return lambda name: text(name)()
+
+
+def by_name(dut: Any) -> Callable[[str], int]:
+    """Return the function that reads a pin of a device by its name, as an unsigned number."""
+    text = text_by_name(dut)
+    return lambda name: int(text(name), 2)
 
 
 class Driver:

@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 from cocotb_bus.drivers import BusDriver
 from cocotb_bus.monitors import BusMonitor
@@ -17,13 +16,14 @@ from cocotb_bus.monitors import BusMonitor
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tb import pins
+from tb.pins import CLOCK_NS as CLOCK_NS
 from tb.pins import Read
+from tb.pins import start_clock as start_clock
 from tb.settings import RUN
 
 gc.freeze()  # what was imported stays; a collection costs more than what a short simulation leaves
 gc.set_threshold(200_000, 50, 100)
 
-CLOCK_NS = 6
 REGRESS = RUN.full  # play the full product instead of a selection
 # Frames or bursts of tests whose cases are rare: ties, values that just clip. Mutants get more.
 MANY = RUN.repeats or (15 if REGRESS else 2)
@@ -108,11 +108,6 @@ def raster(rows: int, columns: int) -> list[Any]:
 def depth_position(frame_start: Any, row_end: Any, frame_end: Any) -> int:
     """Pack the position of a depth as depth_position_t of hdl/td_types_pkg.sv."""
     return int(frame_start) << 2 | int(row_end) << 1 | int(frame_end)
-
-
-def start_clock(clock: Any) -> None:
-    """Start a clock, low at first, of the period that all testbenches of one clock have."""
-    Clock(clock, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
 
 
 class EveryEdge:

@@ -110,19 +110,18 @@ class Play:
             self.words[now + 1] = frame.record[pins["record_word"]]
             if pins["value_read"]:
                 self.values[now + LATENCY] = frame.values[pins["value_address"]]
-        take, done = bool(pins["frame_take"]), bool(pins["frame_done"])
+        take, done = pins["frame_take"], pins["frame_done"]
         seen = self.model.clock(
-            keep=bool(self.keep), write_begin=begins, write_end=ends, publish=publish, take=take, done=done
+            rst=reset, keep=self.keep, write_begin=begins, write_end=ends, publish=publish, take=take, done=done
         )
-        if ends and seen.write_bank is not None:
-            self.banks[seen.write_bank] = ended
+        if ends and seen["write_bank"] is not None:
+            self.banks[seen["write_bank"]] = ended
         self.in_frame = (self.in_frame or begins) and not ends
         self.awaited = ends or (self.awaited and not publish)
         if reset:
-            self.model.reset()
             self.in_frame = self.awaited = False
         self.clocks.append(pins)
-        self.seen.append((seen.waiting, seen.replaced))
+        self.seen.append((bool(seen["waiting"]), bool(seen["replaced"])))
 
     def run(self, clocks: int, write_pause: float, read_pause: float) -> None:
         """Add so many clocks, with a few resets, and a few times without frames kept."""

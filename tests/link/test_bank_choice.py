@@ -48,13 +48,13 @@ class Frames:
         seen = self.model.clock(write_begin=write_begin, write_end=write_end, publish=publish, take=take, done=done)
         if write_begin:
             self.begun += 1
-            assert seen.write_bank is not None
-            assert seen.write_bank != self.model.read, "the bank that is read is written"
-            self.banks[seen.write_bank] = None
+            assert seen["write_bank"] is not None
+            assert seen["write_bank"] != self.model.read, "the bank that is read is written"
+            self.banks[seen["write_bank"]] = None
         if write_end:
-            assert seen.write_bank is not None
-            self.banks[seen.write_bank] = self.ended = self.begun
-        self.lost += seen.replaced
+            assert seen["write_bank"] is not None
+            self.banks[seen["write_bank"]] = self.ended = self.begun
+        self.lost += bool(seen["replaced"])
         if self.model.ready is not None and publish:
             self.published = max(self.published, self.banks[self.model.ready] or 0)
 
@@ -89,12 +89,12 @@ def test_without_a_reader_the_newest_frame_is_always_there(frames: Sequence[tupl
     for begins, late in frames:
         for number in range(begins):
             seen = model.clock(write_begin=True, publish=late and number == 0 and ready)
-            assert model.ready is None or model.ready != seen.write_bank
-            assert bank is None or seen.write_bank != bank or model.ready is not None
+            assert model.ready is None or model.ready != seen["write_bank"]
+            assert bank is None or seen["write_bank"] != bank or model.ready is not None
         if late and ready:
             assert model.ready == bank
         if not late and ready:
             model.clock(publish=True)
             assert model.ready == bank, "lost before it was ready"
-        bank, ready = model.clock(write_end=True).write_bank, True
+        bank, ready = model.clock(write_end=True)["write_bank"], True
         assert model.whole == bank

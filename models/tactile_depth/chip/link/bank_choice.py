@@ -4,18 +4,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 BANKS = frozenset((0, 1))
-
-
-class Seen(NamedTuple):
-    """Outputs in a clock; a bank is None where it does not count."""
-
-    write_bank: int | None
-    waiting: bool
-    read_bank: int | None
-    replaced: bool
 
 
 @dataclass
@@ -42,15 +32,17 @@ class BankChoice:
     def clock(
         self,
         *,
-        keep: bool = True,
-        write_begin: bool = False,
-        write_end: bool = False,
-        publish: bool = False,
-        take: bool = False,
-        done: bool = False,
-    ) -> Seen:
-        """Advance by one clock edge; return the outputs before it."""
-        waiting, read_bank = self.ready is not None, self.read
+        rst: int = 0,
+        keep: int = 1,
+        write_begin: int = 0,
+        write_end: int = 0,
+        publish: int = 0,
+        take: int = 0,
+        done: int = 0,
+    ) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None for a bank that does not count."""
+        out: dict[str, int | None] = {"waiting": self.ready is not None, "reading": self.read is not None}
+        out["read_bank"] = self.read
         if done:
             self.read = None
         if take:
@@ -58,7 +50,7 @@ class BankChoice:
         before = {self.whole, self.ready} - {None}
         if write_begin and self.written is None:
             self.written = self._free()
-        write_bank = self.written
+        write_bank = out["write_bank"] = self.written
         if write_end:
             self.whole, self.written = self.written, None
         if publish and self.whole is not None:
@@ -68,7 +60,10 @@ class BankChoice:
             self.ready = None if self.ready == write_bank else self.ready
         if not keep:
             self.ready = None
-        return Seen(write_bank, waiting, read_bank, keep and not before <= {self.whole, self.ready})
+        out["replaced"] = keep and not before <= {self.whole, self.ready}
+        if rst:
+            self.written = self.whole = self.ready = self.read = None
+        return out
 
     def _free(self) -> int:
         """Return the bank in which a frame begins."""
@@ -77,7 +72,3 @@ class BankChoice:
         if self.whole is not None and self.ready is not None:
             return self.ready  # the older one
         return min(BANKS - {self.whole, self.ready})
-
-    def reset(self) -> None:
-        """Advance by one clock edge in reset."""
-        self.written = self.whole = self.ready = self.read = None

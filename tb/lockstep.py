@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One bench for every core whose model advances by a clock: any pins it may get, and every output in every clock."""
+
+import random
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import cocotb
+from cocotb.triggers import RisingEdge
+
+from tb import pins
+from tb.settings import RUN
+
+Pins = dict[str, int]
+
+WORD: Sequence[int] = ()  # a choice: any word of the width of the pin
+CLOCKS = 30_000 if RUN.full else 6_000
+RATES = (0, 0.03, 0.3, 0.7, 0.97, 1)
+
+
+class Episodes:
+    """Pins that are high or change often, seldom or never for a while: runs, bursts and rare events all occur."""
+
+    def __init__(self, choices: Mapping[str, Any], widths: Pins) -> None:
+        self.chance, self.choices, self.widths = random.Random(cocotb.RANDOM_SEED), choices, widths
+        self.now, self.left = dict.fromkeys(choices, 0), 0
+        self.words = [pin for pin in choices if choices[pin] is WORD]
+
+    def draw(self) -> Pins:
+        """Return the pins of the next clock, which may be changed: they are those of the clock before in the next."""
+        chance = self.chance
+        if not self.left:
+            self.left = chance.choice((10, 40, 150, 600))
+            calm = chance.random() < 0.3  # words stay
+            self.rates = {pin: chance.choice(RATES) for pin in self.choices}
+            for pin, choice in self.choices.items():
+                if not isinstance(choice, float):
+                    self.now[pin] = self.word(pin)
+                    self.rates[pin] *= not calm
+        self.left -= 1
+        for pin, choice in self.choices.items():
+            if isinstance(choice, float):
+                self.now[pin] = int(chance.random() < self.rates[pin] * choice)
+            elif chance.random() < self.rates[pin]:
+                self.now[pin] = self.word(pin)
+        return self.now
+
+    def word(self, pin: str) -> int:
+        """Return one of the values of a pin; those of any word are often at a limit, one bit, or next to another's."""
+        chance, width = self.chance, self.widths[pin]
+        if self.choices[pin] is not WORD:
+            return chance.choice(self.choices[pin])
+        other = self.now[chance.choice(self.words)]
+        near = chance.choice((0, -1, 1 << chance.randrange(width), chance.getrandbits(width), other))
+        return (near + chance.choice((-1, 0, 0, 1))) % (1 << width)
+
+
+async def play(
+    dut: Any,
+    model: Any,
+    choices: Mapping[str, float | Sequence[int]],
+    legal: Callable[[Any, Pins], None] = lambda model, pins: None,
+    offers: Sequence[str] = (),
+    clocks: int = CLOCKS,
+) -> None:
+    """Compare every output with the model in every clock.
+
+    Parameters
+    ----------
+    model : object
+        Its `clock`, which gets the pins by their names, `rst` too, returns the outputs of this clock by their names,
+        None where one does not count, and advances by the clock edge behind it.
+    choices : mapping
+        What each input may be: a float is the highest probability of a bit, a sequence the values, WORD any word.
+    legal : callable
+        Changes pins into those that the state of the model allows.
+    offers : sequence of str
+        Streams in that keep what they offer: all pins stay until a clock with valid and ready, or rst.
+    """
+    choices = {"rst": 0.01, **choices}
+    episodes = Episodes(choices, {pin: len(getattr(dut, pin)) for pin in choices})
+    edge, write, read = RisingEdge(dut.clk), pins.Driver(dut), pins.text_by_name(dut)
+    pins.start_clock(dut.clk)
+    write(**dict.fromkeys(choices, 0) | {"rst": 1})
+    await edge
+    await edge
+    kept: Pins = {}
+    for clock in range(clocks):
+        now = episodes.draw()
+        now |= kept
+        legal(model, now)
+        write(**now)
+        expected = model.clock(**now)
+        await edge
+        for pin, value in expected.items():
+            if value is not None:
+                got = read(pin)
+                wanted = f"{value % (1 << len(got)):0{len(got)}b}"
+                assert got == wanted, f"{pin} in clock {clock}: {got}, not {wanted}, with {now}"
+        waits = [name for name in offers if now[f"{name}_valid"] and not (now["rst"] or expected[f"{name}_ready"])]
+        kept = {pin: now[pin] for pin in now for name in waits if pin.startswith(f"{name}_")}
