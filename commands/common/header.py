@@ -54,8 +54,8 @@ def entries(text: str) -> list[str]:
 
 
 def port(text: str) -> Port:
-    """Return the port that a declaration such as `input wire [3:0] data` makes."""
-    side, words, name = matched(r"^(input|output) (?:wire )?(.*?) ?(\w+)$", text).groups()
+    """Return the port that a declaration such as `output logic [3:0] data = 4'd1` makes."""
+    side, words, name = matched(r"^(input|output) (?:wire )?(.*?) ?(\w+)(?: =.*)?$", text).groups()
     return Port(side, f"logic {words}".rstrip() if re.match(r"\[|signed|$", words) else words, name)
 
 
