@@ -91,12 +91,6 @@ def test_the_page_of_the_python_api_lists_every_argument_and_attribute() -> None
     assert [name for name in names if not re.search(rf"\b{name}\b", page) and name not in elsewhere] == []
 
 
-def test_the_architecture_names_every_core_of_the_top() -> None:
-    text = (ROOT / "docs" / "architecture.md").read_text()
-    cores = [path.stem for path in repository.sources("tactile_depth") if path.stem in repository.cores()]
-    assert [core for core in cores if f"`{core}`" not in text and core != "tactile_depth"] == []
-
-
 HANDSHAKES = {  # by waveform: signals of valid and ready, and the signals of the word
     "video": ("tvalid", "tready", ("tdata", "tuser", "tlast")),
     "depth": ("m_axis_tvalid", "m_axis_tready", ("m_axis_tdata", "m_axis_tuser")),

@@ -53,6 +53,11 @@ def entries(text: str) -> list[str]:
     return [part.strip() for part in parts if part.strip()]
 
 
+def sentence(file: Path) -> str:
+    """Return the first sentence of the comment at the top of a file, behind the name of its module."""
+    return re.sub(r"\n// ?", " ", matched(rf"^// {file.stem}: (.*?)\.\s", file.read_text())[1])
+
+
 def port(text: str) -> Port:
     """Return the port that a declaration such as `output logic [3:0] data = 4'd1` makes."""
     side, words, name = matched(r"^(input|output) (?:wire )?(.*?) ?(\w+)(?: =.*)?$", text).groups()

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make registers`: writes all files that the maps in registers/ describe, and the list of sources for FuseSoC.
+"""`make registers`: writes all files that the maps in registers/ describe, and every list of the files in hdl/.
 
 There are two maps: tactile_depth.rdl of the pipeline, and camera.rdl of the camera front end. Three files of each are
 committed, so that nobody needs these tools to use them: the page by peakrdl-markdown, a package of SystemVerilog,
 because no exporter writes one that Icarus 11 reads, and the JSON that register_map.py reads, because a run then needs
 no compiler of 40 MB. The C header by peakrdl-cheader, the IP-XACT of IEEE 1685-2014 by peakrdl-ipxact and the Python
 access layer of peakrdl-python go to build/: they have thousands of lines.
+
+The files of hdl/ are listed for FuseSoC, and in the README of each folder with the first sentence of their headers.
 """
 
 import re
@@ -24,8 +26,9 @@ from systemrdl.compiler import RDLCompiler
 from systemrdl.node import AddrmapNode, FieldNode, RegNode
 
 from commands.common import wrapper
+from commands.common.header import sentence
 from commands.common.repository import GENERATED, ROOT, sources
-from commands.common.tabular import records
+from commands.common.tabular import Table, records
 from tactile_depth.base import files
 from tactile_depth.chip.camera.pixel_format import chroma_codes
 from tactile_depth.chip.camera_configuration import FORMATS
@@ -33,6 +36,7 @@ from tactile_depth.chip.registers.register_map import Field, Register
 
 FUSESOC = ROOT / "tactile_depth.core"
 VENDOR = "tactile-depth"  # of the IP-XACT components
+CORES = re.compile(r"(?<=<!-- cores: by make registers -->\n).*(?=\n<!-- end of cores -->)", re.DOTALL)
 BUILT = ROOT / "build" / "registers"
 LAYER_NAME = "tactile_depth_registers"  # `tactile_depth` is the package of models
 
@@ -272,6 +276,13 @@ def fusesoc_core() -> str:
     return re.sub(r"(?<=  rtl:\n    files:\n)( {6}- .*\n)+", files, FUSESOC.read_text())
 
 
+def readme(page: Path) -> str:
+    """Return the README of a folder of hdl/ with a row for each file of SystemVerilog beside it."""
+    rows = [(f"[{file.stem}]({file.name})", sentence(file)) for file in sorted(page.parent.glob("*.sv"))]
+    table = Table(("core", "what it does"), rows).markdown()
+    return CORES.sub(lambda _: f"\n{table}", page.read_text())
+
+
 def c_header(of: Map, folder: Path) -> Path:
     """Write the C header of a map into a folder."""
     path = folder / f"{of.name}.h"
@@ -315,7 +326,8 @@ def generated(of: Map) -> dict[Path, str]:
 def written() -> dict[Path, str]:
     """Return the text of each committed file that is written from the maps, the configuration, or what is in hdl/."""
     texts = {path: text for of in MAPS for path, text in generated(of).items()}
-    return texts | {wrapper.DEFAULTS: wrapper.package(), FUSESOC: fusesoc_core()}
+    readmes = {page: readme(page) for page in HDL.rglob("README.md")}
+    return texts | readmes | {wrapper.DEFAULTS: wrapper.package(), FUSESOC: fusesoc_core()}
 
 
 def python_layer(folder: Path) -> None:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// block_weights: cut an axis of camera pixels into blocks of Numerator / Denominator pixels.
+// block_weights: cuts an axis of camera pixels into blocks of Numerator / Denominator pixels.
 //
 // A block is one row or one column of the grid. Lengths are in units of 1 / Denominator of a camera pixel, so a pixel
 // is Denominator long and a block Numerator. `weight` is the part of the present pixel in the present block. When

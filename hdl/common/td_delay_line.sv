@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// td_delay_line: out is in, Delay enabled cycles later.
+// td_delay_line: delays a word by Delay enabled cycles: registers, or a memory if the delay is long.
 //
-// Time moves with en alone, not with the data: what is inside drains by itself. Short lines are registers, long ones a
-// memory whose pointer runs round. Bit-accurate model: models/tactile_depth/chip/common/td_delay_line.py.
+// Time moves with en alone, not with the data: what is inside drains by itself. The pointer of the memory
+// runs round. Bit-accurate model: models/tactile_depth/chip/common/td_delay_line.py.
 
 `default_nettype none
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// td_ram: simple dual-port memory, one write and one read port, on one clock. Read latency: 1 cycle.
+// td_ram: memory with one write and one read port, on one clock. Read latency: 1 cycle.
 //
 // The one place to put a memory macro. A core must not read a word in the cycle that writes it: what such a read
 // returns is undefined. A File (one line per word, $readmemh) gives the contents at power-up.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// td_rom: read-only memory. Read latency: 1 cycle.
+// td_rom: read-only memory, whose words come from a file. Read latency: 1 cycle.
 //
 // Contents come from File (one line per word, $readmemh), written by models/tactile_depth/chip/rom_files.py.
 // Bit-accurate model: models/tactile_depth/chip/common/td_rom.py.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// td_round_saturate: drop fraction bits, round half to even, saturate. Combinational.
+// td_round_saturate: drops fraction bits, rounds half to even, saturates. Combinational.
 //
 //   out = sat_OutWidth( round( in / 2^Drop ) )          Drop <= 0: shift left, exact
 //

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// spectral_divide: divide each mode by its eigenvalue of the five-point Laplacian.
+// spectral_divide: divides each mode by its eigenvalue of the five-point Laplacian.
 //
 //   out = sat( round( in M 2^S / 2^Drop ) ),  M 2^S / 2^Drop = c / (lambda_k + lambda_l) from a ROM
 //   c takes back the gain of all transforms and turns pixels into full scales of the depth code

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// dst_forward: DST-II of a burst by Makhoul's method (IEEE Trans. ASSP 28, 1980).
+// dst_forward: DST-II of a burst by Makhoul's method (IEEE Transactions ASSP 28, 1980).
 //
 //   out[p] = g sum over n of x[n] sin(pi (2n + 1) (N - k) / 2N),  k = p with its bits reversed, N = Size
 //   g = 2^-(halvings of sdf_fft) (1 - 2^(1 - CoeffWidth))^(twiddle stages + 1), and the drops below
