@@ -34,7 +34,7 @@ class Proof:
     clocks : int
         Clocks of the core. With more than one, time is in steps, and each clock rises whenever it likes.
     core : str
-        The bench is formal/<unit>/fv_<core>.sv; `make formal` sets it, from the test that states the proof.
+        The bench is formal/<unit>/fv_<core>.sv; `make formal` sets it, from the bench that states the proof.
     """
 
     claim: str

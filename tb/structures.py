@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Structures, mutants and refused parameters of a core: data beside the core's test, for tests and commands.
+"""Structures, mutants and refused parameters of a core: data in the core's testbench, for tests and commands.
 
-A test of a core, `tests/<unit>/test_<core>.py`, states STRUCTURES, a sequence of `Structure`; where needed MUTANTS, a
+The testbench of a core, `tb/<unit>/tb_<core>.py`, states STRUCTURES, a sequence of `Structure`; where needed MUTANTS, a
 `Mutants`; and REFUSED, a mapping from a change of parameters to the module that refuses it, or to a `Refused`.
 """
 

@@ -11,10 +11,11 @@ from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.camera.camera_front_end import camera_front_end, camera_settings
 from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import last_word_to_first_depth
 from tactile_depth.chip.registers.axil_port import Response
 from tactile_depth.chip.registers.register_map import CAMERA_MAP, CAMERA_REGISTERS, MAP, REGISTERS
-from tactile_depth.chip.tactile_depth import tactile_depth
+from tactile_depth.chip.tactile_depth import hdl_parameters, tactile_depth, write_roms
 from tactile_depth.sensor.synthetic import synthetic
 from tb import axil
 from tb.axis import AxisMonitor, AxisSource
@@ -22,6 +23,31 @@ from tb.camera.slots import camera_words
 from tb.cases import on_bench
 from tb.settings import RUN
 from tb.stream import MANY, configuration, start_clock
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+
+PIPELINE: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal", "bits_per_channel": 2}
+
+
+def built(form: str, picture: tuple[int, int], window: tuple[int, int, int, int], **runs: Any) -> Structure:
+    config = Configuration(**PIPELINE)
+    camera = {"picture": picture, "grid": (8, 16), "pixel_format": form, "window": window}
+    return Structure(
+        hdl_parameters(config, camera=CameraConfiguration(**camera)),  # type: ignore[arg-type]
+        device={"configuration": PIPELINE, "camera": camera},
+        roms=lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
+        name=form,
+        **runs,
+    )
+
+
+STRUCTURES = (
+    built("raw10_lsb", (23, 42), (3, 2, 36, 18), on=VERILATOR, mutants=True),
+    built("yuyv_bytes", (13, 28), (2, 1, 24, 12), on=ICARUS, late=VERILATOR),
+)
+MUTANTS = Mutants("tactile_depth", simulators=VERILATOR, flat=False)
+REFUSED = {"Camera=0": "Config_has_no_camera"}
+NO_PROOF = "camera_unit and tactile_depth in a row"
+
 
 IDLE = {"frames_lost": 0, "setup_done": 0, "setup_failed": 0, "setup_entry": 0, "setup_found": 0}
 STATUS = CAMERA_REGISTERS["CAMERA_STATUS"]

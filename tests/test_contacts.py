@@ -12,13 +12,13 @@ from PIL import Image
 import tactile_depth as td
 from commands.study.drawn_light import DrawnLight, exact
 from commands.study.drawn_sensor import Height
+from conftest import SEED
 from tactile_depth.calibrate.press_folder import read_presses
 from tactile_depth.chip.contact.contact_events import Record
 from tactile_depth.depth.regions import regions
 from tactile_depth.depth.result import Contact, least_area_mm2
 from tactile_depth.pictures.frames import read_picture
 from tests.ball_presses import real_folder
-from tests.conftest import SEED
 
 CAMERA = (240, 320)
 SKIRT_MM = 0.25  # over which the gel falls off beside a ball

@@ -21,11 +21,11 @@ from typing import Any
 
 import pytest
 
+from conftest import SEED
 from tactile_depth.chip.configuration import Configuration
 from tb.settings import RUN
 from tb.structures import BOTH, VERILATOR, Structure
 from tests.attack import PROFILES, Attack, Outcome, Reset, attack, cases, phases, resets
-from tests.conftest import SEED
 
 TIMEOUT = 100
 SMALLEST = "tridiagonal-8x16-neumann"

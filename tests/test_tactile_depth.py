@@ -1,115 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """tactile_depth: RTL against the models, at its pins."""
 
-from collections.abc import Callable, Mapping
-from types import MappingProxyType
-from typing import Any
+from collections.abc import Callable
 
 import pytest
 
-from formal.entries import Cone
-from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.resources import ULTRA
-from tactile_depth.chip.tactile_depth import config_value, top_parameters, write_roms
-from tactile_depth.sensor.synthetic import synthetic
 from tb.settings import RUN
-from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
-
-WHOLE = ""  # every test of the run
-FORMATS = "formats"  # tests that depend on formats and options of a build
-TRIDIAGONAL: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
-FLAT_QUADRATIC: dict[str, Any] = {"flat_field": True, "gradient_model": "quadratic"}
-SENSOR = TRIDIAGONAL | FLAT_QUADRATIC | {"rows": 9, "lanes": 4, "neumann": True, "zero_offset": True}
-SENSOR |= {"light_gains": True}
-
-
-def built(
-    name: str, choices: dict[str, Any], level: str, replaced: Mapping[str, int] = MappingProxyType({}), **runs: Any
-) -> Structure:
-    """Return the pipeline of a configuration, with some parameters in place of its own, and the last level of tests.
-
-    The tests of a level come in any order: no test depends on an earlier one.
-    """
-    config = Configuration(**choices)
-    return Structure(
-        {"Config": config_value({**top_parameters(config), **replaced})},
-        device={"configuration": choices, "parameters": dict(replaced)},
-        roms=lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
-        name=name,
-        level=level,
-        environment={"COCOTB_RANDOM_TEST_ORDER": "1"},
-        **runs,
-    )
-
-
-SMALLEST = built("tridiagonal-8x16", TRIDIAGONAL | {"bits_per_channel": 2}, WHOLE, on=VERILATOR, mutants=True)
-STRUCTURES = (
-    built("tridiagonal-8x16-quadratic", TRIDIAGONAL | FLAT_QUADRATIC | {"gain_width": 17}, FORMATS, on=VERILATOR),
-    SMALLEST,
-    built("16-24", {"columns": 16, "bits_per_channel": 2}, WHOLE, on=VERILATOR),
-    built("tridiagonal-9x16-4-lanes-sensor", SENSOR, FORMATS, on=BOTH),
-    built(
-        "tridiagonal-8x16-zero",
-        TRIDIAGONAL | {"bits_per_channel": 2, "neumann": True, "zero_offset": True},
-        FORMATS,
-        on=ICARUS,
-        late=VERILATOR,
-    ),
-    built("32-12", {"columns": 32, "data_width": 12, "bits_per_channel": 3}, "stream", late=BOTH),
-    built(
-        "16-flat-neumann",
-        {"columns": 16, "flat_field": True, "neumann": True, "zero_offset": True},
-        FORMATS,
-        late=BOTH,
-    ),
-    built("16-27-neumann", {"columns": 16, "data_width": 27, "neumann": True}, FORMATS, late=BOTH),
-    built(
-        "tridiagonal-21x16-neumann",
-        TRIDIAGONAL | {"rows": 21, "data_width": 27, "neumann": True},
-        FORMATS,
-        late=BOTH,
-    ),
-    built(
-        "tridiagonal-8x16-2-lanes",
-        TRIDIAGONAL | {"lanes": 2, "bits_per_channel": 2, "neumann": True},
-        FORMATS,
-        late=BOTH,
-    ),
-    built(
-        "tridiagonal-9x32-4-lanes",
-        TRIDIAGONAL | {"columns": 32, "rows": 9, "lanes": 4, "bits_per_channel": 2},
-        FORMATS,
-    ),
-    built(
-        "tridiagonal-21x16-2-lanes-zero",
-        TRIDIAGONAL | {"rows": 21, "lanes": 2, "bits_per_channel": 2, "zero_offset": True},
-        FORMATS,
-    ),
-    built("tridiagonal-9x32-4-lanes-sensor", SENSOR | {"columns": 32}, FORMATS, late=BOTH),
-)
-MUTANTS = Mutants(simulators=VERILATOR, flat=False)
-REFUSED = {
-    "Polynomial=1": "Polynomial_needs_FlatField",
-    "Rows=64": "the_spectral_solver_takes_square_grids_Rows_must_be_Columns",
-    "DataWidth=33": "Width_must_be_2_to_32",
-    "ZeroOffset=2": "ZeroOffset_is_0_or_1",
-}
-PROOFS = tuple(
-    Cone(
-        "no pixel, no word of a memory, no table reaches a handshake or side-band: the latency is fixed",
-        "a structural fact, the same generate blocks at every grid; narrow words, since no bit is left out",
-        {"solver": solver, "rows": rows, "columns": 16, "neumann": neumann, "data_width": 12, "coefficient_width": 10}
-        | colours,
-    )
-    for solver, rows in (("spectral", 16), ("tridiagonal", 8))
-    for neumann, colours in (
-        (0, {}),
-        (1, {}),
-        (1, {"flat_field": 1, "zero_offset": 1}),
-        (0, {"flat_field": 1, "gradient_model": "quadratic"}),
-        (1, {"flat_field": 1, "gradient_model": "cubic"}),
-    )
-)
+from tb.structures import Structure
+from tb.tactile_depth.settings import FORMATS, SMALLEST, TRIDIAGONAL, WHOLE, built
+from tb.tactile_depth.settings import STRUCTURES as STRUCTURES
 
 
 def level_of(structure: Structure, simulator: str) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Index of the repository: the files of each core in hdl/, models/, tb/, tests/ and formal/, by the name of the core.
+"""Index of the repository: the files of each core in hdl/, models/, tb/ and formal/, by the name of the core.
 
 These folders hold the same units (`hdl/poisson/divergence.sv`, `tb/poisson/tb_divergence.py`), so the index is read
 from the tree, and no list is kept by hand.
@@ -35,13 +35,17 @@ class Core:
     hdl: Path
     model: Path | None
     benches: tuple[Path, ...]  # cocotb testbenches: tb_<name>.py, or the tb_*.py of a folder <name>
-    test: Path | None
     proof: Path | None
 
     @property
     def bench_folder(self) -> Path:
         """Return the folder of a testbench of several files."""
         return ROOT / "tb" / self.block / self.name
+
+    @property
+    def settings(self) -> Path | None:
+        """Return the file that states the builds, mutants and proofs: the testbench, or settings.py of its folder."""
+        return self.benches[0] if len(self.benches) == 1 else _existing(self.bench_folder / "settings.py")
 
 
 def _existing(path: Path) -> Path | None:
@@ -67,7 +71,6 @@ def cores() -> Mapping[str, Core]:
             file,
             _existing(ROOT / "models" / "tactile_depth" / "chip" / folder / f"{name}.py"),
             _benches(ROOT / "tb" / folder, name),
-            _existing(ROOT / "tests" / folder / f"test_{name}.py"),
             _existing(ROOT / "formal" / folder / f"fv_{name}.sv"),
         )
     return MappingProxyType(index)
@@ -133,9 +136,9 @@ def outermost() -> Sequence[str]:
 
 
 def stated(core: str, name: str) -> Any:
-    """Return what the test of a core states under a name (tb/structures.py), None if it states nothing."""
-    file = ROOT / "tests" / cores()[core].block / f"test_{core}.py"
-    return getattr(importlib.import_module(module(file)), name, None) if file.is_file() else None
+    """Return what the bench of a core states under a name (tb/structures.py), None if it states nothing."""
+    file = cores()[core].settings
+    return getattr(importlib.import_module(module(file)), name, None) if file else None
 
 
 def code(text: str) -> str:

@@ -201,7 +201,7 @@ def reasons() -> dict[str, str]:
 def selected(names: str) -> list[Proof | Cone]:
     """Return the proofs of the cores in a value of CORE=a,b, or all proofs for an empty value.
 
-    The test of a core states them as PROOFS, or as NO_PROOF why it has none.
+    The bench of a core states them as PROOFS, or as NO_PROOF why it has none.
 
     Raises InputError: a core does not exist or has no proof.
     """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Netlist with all mutants of a core and a register that selects one, and runs of the testbench on each mutant.
 
-The structure of the core stands in its test (tb/structures.py).
+The structure of the core stands in its bench (tb/structures.py).
 """
 
 import json

@@ -59,7 +59,7 @@ def affected(names: Iterable[str]) -> Affected:
         str(file.relative_to(ROOT)): core.name
         for core in repository.cores().values()
         for file in (
-            *(core.hdl, core.model, *core.benches, *core.bench_folder.glob("*.py"), core.test, core.proof),
+            *(core.hdl, core.model, *core.benches, *core.bench_folder.glob("*.py"), core.proof),
             ROOT / "formal" / core.block / f"protocol_{core.name}.sv",
         )
         if file

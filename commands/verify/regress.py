@@ -24,12 +24,12 @@ from tb.settings import RunSettings
 
 POWER_UPS = 100
 SEED = 2  # the other seed
-# Tests, marks of tests/conftest.py, and settings of each part.
+# Tests, marks of conftest.py, and settings of each part.
 PARTS: dict[str, tuple[list[str], str, RunSettings]] = {
     "faults": (["tests/test_faults.py"], "", RunSettings(full=True)),
     "codes": (["tests/test_codes.py"], "codes", RunSettings(full=True)),
-    "power_ups": (["tests"], "power_ups", RunSettings(power_ups=POWER_UPS)),
-    "seeds": (["tests", "--ignore=tests/test_faults.py"], "seeds or regress", RunSettings(full=True)),
+    "power_ups": (["tests", "tb"], "power_ups", RunSettings(power_ups=POWER_UPS)),
+    "seeds": (["tests", "tb", "--ignore=tests/test_faults.py"], "seeds or regress", RunSettings(full=True)),
 }
 
 

@@ -8,6 +8,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from commands.common import repository
 from commands.common.simulator import Simulator
@@ -27,9 +28,12 @@ def pytest(tests: Sequence[str] = ()) -> list[str]:
 
 
 def tests_of(cores: Sequence[str]) -> list[str]:
-    """Return the test files of cores, relative to the root of the repository, and the checks of lint."""
-    files = [repository.cores()[core].test for core in repository.tested(cores)]
-    return [*(str(file.relative_to(repository.ROOT)) for file in files if file), lint.ITEMS]
+    """Return the testbenches of cores and the tests of their models, and the checks of lint."""
+    files: list[Path] = []
+    for core in (repository.cores()[name] for name in repository.tested(cores)):
+        files += core.benches if len(core.benches) == 1 else ()
+        files.append(repository.ROOT / "tests" / core.block / f"test_{core.name}.py")
+    return [*(str(file.relative_to(repository.ROOT)) for file in files if file.is_file()), lint.ITEMS]
 
 
 def settings(cores: Sequence[str]) -> dict[str, str]:

@@ -5,10 +5,31 @@ from typing import Any
 
 import numpy as np
 
+from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.chip.camera.black_level import LATENCY, black_level
 from tb.camera.slots import Slot, Slots, packed, unpacked
 from tb.cases import on_bench
 from tb.stream import MANY, drive, parameters, parametrize
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
+
+built = of_parameters("Bits Channels")
+STRUCTURES = (
+    built(10, 1, on=BOTH, mutants=True),
+    built(8, 3, on=ICARUS, late=VERILATOR, mutants=True),
+    built(12, 1),
+    built(10, 3),
+    built(8, 1),
+)
+MUTANTS = Mutants(repeats=2)
+PROOFS = tuple(
+    Proof(
+        "the sample less the black level, beside the gains, of the frame's own settings; latency 1",
+        FULL_WIDTH,
+        {"Bits": bits, "Channels": channels},
+    )
+    for bits, channels in ((10, 1), (8, 3))
+)
+
 
 OUTPUTS = ["out_valid", "out_samples", "out_colour", "out_row_start", "out_frame_start", "out_abort", "out_gains"]
 

@@ -6,11 +6,43 @@ from typing import Any
 import cocotb
 import numpy as np
 
+from formal.entries import Proof
 from tactile_depth.chip.camera.block_totals import LATENCY, block_areas, block_totals
 from tactile_depth.chip.camera.row_sums import sums_over_blocks
 from tb.camera.slots import Slot, Slots, Window, packed, unpacked
 from tb.cases import on_bench
 from tb.stream import drive, parameters, parametrize
+from tb.structures import ICARUS, VERILATOR, Structure
+
+
+def built(columns: int, numerator: int, denominator: int, width: int, bayer: int, **runs: Any) -> Structure:
+    ratio = {"Numerator": numerator, "Denominator": denominator}
+    return Structure({"Columns": columns, **ratio, "Width": width, "Bayer": bayer}, **runs)
+
+
+STRUCTURES = (
+    built(8, 15, 4, 12, 1, on=VERILATOR),
+    built(5, 4, 3, 5, 0, on=ICARUS, late=VERILATOR, mutants=True),
+    built(4, 5, 2, 4, 1, on=ICARUS, mutants=True),
+    built(8, 1, 1, 10, 0),
+    built(4, 8, 1, 14, 1),
+    built(128, 15, 4, 10, 0),
+    built(8, 2, 1, 10, 1),
+)
+REFUSED = {
+    "Columns=3": "Columns_must_be_at_least_4_or_a_word_is_read_while_it_is_written",
+}
+PROOFS = tuple(
+    Proof(
+        "a word with each complete block, with its areas" + (" and totals" if totals else "") + "; latency 3; memory "
+        "as td_ram.sv asks",
+        "columns are only counted; totals are left to simulation where a block has several rows",
+        {"Numerator": numerator, "Denominator": denominator, "Bayer": bayer, "Totals": totals},
+        depth=60,
+    )
+    for numerator, denominator, bayer, totals in ((1, 1, 0, 1), (3, 2, 0, 0), (5, 2, 1, 0))
+)
+
 
 ROWS = 3
 FRAMES = 6

@@ -6,8 +6,35 @@ from typing import Any
 
 import cocotb
 
+from formal.entries import Proof
 from tactile_depth.chip.camera.block_weights import block_weights
 from tb.stream import drive, parameters, parametrize
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("Numerator Denominator")
+STRUCTURES = (
+    built(15, 4, on=VERILATOR),
+    built(1, 1, on=ICARUS, late=VERILATOR),
+    built(7, 5, on=ICARUS, mutants=True),
+    built(8, 1, on=ICARUS, mutants=True),
+    built(2, 1),
+    built(3, 2),
+    built(127, 16),
+    built(4, 3),
+)
+REFUSED = {
+    "Denominator=0": "Numerator_must_be_at_least_Denominator_and_Denominator_at_least_1",
+    "Numerator=3": "Numerator_must_be_at_least_Denominator_and_Denominator_at_least_1",
+}
+PROOFS = tuple(
+    Proof(
+        "the weight of a pixel is its overlap with the block it is in or begins in; the block's last pixel",
+        "one counter; ratios of 1, of an integer, below and above 2",
+        {"Numerator": numerator, "Denominator": denominator},
+    )
+    for numerator, denominator in ((1, 1), (3, 1), (4, 3), (15, 4))
+)
+
 
 LONGEST = 60  # pixels of an axis
 AXES = 20

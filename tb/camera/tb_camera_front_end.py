@@ -5,19 +5,27 @@ The output goes through the model of frame_guard, which follows the core: each b
 frame.
 """
 
+import itertools
+import math
 import random
 from collections.abc import Iterator
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.chip.camera.camera_front_end import SETTINGS, camera_front_end, camera_settings
+from tactile_depth.chip.camera.camera_front_end import (
+    SETTINGS,
+    camera_front_end,
+    camera_front_end_parameters,
+    camera_settings,
+)
 from tactile_depth.chip.camera.camera_front_end import latency as camera_front_end_latency
 from tactile_depth.chip.camera.camera_window import FAULTS, Settings, camera_window
-from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraConfiguration
 from tactile_depth.chip.video.frame_guard import Word, frame_guard
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSink, AxisSource, broken, positions, profile
 from tb.camera.slots import camera_words, pack_settings
@@ -25,6 +33,54 @@ from tb.cases import on_bench
 from tb.pins import unsigned
 from tb.settings import RUN
 from tb.stream import MANY, at_every_edge, parametrize, sample, start_clock
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+
+GRID = (4, 8)
+
+
+def arguments(form: str, picture: tuple[int, int], **choices: Any) -> dict[str, Any]:
+    return {"picture": picture, "grid": GRID, "pixel_format": form, **choices}
+
+
+# Camera pixels per grid pixel. A picture of YUYV has an even number of columns.
+RATIOS = [Fraction(*ratio) for ratio in ((1, 1), (5, 4), (3, 2), (2, 1), (9, 4), (11, 4), (15, 4), (23, 4), (8, 1))]
+COLOURED = [form for form in FORMATS if not FORMATS[form].bayer]
+PATTERNS = [(form, phase) for form in FORMATS if FORMATS[form].bayer for phase in PHASES]
+
+
+def every_format_phase_and_ratio(each: int) -> list[dict[str, Any]]:
+    """Return structures: each format, with each phase and order of bytes or bits, with `each` ratios in turn."""
+    sizes = [(math.ceil(GRID[0] * ratio) + 1, int(GRID[1] * ratio)) for ratio in RATIOS]
+    pictures = itertools.cycle(sizes)
+    coloured = [arguments(form, next(pictures)) for form in COLOURED for _ in range(max(each, 2))]
+    pictures = itertools.cycle(sizes[RATIOS.index(Fraction(2)) :])
+    patterns = [arguments(form, next(pictures), phase=phase) for form, phase in PATTERNS for _ in range(each)]
+    return [*coloured, *patterns]
+
+
+def built(choices: dict[str, Any], **runs: Any) -> Structure:
+    camera = CameraConfiguration(**choices)
+    return Structure(camera_front_end_parameters(camera), device={"camera": choices}, **runs)
+
+
+STRUCTURES = (
+    built(arguments("raw10", (17, 34), phase="gbrg"), on=VERILATOR),
+    built(arguments("raw8", (9, 17), phase="grbg"), on=ICARUS, mutants=True),
+    built(arguments("yuyv_bytes", (10, 16)), on=VERILATOR, mutants=True),
+    built(arguments("rgb888", (4, 9)), on=ICARUS),
+    *(built(choices) for choices in every_format_phase_and_ratio(3)),
+    *(built(choices, late=VERILATOR) for choices in every_format_phase_and_ratio(1)),
+    built(arguments("yuyv", (7, 18), window=[3, 1, 10, 5])),
+    built(arguments("yuyv", (7, 18), window=[4, 1, 9, 5])),
+)
+MUTANTS = Mutants(repeats=2, flat=False)
+REFUSED = {
+    "Format=-1": "Format_is_a_number_of_camera_format_e",
+    "Numerator=7": "below_a_ratio_of_2_some_blocks_lack_a_colour",
+    "Rows=4096": "WindowColumns_and_WindowRows_must_be_2_to_8191",
+}
+NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends"
+
 
 KINDS = [kind for kind in BREAKS if kind not in SILENT]
 SETTLE = 60

@@ -8,13 +8,65 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.chip.camera.camera_registers import CONTROL, COUNTERS, STATUS, CameraRegisters, Setup
+from formal.entries import FULL_WIDTH, Proof
+from tactile_depth.chip.camera.camera_registers import (
+    CONTROL,
+    COUNTERS,
+    STATUS,
+    CameraRegisters,
+    Setup,
+    camera_registers_parameters,
+)
 from tactile_depth.chip.camera.camera_window import FAULTS
+from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.registers.register_map import CAMERA_MAP, CAMERA_REGISTERS, WORD
 from tb import structs
 from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
 from tb.stream import parameters, parametrize
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+
+VGA: dict[str, Any] = {"picture": (480, 640), "grid": (128, 128), "pixel_format": "raw10", "phase": "grbg"}
+OTHER: dict[str, Any] = {
+    "picture": (240, 320),
+    "grid": (96, 128),
+    "pixel_format": "yuyv_bytes",
+    "window": (7, 5, 256, 192),
+    "black_level": 341,
+    "gains": (1.5, 0.25, 15.75),
+}
+
+
+def built(choices: dict[str, Any], **runs: Any) -> Structure:
+    return Structure(camera_registers_parameters(CameraConfiguration(**choices)), **runs)
+
+
+STRUCTURES = (
+    built(VGA, on=VERILATOR),
+    built(OTHER, on=ICARUS, late=VERILATOR, mutants=True),
+)
+MUTANTS = Mutants(
+    "after_reset",
+    outside=(
+        "dropped",
+        "lost",
+    ),
+    flat=False,
+)
+REFUSED = {
+    "PictureColumns=8192": "pictures_and_windows_have_up_to_8191_rows_and_columns",
+    "WindowY=-1": "pictures_and_windows_have_up_to_8191_rows_and_columns",
+    "WindowRows=8192": "pictures_and_windows_have_up_to_8191_rows_and_columns",
+    "BlackLevel=4096": "BlackLevel_must_fit_12_bits_and_gains_16",
+    "BlueGain=65536": "BlackLevel_must_fit_12_bits_and_gains_16",
+}
+PROOFS = (
+    Proof(
+        "every register as the map has it: words, settings that leave, sticky bits, counters",
+        FULL_WIDTH,
+    ),
+)
+
 
 PARAMETERS = (
     *("PictureColumns", "PictureRows", "WindowX", "WindowY", "BlackLevel", "RedGain", "GreenGain", "BlueGain"),

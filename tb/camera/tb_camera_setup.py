@@ -4,17 +4,22 @@
 import itertools
 import random
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import cocotb
 from cocotb.triggers import ClockCycles, ReadOnly, RisingEdge
 
+from formal.entries import Proof
+from formal.tables import camera_list
 from tactile_depth.chip.camera.camera_setup import CameraSetup, Entry, Kind, Outputs
+from tactile_depth.chip.camera.register_lists import Camera, setup_parameters, write_list
 from tb.camera.sccb_camera import SccbCamera
 from tb.cases import on_bench
 from tb.pins import by_name
 from tb.settings import RUN
 from tb.stream import REGRESS, parameters, parametrize, sample, start_clock
+from tb.structures import BOTH, ICARUS, Mutants, Structure
 
 Fault = Callable[[str, int, int], int | None]
 COUNTS = ("AddressBytes", "DeviceId", "QuarterClocks", "MillisecondClocks", "Attempts")
@@ -40,6 +45,46 @@ LISTS = {
         Entry(Kind.WRITE, 0x3CA5, 0xFE),
     ),
 }
+
+TIMES = {"QuarterClocks": 4, "MillisecondClocks": 3, "XclkHalfClocks": 2, "Attempts": 4}
+
+
+def built(entries: str, **runs: Any) -> Structure:
+    device = {"short": (1, 0x42), "wide": (2, 0x78)}[entries]
+    camera = Camera(entries, *device, picture=(1, 1), bayer="bggr", frames_per_s=1, entries=LISTS[entries])
+    return Structure(
+        {**setup_parameters(camera), **TIMES},
+        device={"list": entries},
+        roms=partial(write_list, entries=camera.entries),
+        name=entries,
+        **runs,
+    )
+
+
+STRUCTURES = (
+    built("short", on=BOTH),
+    built("wide", on=ICARUS, mutants=True),
+)
+MUTANTS = Mutants("after_reset")
+REFUSED = {
+    "AddressBytes=3": "AddressBytes_must_be_1_or_2",
+    "QuarterClocks=3": "QuarterClocks_must_be_at_least_4_the_line_takes_three_to_be_seen",
+    "Entries=1": "MillisecondClocks_and_Entries_must_be_at_least_2_XclkHalfClocks_and_Attempts_1",
+    "Attempts=0": "MillisecondClocks_and_Entries_must_be_at_least_2_XclkHalfClocks_and_Attempts_1",
+    "DeviceId=67": "DeviceId_must_be_an_even_byte",
+    "DeviceId=256": "DeviceId_must_be_an_even_byte",
+}
+PROOFS = (
+    Proof(
+        "entries in order; at the end each that is compared was right at last, or one was wrong often in a row; "
+        "pins and waits as the list says",
+        "a list with every kind of entry",
+        {"Bus": 0},
+        depth=40,
+        roms=camera_list,
+        free=("sent", "caught"),
+    ),
+)
 
 
 class Bench:

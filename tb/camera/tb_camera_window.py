@@ -11,12 +11,47 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
+from formal.entries import Proof
 from tactile_depth.chip.camera.camera_window import FAULTS, LATENCY, Settings, camera_window
 from tactile_depth.chip.video.frame_guard import Word
 from tb.axis import BREAKS, SILENT, AxisSource, broken, positions, profile, spoiled, video
 from tb.cases import on_bench
 from tb.pins import by_name
 from tb.stream import MANY, REGRESS, parameters, parametrize, start_clock
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+
+
+def built(width: int, height: int, words: int, pairs: int, count_width: int, **runs: Any) -> Structure:
+    """With few bits for columns and rows, small pictures reach every bit."""
+    window = {"WindowColumns": width, "WindowRows": height, "CountWidth": count_width}
+    return Structure({**window, "WordsPerPixel": words, "PixelPairs": pairs}, **runs)
+
+
+STRUCTURES = (
+    built(4, 3, 1, 0, 13, on=VERILATOR),
+    built(4, 3, 1, 0, 5, on=ICARUS, mutants=True),
+    built(3, 2, 2, 1, 5, on=ICARUS, mutants=True),
+    built(2, 2, 1, 1, 13),
+    built(5, 4, 2, 0, 13),
+    built(3, 2, 2, 1, 13, late=VERILATOR),
+)
+MUTANTS = Mutants(repeats=2)
+REFUSED = {
+    "WindowColumns=1": "WindowColumns_and_WindowRows_must_be_2_to_8191",
+    "WindowRows=8192": "WindowColumns_and_WindowRows_must_be_2_to_8191",
+    "WordsPerPixel=3": "WordsPerPixel_is_1_or_2",
+}
+PROOFS = tuple(
+    Proof(
+        "pixels of whole pictures with the marks of the window; faults before its last pixel flagged once, with a "
+        "break; an early start kept; latency 1",
+        "rows and columns are only counted and compared",
+        {"WordsPerPixel": words, "PixelPairs": pairs},
+        depth=40,
+    )
+    for words, pairs in ((1, 0), (1, 1))
+)
+
 
 KINDS = [kind for kind in BREAKS if kind not in SILENT]
 STALLS = {"none": ("none", "none"), "gaps": ("random", "none"), "both": ("random", "random")}

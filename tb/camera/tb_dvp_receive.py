@@ -10,12 +10,33 @@ import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
 
+from formal.entries import Proof
 from tactile_depth.chip.camera.dvp_receive import IDLE, Beat, DvpReceive, Pins, camera_pins
 from tactile_depth.chip.common.td_async_fifo import AsyncFifo
 from tb.axis import AxisMonitor, AxisSink, profile
 from tb.pins import Driver
 from tb.stream import REGRESS, parameters, parametrize, sample
+from tb.structures import BOTH, ICARUS, of_parameters
 from tb.two_clocks import RATIOS, run_clock, watch
+
+built = of_parameters("FifoLog2")
+STRUCTURES = (
+    built(4, on=BOTH),
+    built(3, on=ICARUS, mutants=True),
+)
+REFUSED = {
+    "FifoLog2=2": "FifoLog2_must_be_at_least_3_or_nearly_equal_clocks_lose_every_frame",
+}
+PROOFS = (
+    Proof(
+        "a front for each frame, its bytes without a hole up to the first without room; each frame given up counted "
+        "once; out of the queue the same, from the first front after a reset on",
+        "the widths in use; td_async_fifo is proven by itself",
+        free=("write_ready", "read_valid", "word"),
+        clocks=2,
+    ),
+)
+
 
 ROWS, BYTES = 3, 12
 NEARLY = ("equal", "half", "a_bit_slow", "a_bit_fast", "three_to_2")  # so near that the queue takes a frame's backlog

@@ -6,13 +6,66 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.chip.camera.pixel_format import colours, pixel_format, raw_shift
+from formal.entries import FULL_WIDTH, Proof
+from tactile_depth.chip.camera.pixel_format import colours, pixel_format, pixel_format_parameters, raw_shift
 from tactile_depth.chip.camera.pixel_format import latency as pixel_format_latency
-from tactile_depth.chip.camera_configuration import CameraConfiguration
+from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraConfiguration
 from tb.camera.slots import Slot, Slots, unpacked
 from tb.cases import on_bench
 from tb.settings import RUN
 from tb.stream import MANY, drive, parametrize
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
+
+PICTURE, GRID = (96, 64), (2, 2)
+RAW = [name for name, form in FORMATS.items() if form.bayer]
+
+
+def built(form: str, phase: int, **runs: Any) -> Structure:
+    arguments: dict[str, Any] = {"picture": PICTURE, "grid": GRID, "pixel_format": form, "phase": PHASES[phase]}
+    camera = CameraConfiguration(**arguments)
+    return Structure(pixel_format_parameters(camera), device={"camera": arguments}, **runs)
+
+
+STRUCTURES = (
+    built("yuyv", 0, on=BOTH, mutants=True),
+    built("raw10", 1, on=VERILATOR, late=()),
+    built("raw10_lsb", 2, on=ICARUS, mutants=True),
+    built("rgb565_bytes", 0, on=ICARUS, mutants=True),
+    built("rgb888", 0, on=ICARUS, late=VERILATOR),
+    built("rgb565", 0, late=BOTH),
+    built("yuyv_bytes", 0),
+    built("raw8", 3, late=VERILATOR),
+    built("raw12_lsb", 2, late=VERILATOR),
+    *(built(form, phase) for form in RAW for phase in range(4)),
+)
+MUTANTS = Mutants(repeats=2)
+REFUSED = {
+    "Format=10": "Format_is_a_number_of_camera_format_e",
+    "Phase=4": "Phase_is_0_to_3",
+}
+PROOFS = (
+    *(
+        Proof(
+            "samples of the window's pixels with their marks, in order; breaks behind them; latency 1",
+            FULL_WIDTH,
+            {"Format": FORMATS[form].code, "Phase": phase},
+        )
+        for form, phase in (
+            *(("rgb888", 0), ("rgb565", 0), ("rgb565_bytes", 0), ("raw8", 1), ("raw10", 0), ("raw10_lsb", 2)),
+            *(("raw12", 3), ("raw12_lsb", 0)),
+        )
+    ),
+    Proof(
+        "YUYV: colours from luma and chroma of the pixel's own pair, in order; latency 3 and 4, breaks 4",
+        FULL_WIDTH,
+        {"Format": FORMATS["yuyv"].code},
+    ),
+)
+
+
+def camera(form: str, **choices: Any) -> CameraConfiguration:
+    return CameraConfiguration((2, 4), (1, 1), form, **choices)
+
 
 OUTPUTS = ["out_valid", "out_samples", "out_colour", "out_row_start", "out_frame_start", "out_abort"]
 Place = tuple[int, int, int, int]  # x, y, width, height

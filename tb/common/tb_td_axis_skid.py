@@ -7,10 +7,16 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
+from formal.entries import WORD_FREE, Proof
 from tactile_depth.chip.common.td_axis_skid import AxisSkid
 from tb.axis import PROFILES, AxisMonitor, AxisSink, AxisSource, profile
 from tb.pins import by_name
 from tb.stream import REGRESS, parameters, parametrize, sample, start_clock
+from tb.structures import BOTH, Structure
+
+STRUCTURES = (Structure({"Width": 26}, on=BOTH, mutants=True),)
+PROOFS = (Proof("no word lost, repeated, reordered or changed; stable under stall; latency 1", WORD_FREE),)
+
 
 WORDS = 600 if REGRESS else 200
 FIELDS = ("data",)

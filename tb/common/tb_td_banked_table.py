@@ -8,10 +8,40 @@ from typing import Any
 import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
+from cocotb_tools.runner import as_sv_literal
 
+from formal.entries import WORD_FREE, Proof
 from tactile_depth.chip.common.td_banked_table import BankedTable
+from tactile_depth.chip.rom_files import write_words
 from tb.pins import Driver, by_name
 from tb.stream import parameters, parametrize, start_clock
+from tb.structures import ICARUS, VERILATOR, Structure
+
+DISTRIBUTED, BLOCK = range(2)
+
+
+def built(width: int, depth: int, style: int, **runs: Any) -> Structure:
+    def contents(folder: Path) -> None:
+        chance = random.Random(depth)
+        write_words(folder / "table.hex", [chance.getrandbits(width) for _ in range(depth)], width)
+
+    parameters = {"Width": width, "Depth": depth, "Style": style, "File": as_sv_literal("table.hex")}
+    return Structure(parameters, roms=contents, **runs)
+
+
+STRUCTURES = (
+    built(24, 36, BLOCK, on=VERILATOR),
+    built(5, 6, DISTRIBUTED, on=ICARUS, mutants=True),
+    built(42, 64, BLOCK),
+)
+PROOFS = (
+    Proof(
+        "a frame reads the bank named when it began; the free bank reads as it was written",
+        WORD_FREE,
+        depth=30,
+    ),
+)
+
 
 CLOCKS = 6000
 

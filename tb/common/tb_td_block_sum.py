@@ -9,9 +9,44 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
+from formal.entries import Proof
 from tactile_depth.chip.common.td_block_sum import CYCLES_TO_SUM, block_sum
 from tb.pins import Driver, by_name
 from tb.stream import MANY, parameters, parametrize, start_clock
+from tb.structures import ICARUS, VERILATOR, Structure
+
+
+def built(*case: int, **runs: Any) -> Structure:
+    names = ("Rows", "Columns", "BlockLog2", "ColumnLog2", "Channels", "Width", "Signed", "SumWidth")
+    return Structure(dict(zip(names, case, strict=True)), **runs)
+
+
+STRUCTURES = (
+    built(21, 16, 2, 2, 1, 24, 1, 38, on=VERILATOR),
+    built(5, 8, 1, 1, 3, 8, 0, 11, on=ICARUS, mutants=True),
+    built(5, 4, 1, 1, 1, 4, 1, 8, on=ICARUS),
+    built(7, 4, 1, 0, 2, 5, 1, 10, on=ICARUS, mutants=True),
+    built(8, 16, 1, 1, 3, 8, 0, 24),
+    built(16, 16, 3, 3, 1, 12, 1, 24),
+    built(21, 16, 3, 1, 1, 24, 1, 38),
+)
+REFUSED = {
+    "BlockLog2=0": "BlockLog2_must_be_at_least_1",
+    "Columns=96": "Columns_must_be_a_power_of_two",
+    "Columns=8": "two_blocks_a_row_and_one_a_column_are_needed",
+    "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
+    "SumWidth=27": "SumWidth_must_be_more_than_Width_plus_ColumnLog2",
+}
+PROOFS = tuple(
+    Proof(
+        "a block's sum written 4 clocks behind its rows; an arbitrary word is added once to its block, to no other",
+        "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width",
+        {"Signed": signed, "ColumnLog2": column_log2},
+        depth=40,
+    )
+    for signed, column_log2 in ((0, 1), (1, 1), (1, 0))
+)
+
 
 NAMES = ("Rows", "Columns", "BlockLog2", "ColumnLog2", "Channels", "Width", "Signed", "SumWidth")
 

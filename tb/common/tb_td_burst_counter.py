@@ -6,8 +6,29 @@ from typing import Any
 
 import cocotb
 
+from formal.entries import Proof
 from tactile_depth.chip.common.td_burst_counter import burst_counter
 from tb.stream import drive, parameters, parametrize
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("Words")
+STRUCTURES = (
+    built(16, on=VERILATOR),
+    built(8, on=ICARUS, mutants=True),
+    built(64),
+)
+REFUSED = {
+    "Words=1": "Words_must_be_at_least_2",
+}
+PROOFS = tuple(
+    Proof(
+        "position counts the words of a burst, active just as long",
+        why,
+        {"Words": words},
+        depth=20,
+    )
+    for words, why in ((2, "the smallest"), (8, "one counter, the same logic at every power of two"))
+)
 
 
 def starts(words: int, chance: random.Random) -> list[Any]:

@@ -6,8 +6,39 @@ from typing import Any
 
 import cocotb
 
+from formal.entries import WORD_FREE, Proof
 from tactile_depth.chip.common.td_delay_line import delay_line
 from tb.stream import drive, parameters, parametrize
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("Width Delay")
+STRUCTURES = (
+    built(54, 65, on=VERILATOR),
+    built(1, 1, on=ICARUS),
+    built(9, 2, on=ICARUS),
+    built(8, 4, on=ICARUS, mutants=True),
+    built(8, 5, on=ICARUS, mutants=True),
+    built(70, 8),
+    built(12, 33),
+    built(70, 128),
+)
+REFUSED = {
+    "Delay=0": "Delay_must_be_at_least_1",
+}
+PROOFS = tuple(
+    Proof(
+        "out is in, Delay enabled clocks later; holds while en is low",
+        why,
+        {"Delay": delay},
+        depth=30,
+    )
+    for delay, why in (
+        (1, "the smallest"),
+        (4, f"the longest of registers; {WORD_FREE}"),
+        (5, f"the shortest in memory; {WORD_FREE}"),
+        (8, f"in memory, the pointer runs over at a power of two; {WORD_FREE}"),
+    )
+)
 
 
 @cocotb.test()

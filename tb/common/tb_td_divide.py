@@ -7,8 +7,32 @@ from typing import Any
 
 import cocotb
 
+from formal.entries import Proof
+from tactile_depth.chip.common import td_divide
 from tactile_depth.chip.common.td_divide import cycles, divide
 from tb.stream import drive, parameters
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("DivisorWidth QuotientWidth")
+STRUCTURES = (
+    built(24, 25, on=VERILATOR),
+    built(6, 5, on=ICARUS, mutants=True),
+    built(3, 9, on=ICARUS),
+    built(1, 2),
+    built(15, 12),
+)
+REFUSED = {
+    "DivisorWidth=0": "DivisorWidth_must_be_at_least_1_and_QuotientWidth_at_least_2",
+    "QuotientWidth=1": "DivisorWidth_must_be_at_least_1_and_QuotientWidth_at_least_2",
+}
+PROOFS = (
+    Proof(
+        "quotient and remainder, or overflow, a fixed number of clocks after the last start",
+        "every numerator and divisor; a bit is found in the same way at any width",
+        {"DivisorWidth": 3, "QuotientWidth": 4, "Latency": td_divide.cycles(4)},
+        depth=30,
+    ),
+)
 
 
 def operands(divisor_width: int, quotient_width: int) -> list[tuple[int, int]]:

@@ -8,8 +8,20 @@ from typing import Any
 import cocotb
 import numpy as np
 
+from formal.entries import Proof
 from tactile_depth.chip.common.td_dot_product import LATENCY, dot_product
 from tb.stream import drive, parameters, parametrize
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("AWidth BWidth")
+STRUCTURES = (
+    built(27, 18, on=VERILATOR),
+    built(15, 10, on=ICARUS),
+    built(35, 24),
+    built(4, 3, mutants=True),
+)
+PROOFS = (Proof("the exact sum of two products, 4 enabled clocks later", "no control but en; no width enters"),)
+
 
 FACTORS = ("a0", "b0", "a1", "b1")
 

@@ -8,8 +8,19 @@ from typing import Any
 import cocotb
 import numpy as np
 
+from formal.entries import Proof
 from tactile_depth.chip.common.td_multiply import LATENCY, multiply
 from tb.stream import drive, parameters, parametrize
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("AWidth BWidth")
+STRUCTURES = (
+    built(27, 18, on=VERILATOR),
+    built(35, 24, on=ICARUS),
+    built(15, 10, mutants=True),
+    built(2, 3),
+)
+PROOFS = (Proof("the exact product of every enabled clock's operands", "no control but en; no width enters"),)
 
 
 @cocotb.test()

@@ -6,10 +6,44 @@ from pathlib import Path
 from typing import Any
 
 import cocotb
+from cocotb_tools.runner import as_sv_literal
 
+from commands.hardware.ecp5 import write_slices
+from formal.entries import WORD_FREE, Proof
 from tactile_depth.chip.common.td_ram import ram
+from tactile_depth.chip.rom_files import write_words
 from tb.settings import RUN
 from tb.stream import drive, parameters
+from tb.structures import ICARUS, VERILATOR, Structure
+
+DISTRIBUTED, BLOCK, ULTRA = range(3)
+
+
+def built(width: int, depth: int, style: int, file: str = "", **runs: Any) -> Structure:
+    def contents(folder: Path) -> None:
+        if file:
+            chance = random.Random(depth)
+            write_words(folder / file, [chance.getrandbits(width) for _ in range(depth)], width)
+            write_slices(folder)
+
+    parameters = {"Width": width, "Depth": depth, "Style": style}
+    named = {"File": as_sv_literal(file)} if file else {}
+    return Structure(parameters | named, device={"file": file}, roms=contents, **runs)
+
+
+STRUCTURES = (
+    built(24, 64, BLOCK, "contents.hex", on=VERILATOR),
+    built(5, 16, DISTRIBUTED, on=ICARUS, mutants=True),
+    built(9, 24, DISTRIBUTED, "contents.hex", on=ICARUS),
+    built(70, 32, ULTRA, on=ICARUS),
+)
+REFUSED = {
+    "Depth=1": "Depth_must_be_at_least_2",
+    'Style=2 File="contents.hex"': "an_ultra_memory_has_no_contents_at_power_up",
+}
+PROOFS = tuple(
+    Proof("a read returns what was last written to its address", WORD_FREE, {"Style": style}) for style in (0, 1, 2)
+)
 
 
 @cocotb.test()

@@ -8,8 +8,32 @@ from typing import Any
 import cocotb
 import numpy as np
 
+from formal.entries import Proof
 from tactile_depth.chip.common.td_ramp import latency, ramp
 from tb.stream import drive, parameters, parametrize
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("Width StepWidth Count")
+STRUCTURES = (
+    built(32, 29, 8, on=VERILATOR),
+    built(8, 8, 1, on=ICARUS),
+    built(10, 6, 4, on=ICARUS, mutants=True),
+    built(9, 5, 2),
+    built(40, 37, 32),
+)
+REFUSED = {
+    "Count=0": "Count_must_be_a_power_of_two",
+    "Count=3": "Count_must_be_a_power_of_two",
+    "StepWidth=33": "StepWidth_must_be_at_most_Width",
+}
+PROOFS = tuple(
+    Proof(
+        "an arbitrary word is the first and so many steps, log2(Count) enabled clocks later",
+        "sums are exact at any width; no tree, and one of two levels",
+        {"Count": count},
+    )
+    for count in (1, 4)
+)
 
 
 @cocotb.test()

@@ -8,7 +8,32 @@ from typing import Any
 import cocotb
 
 from tactile_depth.chip.common.td_rom import LATENCY, rom
+from tactile_depth.chip.rom_files import write_words
 from tb.stream import drive, parameters, parametrize
+from tb.structures import ICARUS, VERILATOR, Structure
+
+
+def built(width: int, depth: Any, style: int, **runs: Any) -> Structure:
+    chance = random.Random(depth)
+    words = [chance.getrandbits(width) for _ in range(depth)]
+    return Structure(
+        {"Width": width, "Depth": depth, "Style": style},
+        roms=lambda folder: write_words(folder / "rom.hex", words, width),
+        **runs,
+    )
+
+
+STRUCTURES = (
+    built(54, 128, 3, on=VERILATOR),
+    built(10, 36, 3, on=ICARUS, mutants=True),
+    built(72, 33, 3),
+    built(54, 128, 0),
+    built(10, 36, 1),
+)
+REFUSED = {
+    "Depth=1": "Depth_must_be_at_least_2",
+}
+NO_PROOF = "one read register and no other state; its contents and addresses are proven of those that use it"
 
 
 @cocotb.test()

@@ -7,8 +7,47 @@ import cocotb
 import numpy as np
 from cocotb.triggers import Timer
 
+from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_half_even, round_saturate
 from tb.stream import parameters
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("InWidth Drop OutWidth")
+STRUCTURES = (
+    built(10, 4, 5, on=VERILATOR, mutants=True),
+    built(8, 1, 6, on=ICARUS, mutants=True),  # only ties are dropped; overflow both ways
+    built(8, 1, 7, on=ICARUS),  # only the carry out of the top overflows
+    built(8, 1, 8, on=ICARUS),  # the carry fits
+    built(8, 2, 5, on=ICARUS),
+    built(8, 3, 4, on=ICARUS),
+    built(8, 3, 10, on=ICARUS),  # wider than what is left
+    built(8, 7, 2, on=ICARUS),
+    built(8, 0, 8, on=ICARUS),
+    built(8, 0, 5, on=ICARUS),
+    built(8, -2, 10, on=ICARUS),
+    built(8, -3, 9, on=ICARUS, mutants=True),
+    built(8, -3, 14, on=ICARUS),
+)
+REFUSED = {
+    "Drop=46": "Drop_must_leave_a_bit_of_the_input",
+    "OutWidth=1": "OutWidth_must_be_at_least_2",
+}
+PROOFS = tuple(
+    Proof(
+        "nearest value, ties to even, saturated; clipped exactly when that changes it",
+        FULL_WIDTH,
+        {"InWidth": in_width, "Drop": drop, "OutWidth": out_width},
+        depth=2,
+    )
+    for in_width, drop, out_width in (
+        (48, 17, 27),
+        (29, 1, 27),
+        (28, 0, 27),
+        (24, -3, 27),
+        (27, -3, 24),
+        (12, 9, 8),
+    )
+)
 
 
 @cocotb.test()

@@ -7,9 +7,38 @@ from typing import Any
 import cocotb
 from cocotb.triggers import RisingEdge
 
+from formal.entries import Proof
 from tactile_depth.chip.common.td_table_port import WORD_BITS, TablePort
 from tb import structs
 from tb.stream import parameters, start_clock
+from tb.structures import ICARUS, VERILATOR, Structure
+
+
+def built(select: int, index: int, width: int, words: int, signed: int, entries: int = 1, **runs: Any) -> Structure:
+    numbers = {"Select": select, "IndexWidth": index, "Width": width, "Words": words, "Signed": signed}
+    return Structure({**numbers, "Entries": entries}, **runs)
+
+
+STRUCTURES = (
+    built(3, 8, 24, 1, 1, on=VERILATOR),
+    built(0, 3, 2, 2, 1, on=ICARUS, mutants=True),
+    built(2, 5, 3, 1, 0, on=ICARUS, mutants=True),
+    built(1, 6, 32, 1, 1),
+    built(2, 10, 24, 1, 0),
+    built(0, 12, 21, 2, 1),
+    built(2, 4, 5, 1, 1, entries=3, on=ICARUS, mutants=True),
+    built(3, 6, 24, 1, 0, entries=4, on=VERILATOR),
+)
+REFUSED = dict.fromkeys(("Width=33", "Words=3"), "an_entry_is_1_or_2_words_of_at_most_32_bits")
+PROOFS = tuple(
+    Proof(
+        "an access of its own table one clock later, of no other; the entry read, extended, while it is named",
+        "words are only copied and extended; of one word, and of two; one entry, two and three side by side",
+        {"Signed": signed, "Words": words, "Entries": entries},
+    )
+    for signed, words, entries in ((1, 2, 1), (0, 1, 3), (1, 2, 2))
+)
+
 
 CLOCKS = 6000
 

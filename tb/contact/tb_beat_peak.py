@@ -6,8 +6,30 @@ from typing import Any
 import cocotb
 import numpy as np
 
+from formal.entries import Proof
 from tactile_depth.chip.contact.beat_peak import beat_peak, latency
 from tb.stream import drive, parameters
+from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
+
+built = of_parameters("Width Lanes")
+STRUCTURES = (
+    built(24, 8, on=VERILATOR),
+    built(6, 4, on=ICARUS, mutants=True),
+    built(6, 2, on=ICARUS),
+    built(32, 32),
+    built(12, 16),
+)
+
+
+def refused(missing: str) -> dict[str, Any]:
+    """Return the refused parameters of a core of one beat; Verilator stops earlier, for want of a name."""
+    rule = "Lanes_must_be_a_power_of_two_at_least_2"
+    return {"Lanes=1": Refused(rule, {"verilator": f"can't find definition of '{missing}'"}), "Lanes=12": rule}
+
+
+REFUSED = refused("top_at")
+PROOFS = (Proof("peak of an arbitrary beat, 2 clocks later", "comparisons are exact at any width"),)
+
 
 BEATS = 600
 

@@ -6,8 +6,28 @@ from typing import Any
 
 import cocotb
 
+from formal.entries import ROUNDING, Proof
+from tactile_depth.chip.contact import centroid
 from tactile_depth.chip.contact.centroid import cycles, mean
 from tb.stream import drive, parameters
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("PositionWidth WeightWidth")
+STRUCTURES = (
+    built(7, 38, on=VERILATOR),
+    built(3, 6, on=ICARUS, mutants=True),
+    built(10, 52),
+    built(2, 4),
+    built(5, 9),
+)
+PROOFS = (
+    Proof(
+        "both means to the nearest, a fixed number of clocks after the last start",
+        f"every weight and moment of this width; a bit is found in the same way at any width; {ROUNDING}",
+        {"Latency": centroid.cycles(2)},
+        depth=40,
+    ),
+)
 
 
 def moments(position_bits: int, weight: int, chance: random.Random) -> list[int]:

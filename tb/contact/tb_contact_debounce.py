@@ -7,8 +7,24 @@ from typing import Any, NamedTuple
 
 import cocotb
 
+from formal.entries import Proof
 from tactile_depth.chip.contact.contact_debounce import BEGAN, ENDED, TOUCHING, ContactDebounce
 from tb.stream import REGRESS, drive, parameters, parametrize
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("AreaWidth")
+STRUCTURES = (
+    built(15, on=VERILATOR),
+    built(5, on=ICARUS, mutants=True),
+    built(21),
+)
+PROOFS = (
+    Proof(
+        "touching changes after `debounce` frames in a row that speak against it, and for no other reason",
+        "areas are only compared; a count of four frames",
+        depth=20,
+    ),
+)
 
 
 class Frame(NamedTuple):

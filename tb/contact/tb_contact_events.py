@@ -8,12 +8,47 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
+from formal.entries import Proof
+from tactile_depth.chip.contact import contact_events
 from tactile_depth.chip.contact.contact_events import CYCLES_TO_TOUCHING, WORDS, ContactEvents, Settings, latency
 from tactile_depth.chip.contact.record_packets import RecordPackets
 from tb.axis import profile
 from tb.cases import on_bench
 from tb.contact.depth_bench import WORD_HIGH, DepthBench
 from tb.stream import REGRESS, parametrize
+from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, of_parameters
+
+built = of_parameters("Width Rows Columns Lanes BottomFirst")
+STRUCTURES = (
+    built(24, 5, 8, 1, 0, on=VERILATOR),
+    built(6, 5, 8, 1, 1, on=ICARUS, mutants=True),
+    built(32, 5, 16, 1, 1),
+    built(12, 9, 4, 1, 0),
+    built(24, 8, 16, 1, 0),
+    built(24, 5, 32, 4, 1),
+    built(16, 8, 32, 8, 0),
+    built(12, 4, 16, 2, 0),
+)
+MUTANTS = Mutants(simulators=QUICK_FIRST, outside=("frame",), flat=False)
+REFUSED = {
+    "Width=1": "Width_must_be_2_to_32",
+    "Width=33": "Width_must_be_2_to_32",
+    "Rows=1": "Rows_must_be_2_to_1024",
+    "Rows=1025": "Rows_must_be_2_to_1024",
+    "Columns=1": "Columns_must_be_2_to_1024",
+    "Columns=1025": "Columns_must_be_2_to_1024",
+    "Rows=4 Columns=4": "a_frame_must_take_at_least_Latency_cycles",
+}
+PROOFS = (
+    Proof(
+        "a record at a fixed latency, kept until the next, with number and time of its frame",
+        "rows and columns are only counted; whatever count, peak, sums and centroid come out: these have proofs",
+        {"Rows": 4, "Columns": 8, "Latency": contact_events.latency(4, 8)},
+        depth=110,
+        free=("sums", "count", "peak", "middle"),
+    ),
+)
+
 
 FRAMES = {0.0: 1000, 0.1: 1000} if REGRESS else {0.0: 300, 0.1: 100}  # by the probability of a gap
 

@@ -10,7 +10,18 @@ from cocotb.triggers import RisingEdge
 from tactile_depth.chip.contact.contact_sums import ContactSums, cycles_to_sums
 from tb.cases import on_bench
 from tb.contact.depth_bench import MeasureBench
+from tb.contact.tb_contact_peak import proofs, refused, structures
 from tb.stream import REGRESS, parametrize
+
+STRUCTURES = structures(8)
+REFUSED = refused("first")
+PROOFS = proofs(
+    "sums 2 + log2(Lanes) clocks after a frame's last beat: area, weight and moments of all that is above; limits "
+    "enclose it, and are attained",
+    "positions are only counted; sums are exact at any width; either order of rows; the sums of a beat of "
+    "several depths are proven of beat_sums",
+)
+
 
 FRAMES = 1000 if REGRESS else 200
 # Lowest bit and bits of the fields of contact_sums_t: least row and column, greatest row and column, moments, weight

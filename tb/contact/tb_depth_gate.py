@@ -7,11 +7,23 @@ from typing import Any
 import cocotb
 from cocotb.triggers import RisingEdge
 
+from formal.entries import WORD_FREE, Proof
 from tactile_depth.chip.contact.depth_gate import DepthGate, Word
 from tb.axis import PROFILES, AxisMonitor, profile
 from tb.cases import on_bench
 from tb.pins import Driver, by_name
 from tb.stream import depth_position, parameters, parametrize, start_clock
+from tb.structures import BOTH, Structure
+
+STRUCTURES = (Structure({"Width": 12}, on=BOTH, mutants=True),)
+PROOFS = (
+    Proof(
+        "all words of a frame that waits, the first ones of one that does not; each looked at once, in time",
+        f"words of a frame are only counted; {WORD_FREE}",
+        depth=30,
+    ),
+)
+
 
 ROWS, COLUMNS = 3, 5
 FIELDS = ("data", "position")

@@ -6,9 +6,26 @@ from typing import Any
 
 import cocotb
 
+from formal.entries import Proof
 from tactile_depth.chip.contact.record_packets import RecordPackets
 from tb.axis import PROFILES, profile
 from tb.stream import drive, parameters, parametrize
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("Words")
+STRUCTURES = (
+    built(13, on=VERILATOR),
+    built(3, on=ICARUS, mutants=True),
+    built(2),
+)
+PROOFS = (
+    Proof(
+        "the newest record kept; whole packets in order, each sent, or lost and said so",
+        "words are sent alike; three of them to a packet",
+        depth=20,
+    ),
+)
+
 
 PROFILES["rarely"] = lambda rng: (rng.random() < 0.05 for _ in iter(int, 1))
 PROFILES["never"] = lambda rng: iter(lambda: False, True)

@@ -7,9 +7,30 @@ from typing import Any
 import cocotb
 from cocotb.triggers import RisingEdge
 
+from formal.entries import WORD_FREE, Proof
 from tactile_depth.chip.depth.frame_tags import FrameTags
 from tb.cases import on_bench
 from tb.stream import parameters, parametrize, start_clock
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+# Two frames in flight, one, exactly two, four; the first again, for mutants.
+built = of_parameters("Width Latency Pixels")
+STRUCTURES = (
+    built(33, 37, 24, on=VERILATOR),
+    built(4, 9, 16, on=ICARUS),
+    built(33, 32, 16),
+    built(33, 50, 13),
+    built(4, 9, 6, mutants=True),
+)
+PROOFS = tuple(
+    Proof(
+        "an arbitrary tag is due exactly Latency enabled clocks after it was pushed, nothing else ever",
+        f"one, two and three places; {WORD_FREE}",
+        {"Latency": latency, "Pixels": pixels},
+        depth=30,
+    )
+    for latency, pixels in ((3, 4), (5, 4), (7, 3))
+)
 
 
 class Bench:

@@ -8,17 +8,22 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
+from formal.entries import ROUNDING, WORD_FREE, Proof
+from formal.tables import gain_rom
 from tactile_depth.chip.common.td_node_map import node_map
 from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.fixed_point import Format
 from tactile_depth.chip.gradient.flat_field import (
     CODE,
     LATENCY,
     PixelGains,
+    flat_field_parameters,
     pixel_gains,
     unit_gains,
 )
 from tactile_depth.chip.limits import DEVIATION, RATIO
 from tactile_depth.chip.registers.register_map import TABLES
+from tactile_depth.chip.rom_files import write_gains
 from tb import pins
 from tb.cases import on_bench
 from tb.nodes import Grid, Nodes, reads_as_a_pause_ends
@@ -35,6 +40,54 @@ from tb.stream import (
     sample,
     send_apart,
 )
+from tb.structures import ICARUS, VERILATOR, Structure
+
+
+def built(columns: int, rows: int, block_log2: int, output: Format, gain_width: int, **runs: Any) -> Structure:
+    config = Grid(rows, columns, block_log2, Format(gain_width, 0))
+    return Structure(
+        flat_field_parameters(config, output),  # type: ignore[arg-type]
+        roms=lambda folder: write_gains(folder, unit_gains(config), gain_width),  # type: ignore[arg-type]
+        **runs,
+    )
+
+
+STRUCTURES = (
+    built(16, 11, 2, CODE, 24, on=VERILATOR, mutants=True),
+    built(16, 8, 1, DEVIATION, 17, on=ICARUS, late=VERILATOR),
+    built(16, 11, 2, DEVIATION, 24, mutants=True),
+    built(32, 21, 1, CODE, 24),
+    built(128, 8, 3, CODE, 24),
+    built(64, 64, 2, DEVIATION, 24),
+    built(16, 8, 1, RATIO, 17, mutants=True),
+    built(16, 8, 1, DEVIATION, 16),
+    built(128, 8, 3, DEVIATION, 17),
+)
+REFUSED = {
+    "Offset=1": "Offset_must_be_even_it_is_subtracted_before_rounding_to_even",
+}
+PROOFS = (
+    Proof(
+        "beside a pixel's gains, 10 enabled clocks after it came, stand its own colours, valid and place",
+        f"every clock reads a node; {WORD_FREE}",
+        {"Meets": 1},
+        depth=45,
+        roms=gain_rom(2),
+        free=("gains",),
+    ),
+    *(
+        Proof(
+            "whatever stands there: a colour times its gain, rounded, saturated; dark pixels held, counted; 3 clocks",
+            f"products are exact at any width; {ROUNDING}",
+            {"Meets": 0, "GainWidth": 4, "Drop": 1, "Offset": offset, "OutWidth": width, "Flat": flat},
+            depth=45,
+            roms=gain_rom(2),
+            free=("gains", "gain_valid", "gain_position", "colours", "dim"),
+        )
+        for offset, width, flat in ((0, 1, 1), (2, 2, 0))
+    ),
+)
+
 
 PIXELS = 2048  # that a test sends, at least
 PIXEL = ["pixel", "position"]

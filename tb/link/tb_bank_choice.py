@@ -5,8 +5,20 @@ from typing import Any
 
 import cocotb
 
+from formal.entries import Proof
 from tactile_depth.chip.link.bank_choice import BankChoice
 from tb.lockstep import Pins, play
+from tb.structures import BOTH, Structure
+
+STRUCTURES = (Structure(on=BOTH, mutants=True),)
+PROOFS = (
+    Proof(
+        "never the bank that is read is written; the frame that is taken is the newest that became ready, whole; each "
+        "frame is taken, waits, or is lost and counted once; without a reader none is lost before it is ready",
+        "it has no size; frames are numbered modulo 8, and at most three are inside",
+        depth=20,
+    ),
+)
 
 
 def legal(banks: BankChoice, pins: Pins) -> None:

@@ -10,9 +10,38 @@ from typing import Any
 
 import cocotb
 
+from formal.entries import WORD_FREE, Proof
 from tactile_depth.chip.contact.contact_events import WORDS
 from tactile_depth.chip.link.bank_choice import BankChoice
 from tb.stream import MANY, drive, parameters, parametrize
+from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
+
+built = of_parameters("Rows Columns DataWidth Lanes")
+STRUCTURES = (
+    built(5, 8, 24, 2, on=VERILATOR),
+    built(3, 4, 12, 1, on=ICARUS, mutants=True),
+    built(3, 4, 5, 2, on=ICARUS, mutants=True),
+    built(6, 16, 20, 4),
+    built(2, 2, 8, 1),
+)
+MUTANTS = Mutants(repeats=4, flat=False)
+REFUSED = {
+    "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
+    "Lanes=3": "Lanes_must_divide_Columns",
+    "Rows=1": "Rows_must_be_at_least_2",
+    "DataWidth=1": "DataWidth_must_be_at_least_2",
+}
+PROOFS = tuple(
+    Proof(
+        "each value and word that is read is that of the frame taken, which came whole with its record and was the "
+        "newest; the memories' rules",
+        f"values and words are only stored, and an arbitrary one is followed; {WORD_FREE}",
+        {"Rows": 2, "Columns": 2 * lanes, "Lanes": lanes},
+        depth=30,
+    )
+    for lanes in (1, 2)
+)
+
 
 Pins = dict[str, int]
 LATENCY = 2  # clocks from value_read to the value

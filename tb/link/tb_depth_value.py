@@ -7,9 +7,33 @@ from typing import Any
 import cocotb
 import numpy as np
 
+from formal.entries import Proof
 from tactile_depth.chip.link.depth_formats import DepthFormat, to_bytes
 from tactile_depth.chip.link.packets import LARGEST_SHIFT
 from tb.stream import MANY, drive, parameters, parametrize
+from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
+
+built = of_parameters("DataWidth")
+STRUCTURES = (
+    built(24, on=VERILATOR, mutants=True),
+    built(12, on=ICARUS),
+    built(32, on=ICARUS),
+    built(16),
+    built(2),
+)
+MUTANTS = Mutants(repeats=4)
+REFUSED = {"DataWidth=1": "DataWidth_must_be_at_least_2"}
+PROOFS = (
+    Proof(
+        "the sum of the codes, divided and rounded once as td_round_saturate does for each shift, 3 clocks later",
+        "the sum and the rounding are one formula for every width; 20 bits are rounded with every shift, and clip",
+        {"DataWidth": 20},
+        depth=8,
+        engine="smtbmc bitwuzla -- --noincr",
+        steps=6,
+    ),
+)
+
 
 LATENCY = 3
 

@@ -22,6 +22,15 @@ from tb.axis import VIDEO
 from tb.link.axil_slave import AxilSlave, Registers
 from tb.pins import Driver, unsigned
 from tb.stream import MANY, parameters, parametrize, start_clock
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("Rows Columns DataWidth Lanes BottomFirst")
+STRUCTURES = (
+    built(6, 16, 24, 1, 1, on=ICARUS),
+    built(5, 32, 15, 4, 0, on=VERILATOR),
+    built(32, 16, 18, 2, 1),
+)
+
 
 QUIET_CLOCKS = 300  # without a byte; a byte too many that comes later differs in the next comparison
 LAST_CLOCKS = 2000  # the same behind the last comparison: more than a packet of depth takes until its first byte
@@ -32,7 +41,7 @@ READ = (
     *(f"{name}{half}" for name in ("in_", "out_", "m_axis_t") for half in ("valid", "ready")),
     *("out_data", *(f"m_axis_t{field}" for field in VIDEO)),
 )
-REFUSED = 0x43  # address, which Registers refuses
+REFUSED_ADDRESS = 0x43  # address, which Registers refuses
 Byte = int | None
 
 
@@ -179,7 +188,7 @@ class Board:
     def request(self) -> list[Byte]:
         """Return the line's bytes of some packet other than ask and select."""
         chance = self.chance
-        addresses = tuple(chance.choice((4, 8, 8, REFUSED, 1 << 15)) for _ in range(chance.choice((1, 2, 5))))
+        addresses = tuple(chance.choice((4, 8, 8, REFUSED_ADDRESS, 1 << 15)) for _ in range(chance.choice((1, 2, 5))))
         return list(
             to_line(
                 chance.choice(

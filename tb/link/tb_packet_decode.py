@@ -7,12 +7,27 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
+from formal.entries import Proof
 from tactile_depth.chip.link.framing import LONGEST_BODY
 from tactile_depth.chip.link.packets import SELECT, TO_DEVICE, Ask, Kind, Picture, Read, Select, Write, unpack
 from tb.axis import profile
 from tb.cases import on_bench
 from tb.pins import Driver, by_name
 from tb.stream import parametrize, start_clock
+from tb.structures import BOTH, QUICK_FIRST, Mutants, Structure
+
+STRUCTURES = (Structure(on=BOTH, mutants=True),)
+MUTANTS = Mutants(simulators=QUICK_FIRST)
+PROOFS = (
+    Proof(
+        "each packet does what its kind says if length and fields are good, in order; another one is said to be bad, "
+        "or dropped if its kind is unknown; the streams are whole and stable",
+        "the widths in use",
+        engine="smtbmc bitwuzla -- --noincr",
+        steps=3,
+    ),
+)
+
 
 LENGTHS = {  # of kind and fields: about the limits, and near each power of two
     Kind.ASK: (1, 2, 3),

@@ -7,11 +7,23 @@ from typing import Any
 
 import cocotb
 
+from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.chip.link.packet_mux import DEPTH, RECORD, SOURCES, PacketMux
 from tb.cases import on_bench
 from tb.link.byte_packets import STREAMS, Bench, random_packet, words
 from tb.link.byte_packets import packets as packets_of
 from tb.stream import MANY, at_every_edge, drive, parametrize
+from tb.structures import BOTH, Mutants, Structure
+
+STRUCTURES = (Structure(on=BOTH, mutants=True),)
+MUTANTS = Mutants(repeats=2)
+PROOFS = (
+    Proof(
+        "packets pass whole and unchanged, each chosen by its turn; depth before the next record; stable under stall",
+        FULL_WIDTH,
+    ),
+)
+
 
 PINS = [f"{name}_{pin}" for pin in ("valid", "data", "last") for name in SOURCES]
 OUTPUTS = ["out_valid", "out_data", "out_last", *(f"{name}_ready" for name in SOURCES)]

@@ -7,6 +7,7 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
+from formal.entries import Proof
 from tactile_depth.chip.link.device import Build, LinkDevice
 from tactile_depth.chip.link.framing import to_line
 from tactile_depth.chip.link.packets import MOST_PIXELS, Picture
@@ -14,6 +15,32 @@ from tb.axis import AxisMonitor, AxisSink, AxisSource, profile
 from tb.cases import on_bench
 from tb.pins import Driver, unsigned
 from tb.stream import MANY, parameters, parametrize, start_clock
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
+
+built = of_parameters("Rows Columns")
+STRUCTURES = (
+    built(12, 16, on=VERILATOR),
+    built(3, 4, on=ICARUS, mutants=True),
+    built(5, 6, late=BOTH),
+    built(2, 300),
+)
+MUTANTS = Mutants(repeats=4)
+REFUSED = {
+    "Rows=0": "Rows_must_be_1_to_4096",
+    "Rows=4097": "Rows_must_be_1_to_4096",
+    "Columns=0": "Columns_must_be_1_to_4096",
+    "Columns=4097": "Columns_must_be_1_to_4096",
+}
+PROOFS = (
+    Proof(
+        "a pixel leaves the clock after its last byte, exactly if its packet begins a picture or goes on with it and "
+        "the picture lacks it, with its bytes and marks",
+        "rows and columns are only counted",
+        {"Rows": 2, "Columns": 3},
+        depth=34,
+    ),
+)
+
 
 LONGEST = 5_000  # clocks until all pixels have left
 

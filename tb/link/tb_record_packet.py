@@ -7,10 +7,23 @@ from typing import Any
 
 import cocotb
 
+from formal.entries import WORD_FREE, Proof
 from tactile_depth.chip.contact.contact_events import WORDS, record
 from tactile_depth.chip.link.packets import RECORD, RecordPacket
 from tb.axis import PROFILES, profile
 from tb.stream import drive, parametrize
+from tb.structures import BOTH, Mutants, Structure
+
+STRUCTURES = (Structure(on=BOTH, mutants=True),)
+MUTANTS = Mutants(flat=False)
+PROOFS = (
+    Proof(
+        "whole packets of the kind and the 48 bytes of the newest record that was there as the first byte was taken",
+        f"the size in use; one bit of an arbitrary word is followed: {WORD_FREE}",
+        depth=30,
+    ),
+)
+
 
 PACKET = RECORD.size
 CALM = {"rst": 0, "s_event_tvalid": 0, "s_event_tdata": 0, "s_event_tlast": 0, "record_ready": 1}

@@ -7,6 +7,7 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
+from formal.entries import Proof
 from tactile_depth.chip.link.device import Build, LinkDevice
 from tactile_depth.chip.link.framing import to_line
 from tactile_depth.chip.link.packets import Ask, PacketReader, Read, ReadReply, Write, WriteReply
@@ -14,6 +15,32 @@ from tb.axis import AxisMonitor, AxisSink, AxisSource, profile
 from tb.cases import on_bench
 from tb.link.axil_slave import AxilSlave, Registers
 from tb.stream import MANY, parameters, parametrize, start_clock
+from tb.structures import BOTH, ICARUS, Mutants, of_parameters
+
+built = of_parameters("AddressWidth Accesses")
+STRUCTURES = (
+    built(10, 128, on=BOTH),
+    built(4, 3, on=ICARUS, mutants=True),
+    built(16, 128),
+)
+MUTANTS = Mutants(repeats=2)
+REFUSED = {
+    "AddressWidth=1": "AddressWidth_must_be_2_to_16",
+    "AddressWidth=17": "AddressWidth_must_be_2_to_16",
+    "Accesses=1": "Accesses_must_be_2_to_128",
+    "Accesses=129": "Accesses_must_be_2_to_128",
+}
+PROOFS = (
+    Proof(
+        "each access once, one at a time, in its clock, with its own address and value; none behind a refused one, "
+        "above the width, or of a repeated request; the reply has what was done and the values read, a repeated one "
+        "the same",
+        "accesses are only counted, and no value is looked at; td_ram is proven by itself",
+        depth=32,
+        free=("word",),
+    ),
+)
+
 
 Request = Read | Write
 LONGEST = 5_000  # clocks until all replies have left

@@ -7,10 +7,22 @@ from typing import Any
 import cocotb
 from cocotb.triggers import RisingEdge
 
+from formal.entries import Proof
 from tactile_depth.chip.link.depth_formats import DepthFormat
 from tactile_depth.chip.link.packets import Status
 from tb.axis import PROFILES, profile
 from tb.stream import parametrize, start_clock
+from tb.structures import BOTH, Structure
+
+STRUCTURES = (Structure(on=BOTH, mutants=True),)
+PROOFS = (
+    Proof(
+        "a packet after each reset, and one for the requests since the last one began; its fields are those of the "
+        "clock in which its first byte is taken",
+        "fields leave alike; three bytes of them",
+    ),
+)
+
 
 PROFILES["rarely"] = lambda rng: (rng.random() < 0.2 for _ in iter(int, 1))
 CLOCKS = 3000

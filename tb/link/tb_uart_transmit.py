@@ -8,9 +8,21 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
+from formal.entries import Proof
 from tactile_depth.chip.link.uart import BITS, receive, transmit
 from tb.axis import AxisSource, profile
 from tb.stream import parameters, parametrize, start_clock
+from tb.structures import BOTH, Structure
+
+STRUCTURES = (Structure({"Divider": 4}, on=BOTH, mutants=True), Structure({"Divider": 33}, late=BOTH))
+PROOFS = (
+    Proof(
+        "each byte as a start bit, its bits and a stop bit, each for as many clocks; taken when the line is free",
+        "clocks of a bit are only counted",
+        depth=46,
+    ),
+)
+
 
 BYTES = 40
 

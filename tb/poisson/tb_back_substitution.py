@@ -1,6 +1,48 @@
 # SPDX-License-Identifier: Apache-2.0
 """back_substitution against its model: the tests that it shares with forward_elimination."""
 
+from typing import Any
+
+from formal.entries import ROUNDING, Proof
+from formal.tables import thomas_roms
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
+from tactile_depth.chip.rom_files import write_thomas
 from tb.poisson.elimination_bench import a_frame_begins_afresh, frames, many_frames, reset_in_mid_frame
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+
+NAMES = ("Width", "CoeffWidth", "Rows", "Columns", "TableWords", "SettledWidth")
+CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
+
+
+def built(choices: Any, **runs: Any) -> Structure:
+    config = Configuration(**choices)
+    parameters = solver_parameters(config)
+    return Structure(
+        {name: parameters[name] for name in NAMES} | {"InWidth": config.data_width, "Drop": -parameters["StoreDrop"]},
+        device={"configuration": choices},
+        roms=lambda folder: write_thomas(folder, config),
+        **runs,
+    )
+
+
+STRUCTURES = (
+    built(CHOICES, on=VERILATOR),
+    built(CHOICES | {"neumann": True}, on=ICARUS),
+    # Few bits are dropped: ties are common.
+    built(CHOICES | {"data_width": 12, "coefficient_width": 10}, mutants=True),
+    built(CHOICES | {"rows": 21, "data_width": 32, "coefficient_width": 24}),
+)
+MUTANTS = Mutants("bursts")
+PROOFS = (
+    Proof(
+        "the recursion up an arbitrary column; latency 8",
+        f"the smallest burst that holds the loop of the recursion; {ROUNDING}",
+        {"Rows": 3, "Columns": 8, "Words": 16},
+        depth=60,
+        roms=thomas_roms(3, 8, 16, 3, 2, 1),
+    ),
+)
+
 
 __all__ = ["a_frame_begins_afresh", "frames", "many_frames", "reset_in_mid_frame"]

@@ -6,9 +6,39 @@ from typing import Any
 import cocotb
 import numpy as np
 
+from formal.entries import ROUNDING, Proof
 from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.forward_elimination import zero_mean
+from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
 from tb.stream import MANY, configuration, drive, parametrize, uniform
+from tb.structures import ICARUS, VERILATOR, Structure
+
+CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal", "neumann": True}
+NAMES = ("Width", "CoeffWidth", "Rows", "MomentDrop", "MeanReciprocal", "MeanDrop")
+
+
+def built(choices: Any, **runs: Any) -> Structure:
+    parameters = solver_parameters(Configuration(**choices))
+    return Structure({name: parameters[name] for name in NAMES}, device={"configuration": choices}, **runs)
+
+
+STRUCTURES = (
+    built(CHOICES, on=VERILATOR),
+    built(CHOICES | {"rows": 9}, on=ICARUS),
+    # Few bits are dropped: ties are common.
+    built(CHOICES | {"rows": 21, "data_width": 12, "coefficient_width": 10}, on=ICARUS, mutants=True),
+)
+REFUSED = {"Rows=1": "Rows_must_be_at_least_2"}
+PROOFS = (
+    Proof(
+        "minus the mean of a column, 6 clocks behind its row before the last; a frame begins afresh",
+        f"rows are only counted; {ROUNDING}",
+        {"Rows": 4},
+        depth=40,
+    ),
+)
+
 
 CLOSEST = 6  # cycles between two rows, at least: the way of an addend into the mean
 

@@ -6,6 +6,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
+from formal.entries import Proof
 from tactile_depth.chip.poisson.divergence import LATENCY, divergence
 from tb.stream import (
     Bench,
@@ -21,6 +22,30 @@ from tb.stream import (
     send_apart,
     uniform,
 )
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("Columns Width Neumann")
+STRUCTURES = (
+    built(16, 21, 0, on=VERILATOR),
+    built(16, 6, 0, on=ICARUS),
+    built(32, 24, 1, on=ICARUS),
+    built(128, 35, 0),
+    built(16, 21, 1),
+    built(4, 3, 1, mutants=True),
+)
+REFUSED = {
+    "Columns=1": "Columns_must_be_at_least_2",
+}
+PROOFS = tuple(
+    Proof(
+        "differences to the left and above, for every pixel of an arbitrary column; latency 2",
+        "the subtractions are exact at any width; columns and rows are only counted",
+        {"Neumann": neumann},
+        depth=45,
+    )
+    for neumann in (0, 1)
+)
+
 
 FIELDS = ["gx", "gy", "position"]
 

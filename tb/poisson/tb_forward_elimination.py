@@ -1,6 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """forward_elimination against its model: the tests that it shares with the other eliminations."""
 
+from typing import Any
+
+from formal.entries import ROUNDING, Proof
+from formal.tables import thomas_roms
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
+from tactile_depth.chip.rom_files import write_thomas
 from tb.poisson.elimination_bench import (
     a_frame_begins_afresh,
     frames,
@@ -8,5 +15,44 @@ from tb.poisson.elimination_bench import (
     reset_as_the_mean_is_clipped,
     reset_in_mid_frame,
 )
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+
+NAMES = ["Width", "CoeffWidth", "Rows", "Columns", "StoreDrop", "Neumann", "TableWords", "SettledWidth"]
+NAMES += ["LastShiftWidth", "MomentDrop", "MeanReciprocal", "MeanDrop"]
+CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
+
+
+def built(choices: Any, **runs: Any) -> Structure:
+    config = Configuration(**choices)
+    parameters = solver_parameters(config)
+    return Structure(
+        {name: parameters[name] for name in NAMES} | {"OutWidth": config.data_width},
+        device={"configuration": choices},
+        roms=lambda folder: write_thomas(folder, config),
+        **runs,
+    )
+
+
+STRUCTURES = (
+    built(CHOICES | {"neumann": True}, on=VERILATOR),
+    built(CHOICES, on=ICARUS),
+    # Few bits are dropped: ties are common.
+    built(CHOICES | {"neumann": True, "data_width": 12, "coefficient_width": 10}, mutants=True),
+    built(CHOICES | {"rows": 21, "neumann": True, "data_width": 32, "coefficient_width": 24}),
+)
+MUTANTS = Mutants("bursts")
+PROOFS = tuple(
+    Proof(
+        "the recursion down an arbitrary column" + (", and the mean" if neumann else "") + "; latency 9",
+        f"the smallest burst that holds the loop of the recursion; {ROUNDING}",
+        {"Rows": 3, "Columns": 8, "Words": 16, "Neumann": neumann},
+        depth=60,
+        engine="smtbmc bitwuzla -- --noincr",
+        steps=2,
+        roms=thomas_roms(3, 8, 16, 3, 2, 1, singular=neumann == 1),
+    )
+    for neumann in (0, 1)
+)
+
 
 __all__ = ["a_frame_begins_afresh", "frames", "many_frames", "reset_as_the_mean_is_clipped", "reset_in_mid_frame"]

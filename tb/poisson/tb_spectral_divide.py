@@ -6,9 +6,55 @@ from typing import Any
 import cocotb
 import numpy as np
 
+from formal.entries import ROUNDING, Proof
+from formal.tables import divide_rom
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.poisson.spectral_divide import LATENCY, spectral_divide
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.spectral_divide import LATENCY, reciprocals, spectral_divide
+from tactile_depth.chip.rom_files import write_solver
 from tb.stream import MANY, check_bursts, configuration, extremes, parameters, parametrize, sample, uniform
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+
+
+def built(choices: Any, **runs: Any) -> Structure:
+    config = Configuration(**choices)
+    table = reciprocals(config)
+    return Structure(
+        {
+            "Columns": config.columns,
+            "Width": config.arithmetic_width,
+            "CoeffWidth": config.coefficient_width,
+            "ShiftWidth": table.shift_width,
+            "Drop": table.drop,
+        },
+        device={"configuration": choices},
+        roms=lambda folder: write_solver(folder, config),
+        **runs,
+    )
+
+
+STRUCTURES = (
+    built({"columns": 16}, on=VERILATOR),
+    # Here the largest reciprocals exceed 2^(CoeffWidth - 1): they shift further than Drop drops.
+    built({"columns": 16, "coefficient_width": 10, "depth_range_px": 0.1, "gradient_limit": 4.0}, on=ICARUS),
+    built({"columns": 32, "data_width": 12, "coefficient_width": 10}, mutants=True),
+    built({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 40.0}),
+)
+MUTANTS = Mutants("bursts", rows_are="Columns")
+REFUSED = {
+    "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
+    "Columns=1": "Columns_must_be_a_power_of_two_at_least_2",
+}
+PROOFS = tuple(
+    Proof(
+        "word t of burst p meets the reciprocal of the pair (p, t); latency 6",
+        f"one recurrence for every size; {ROUNDING}",
+        {"Columns": size},
+        depth=40,
+        roms=divide_rom(size),
+    )
+    for size in (4, 8)
+)
 
 
 async def check(dut: Any, x: Any, **behaviour: Any) -> Any:

@@ -1,6 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """tridiagonal_solver against its model: the tests that it shares with wide_solver."""
 
+from typing import Any
+
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.resources import ULTRA
+from tactile_depth.chip.rom_files import write_solver
+from tactile_depth.chip.tactile_depth import config_value, top_parameters
 from tb.poisson.solver_bench import (
     a_frame_begins_afresh,
     a_frame_does_not_know_the_one_before,
@@ -9,6 +15,32 @@ from tb.poisson.solver_bench import (
     many_frames,
     reset_in_mid_frame,
 )
+from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
+
+CHOICES: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
+PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, models/tactile_depth/chip/configuration.py
+
+
+def built(choices: Any, store: Any, **runs: Any) -> Structure:
+    config = Configuration(**choices)
+    return Structure(
+        {"Config": config_value(top_parameters(config) | store)},
+        device={"configuration": choices},
+        roms=lambda folder: write_solver(folder, config),
+        **runs,
+    )
+
+
+STRUCTURES = (
+    built(CHOICES, {}, on=VERILATOR),
+    built(CHOICES | {"rows": 21, "neumann": True}, {}, on=ICARUS),
+    built(CHOICES | {"columns": 32, "rows": 9, "data_width": 16, "coefficient_width": 10}, {}, mutants=True),
+    built(CHOICES | {"data_width": 32, "coefficient_width": 24, "neumann": True, "depth_range_px": 5.3}, {}),
+    built(CHOICES | {"columns": 32, "rows": 11}, PACKED),
+)
+MUTANTS = Mutants("words", simulators=QUICK_FIRST, flat=False)
+NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"
+
 
 __all__ = [
     "a_frame_begins_afresh",

@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """wide_solver against its model: the tests that it shares with tridiagonal_solver."""
 
+from typing import Any
+
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.rom_files import write_solver
+from tactile_depth.chip.tactile_depth import config_value, top_parameters
 from tb.poisson.solver_bench import (
     a_frame_begins_afresh,
     a_frame_does_not_know_the_one_before,
@@ -9,6 +14,34 @@ from tb.poisson.solver_bench import (
     many_frames,
     reset_in_mid_frame,
 )
+from tb.structures import BOTH, ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
+
+CHOICES: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
+
+
+def built(choices: Any, **runs: Any) -> Structure:
+    config = Configuration(**choices)
+    return Structure(
+        {"Config": config_value(top_parameters(config))},
+        device={"configuration": choices},
+        roms=lambda folder: write_solver(folder, config),
+        **runs,
+    )
+
+
+STRUCTURES = (
+    built(CHOICES | {"columns": 32, "rows": 11, "lanes": 8}, on=VERILATOR),
+    built(CHOICES | {"columns": 64, "rows": 8, "lanes": 32}, late=BOTH),
+    built(CHOICES | {"lanes": 8, "rows": 9, "neumann": True}, on=ICARUS),
+    built(CHOICES | {"lanes": 2, "rows": 9}, on=ICARUS, mutants=True),
+    built(CHOICES | {"columns": 32, "rows": 9, "lanes": 4, "data_width": 16, "coefficient_width": 10}, mutants=True),
+    built(CHOICES | {"columns": 32, "rows": 8, "lanes": 16, "data_width": 32, "coefficient_width": 24}),
+    built(CHOICES | {"columns": 64, "rows": 96, "lanes": 16, "neumann": True}),
+    built(CHOICES | {"columns": 128, "rows": 13, "lanes": 64}),
+)
+MUTANTS = Mutants("words", simulators=QUICK_FIRST, flat=False)
+NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"
+
 
 __all__ = [
     "a_frame_begins_afresh",

@@ -9,12 +9,24 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
+from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.chip.registers.axil_port import Response, offset_of, response, strobed_bits
 from tactile_depth.chip.registers.register_map import ADDRESS_WIDTH
 from tb.axil import present, read, take, write, write_beats
 from tb.cases import on_bench
 from tb.registers.axil_pins import INPUTS, PortChecker, expected, pins, reset
 from tb.stream import REGRESS, parametrize
+from tb.structures import BOTH, Mutants, Structure
+
+STRUCTURES = (Structure(on=BOTH, mutants=True),)
+MUTANTS = Mutants(protocol="axil_registers")
+PROOFS = (
+    Proof(
+        "AXI4-Lite rules; each access reaches the registers once, with its own words, and has its own answer",
+        FULL_WIDTH,
+    ),
+)
+
 
 WORDS = ("read_data", "late_data")
 FLAGS = ("write_refused", "read_refused", "read_late", "late_refused")

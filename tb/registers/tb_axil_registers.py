@@ -12,6 +12,8 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge, gather
 
+from formal.entries import FULL_WIDTH, Proof
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.registers.axil_port import BYTES, Response, strobed_bits
 from tactile_depth.chip.registers.axil_registers import GAINS, RECORD, Build
 from tactile_depth.chip.registers.event_registers import COUNTERS, EVENT_COUNTERS, EVENTS, INTERRUPT_STATUS, STATUS
@@ -19,6 +21,7 @@ from tactile_depth.chip.registers.register_map import ADDRESS_WIDTH, MAP, REGIST
 from tactile_depth.chip.registers.setting_registers import SETTINGS
 from tactile_depth.chip.registers.table_access import PORTS
 from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
+from tactile_depth.chip.tactile_depth import config_value, default_parameters, top_parameters
 from tb import structs
 from tb.axil import OFFSET, master_of, read, response_of, take, value_of, write_beats
 from tb.axil import write as write_at
@@ -34,6 +37,75 @@ from tb.registers.register_file import (
     write,
 )
 from tb.stream import REGRESS, parametrize
+from tb.structures import BOTH, ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
+
+
+def fields_of(**choices: Any) -> dict[str, int]:
+    """Return the fields of a configuration."""
+    return top_parameters(Configuration(**choices), 0.0634)
+
+
+EXTREMES = default_parameters() | {
+    "Tridiagonal": 1,
+    "Neumann": 1,
+    "Rows": 65535,
+    "Columns": 1,
+    "DataWidth": 32,
+    "GradientWidth": 32,
+    "GradientFraction": 31,
+    "BitsPerChannel": 1,
+    "FlatField": 1,
+    "Polynomial": 0,
+    "LightGains": 1,
+    "ZeroOffset": 1,
+    "Lanes": 32,
+    "BlockLog2": 0,
+    "GainWidth": 32,
+    "DepthMantissa": (1 << 24) - 1,
+    "DepthExponent": -128,
+    "SlopeMantissa": 1 << 23,
+    "SlopeExponent": 127,
+    "PitchNm": (1 << 31) - 1,
+}
+QUADRATIC = fields_of(columns=128, rows=96, solver="tridiagonal", flat_field=True, gradient_model="quadratic")
+
+
+def built(name: str, fields: dict[str, int], **runs: Any) -> Structure:
+    return Structure({"Config": config_value(fields)}, name=name, **runs)
+
+
+STRUCTURES = (
+    built("128", fields_of(columns=128), on=VERILATOR),
+    built("extremes", EXTREMES, on=ICARUS, late=VERILATOR, mutants=True),
+    built("quadratic", QUADRATIC, late=BOTH),
+)
+MUTANTS = Mutants(simulators=QUICK_FIRST, flat=False)
+REFUSED = {
+    "Rows=0": "Rows_does_not_fit_GRID",
+    "Rows=65536": "Rows_does_not_fit_GRID",
+    "Columns=0": "Columns_does_not_fit_GRID",
+    "Columns=65536": "Columns_does_not_fit_GRID",
+    "GradientWidth=1": "GradientWidth_must_be_2_to_32",
+    "GradientWidth=33": "GradientWidth_must_be_2_to_32",
+    "BitsPerChannel=0": "BitsPerChannel_must_be_1_to_8",
+    "BitsPerChannel=9": "BitsPerChannel_must_be_1_to_8",
+    "GradientFraction=256": "GradientFraction_does_not_fit_FORMAT",
+    "DepthMantissa=16777216": "a_mantissa_does_not_fit_24_bits",
+    "SlopeMantissa=-1": "a_mantissa_does_not_fit_24_bits",
+    "DepthExponent=-129": "an_exponent_does_not_fit_8_bits",
+    "SlopeExponent=128": "an_exponent_does_not_fit_8_bits",
+    "PitchNm=-1": "PitchNm_must_not_be_negative",
+}
+PROOFS = tuple(
+    Proof(
+        "AXI4-Lite rules; every register reads, counts, sticks and clears as docs/generated/registers.md says",
+        f"{FULL_WIDTH}; each gradient model, with a camera or without, all options",
+        {"Polynomial": polynomial, "Corrections": corrections, "Camera": camera},
+        depth=16,
+    )
+    for polynomial, corrections, camera in ((0, 0, 0), (1, 0, 1), (1, 1, 0))
+)
+
 
 RANDOM_CLOCKS = 10_000 if REGRESS else 2_000
 SATURATION_BITS = structs.members("events_t")["saturations"][1]  # of the count of values clipped in a cycle

@@ -24,6 +24,12 @@ from tactile_depth.chip.registers.register_map import WORD
 from tb import structs
 from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
+from tb.structures import BOTH, Mutants, Structure
+
+STRUCTURES = (Structure(on=BOTH, mutants=True),)
+MUTANTS = Mutants(protocol="after_reset", outside=("counts",))
+NO_PROOF = "every register and output of it is proven through the port: axil_registers"
+
 
 COUNTER_ORDER = (  # names of the words of `counts`, from the lowest
     *("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "DARK_PIXELS", "DEPTH_DROPPED", "RECORDS_LOST", "SATURATIONS"),

@@ -6,12 +6,31 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from formal.entries import Proof
 from tactile_depth.chip.registers.register_map import TABLES, WORD
 from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT, TableBanks
 from tb import structs
 from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
 from tb.stream import parametrize
+from tb.structures import BOTH, ICARUS, of_parameters
+
+built = of_parameters("Present")
+STRUCTURES = (
+    built(15, on=BOTH, mutants=True),
+    built(2, on=ICARUS),
+    built(4, on=ICARUS),
+    built(9, on=ICARUS),
+)
+PROOFS = tuple(
+    Proof(
+        "the bank of an arbitrary table changes with a frame alone, after a commit or a capture; closed until then",
+        "all tables, and a build without some",
+        {"Present": present},
+    )
+    for present in (15, 8)
+)
+
 
 ALL = (1 << len(TABLES)) - 1
 START = {table: register.pack(start=1) for table, register in CAPTURES.items()}

@@ -11,11 +11,35 @@ from typing import Any
 import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
+from formal.entries import Proof
 from tactile_depth.chip.video.frame_guard import FAULTS, frame_guard
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSource, broken, faults_of, positions, profile, spoiled, video
 from tb.cases import on_bench
 from tb.pins import by_name, unsigned
 from tb.stream import REGRESS, parameters, parametrize, raster, start_clock
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
+
+built = of_parameters("Rows Columns")
+STRUCTURES = (
+    built(8, 2, on=VERILATOR),
+    built(3, 4, on=ICARUS, mutants=True),
+    built(4, 8, late=BOTH),
+)
+MUTANTS = Mutants(outside=("silence",))
+REFUSED = {
+    "Rows=1": "Rows_and_Columns_must_be_at_least_2",
+    "Columns=1": "Rows_and_Columns_must_be_at_least_2",
+}
+PROOFS = tuple(
+    Proof(
+        "only whole frames leave, every fault flagged once, good frames unchanged, early starts kept",
+        "rows and columns are only counted; a count that is no power of two, and one that is",
+        {"Rows": rows, "Columns": columns},
+        depth=60,
+    )
+    for rows, columns in ((3, 4), (4, 2))
+)
+
 
 TIMEOUT = 5
 RANDOM_FRAMES = 60

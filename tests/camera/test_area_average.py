@@ -2,58 +2,15 @@
 """area_average: RTL against the model, the model against the average of the Python package and against fractions."""
 
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formal.entries import Proof
 from tactile_depth.chip.camera.area_average import area_average
 from tactile_depth.chip.resampling import resampling
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
-from tests.rtl import test_rtl as test_rtl
-
-GRID = {"Rows": 3, "Columns": 8}
-RATIOS = [(8, 1), (1, 1), (5, 4), (9, 5), (2, 1), (7, 3), (5, 2), (15, 4), (16, 5), (29, 4), (47, 8)]
-PATTERN_RATIOS = [ratio for ratio in RATIOS if ratio[0] >= 2 * ratio[1]]
-
-
-def built(numerator: int, denominator: int, bits: int, bayer: int, **runs: Any) -> Structure:
-    ratio = {"Numerator": numerator, "Denominator": denominator}
-    return Structure({**GRID, **ratio, "Bits": bits, "Bayer": bayer}, **runs)
-
-
-STRUCTURES = (
-    built(15, 4, 10, 1, on=VERILATOR),
-    built(5, 4, 8, 0, on=VERILATOR),
-    built(5, 2, 12, 1, on=ICARUS, mutants=True),
-    built(1, 1, 8, 0, on=ICARUS, late=VERILATOR),
-    built(3, 2, 10, 0, on=ICARUS, mutants=True),
-    *(built(*ratio, 8, 0) for ratio in RATIOS if ratio not in ((1, 1), (5, 4))),
-    *(built(*ratio, 10, 1) for ratio in PATTERN_RATIOS if ratio != (15, 4)),
-    built(2, 1, 8, 1),
-    built(2, 1, 12, 1, late=VERILATOR),
-    built(8, 1, 10, 0, late=VERILATOR),
-)
-MUTANTS = Mutants(repeats=2, flat=False)
-REFUSED = {
-    "Bits=7": "Bits_must_be_at_least_8_and_Rows_at_least_2",
-    "Rows=1": "Bits_must_be_at_least_8_and_Rows_at_least_2",
-    "Columns=3": "Columns_must_be_at_least_4_or_a_word_is_read_while_it_is_written",
-    "Numerator=7": "below_a_ratio_of_2_some_blocks_lack_a_colour",
-}
-PROOFS = tuple(
-    Proof(
-        "a word 12 clocks behind each complete block and 18 behind each break, with the marks of its position",
-        "rows and columns are only counted; what is complete is proven of row_sums and block_totals",
-        {"Rows": rows, "Columns": columns},
-        depth=50,
-        free=("complete",),
-    )
-    for rows, columns in ((3, 4), (2, 5))
-)
+from tb.camera.tb_area_average import PATTERN_RATIOS
 
 
 @given(st.integers(1, 24), st.integers(1, 24), st.integers(0, 40), st.integers(0, 40), st.integers(0, 2**32 - 1))

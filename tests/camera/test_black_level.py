@@ -4,30 +4,9 @@
 import numpy as np
 import pytest
 
-from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.chip.camera.black_level import black_level
 from tactile_depth.chip.camera.pixel_format import pixel_format
 from tactile_depth.chip.camera_configuration import FORMATS, CameraConfiguration
-from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
-from tests.rtl import test_rtl as test_rtl
-
-built = of_parameters("Bits Channels")
-STRUCTURES = (
-    built(10, 1, on=BOTH, mutants=True),
-    built(8, 3, on=ICARUS, late=VERILATOR, mutants=True),
-    built(12, 1),
-    built(10, 3),
-    built(8, 1),
-)
-MUTANTS = Mutants(repeats=2)
-PROOFS = tuple(
-    Proof(
-        "the sample less the black level, beside the gains, of the frame's own settings; latency 1",
-        FULL_WIDTH,
-        {"Bits": bits, "Channels": channels},
-    )
-    for bits, channels in ((10, 1), (8, 3))
-)
 
 
 @pytest.mark.parametrize("form", FORMATS)

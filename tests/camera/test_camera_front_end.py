@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """camera_front_end: RTL against the model, the model against the resampling of the Python package."""
 
-import itertools
 import math
 import subprocess
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,56 +11,9 @@ import pytest
 from commands.common import repository, simulator
 from tactile_depth.chip.camera.camera_front_end import camera_front_end, camera_front_end_parameters
 from tactile_depth.chip.camera.pixel_format import photograph
-from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraConfiguration
+from tactile_depth.chip.camera_configuration import FORMATS, CameraConfiguration
 from tactile_depth.chip.resampling import resampling
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
-from tests.rtl import test_rtl as test_rtl
-
-GRID = (4, 8)
-
-
-def arguments(form: str, picture: tuple[int, int], **choices: Any) -> dict[str, Any]:
-    return {"picture": picture, "grid": GRID, "pixel_format": form, **choices}
-
-
-# Camera pixels per grid pixel. A picture of YUYV has an even number of columns.
-RATIOS = [Fraction(*ratio) for ratio in ((1, 1), (5, 4), (3, 2), (2, 1), (9, 4), (11, 4), (15, 4), (23, 4), (8, 1))]
-COLOURED = [form for form in FORMATS if not FORMATS[form].bayer]
-PATTERNS = [(form, phase) for form in FORMATS if FORMATS[form].bayer for phase in PHASES]
-
-
-def every_format_phase_and_ratio(each: int) -> list[dict[str, Any]]:
-    """Return structures: each format, with each phase and order of bytes or bits, with `each` ratios in turn."""
-    sizes = [(math.ceil(GRID[0] * ratio) + 1, int(GRID[1] * ratio)) for ratio in RATIOS]
-    pictures = itertools.cycle(sizes)
-    coloured = [arguments(form, next(pictures)) for form in COLOURED for _ in range(max(each, 2))]
-    pictures = itertools.cycle(sizes[RATIOS.index(Fraction(2)) :])
-    patterns = [arguments(form, next(pictures), phase=phase) for form, phase in PATTERNS for _ in range(each)]
-    return [*coloured, *patterns]
-
-
-def built(choices: dict[str, Any], **runs: Any) -> Structure:
-    camera = CameraConfiguration(**choices)
-    return Structure(camera_front_end_parameters(camera), device={"camera": choices}, **runs)
-
-
-STRUCTURES = (
-    built(arguments("raw10", (17, 34), phase="gbrg"), on=VERILATOR),
-    built(arguments("raw8", (9, 17), phase="grbg"), on=ICARUS, mutants=True),
-    built(arguments("yuyv_bytes", (10, 16)), on=VERILATOR, mutants=True),
-    built(arguments("rgb888", (4, 9)), on=ICARUS),
-    *(built(choices) for choices in every_format_phase_and_ratio(3)),
-    *(built(choices, late=VERILATOR) for choices in every_format_phase_and_ratio(1)),
-    built(arguments("yuyv", (7, 18), window=[3, 1, 10, 5])),
-    built(arguments("yuyv", (7, 18), window=[4, 1, 9, 5])),
-)
-MUTANTS = Mutants(repeats=2, flat=False)
-REFUSED = {
-    "Format=-1": "Format_is_a_number_of_camera_format_e",
-    "Numerator=7": "below_a_ratio_of_2_some_blocks_lack_a_colour",
-    "Rows=4096": "WindowColumns_and_WindowRows_must_be_2_to_8191",
-}
-NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends"
+from tb.camera.tb_camera_front_end import GRID, PATTERNS, RATIOS, every_format_phase_and_ratio
 
 
 @pytest.mark.parametrize(

@@ -5,54 +5,11 @@ from typing import Any
 
 import pytest
 
-from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.chip.camera.camera_front_end import camera_settings
 from tactile_depth.chip.camera.camera_registers import CameraRegisters, camera_registers_parameters
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.registers.register_map import CAMERA_MAP, MAP
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
-from tests.rtl import test_rtl as test_rtl
-
-VGA: dict[str, Any] = {"picture": (480, 640), "grid": (128, 128), "pixel_format": "raw10", "phase": "grbg"}
-OTHER: dict[str, Any] = {
-    "picture": (240, 320),
-    "grid": (96, 128),
-    "pixel_format": "yuyv_bytes",
-    "window": (7, 5, 256, 192),
-    "black_level": 341,
-    "gains": (1.5, 0.25, 15.75),
-}
-
-
-def built(choices: dict[str, Any], **runs: Any) -> Structure:
-    return Structure(camera_registers_parameters(CameraConfiguration(**choices)), **runs)
-
-
-STRUCTURES = (
-    built(VGA, on=VERILATOR),
-    built(OTHER, on=ICARUS, late=VERILATOR, mutants=True),
-)
-MUTANTS = Mutants(
-    "after_reset",
-    outside=(
-        "dropped",
-        "lost",
-    ),
-    flat=False,
-)
-REFUSED = {
-    "PictureColumns=8192": "pictures_and_windows_have_up_to_8191_rows_and_columns",
-    "WindowY=-1": "pictures_and_windows_have_up_to_8191_rows_and_columns",
-    "WindowRows=8192": "pictures_and_windows_have_up_to_8191_rows_and_columns",
-    "BlackLevel=4096": "BlackLevel_must_fit_12_bits_and_gains_16",
-    "BlueGain=65536": "BlackLevel_must_fit_12_bits_and_gains_16",
-}
-PROOFS = (
-    Proof(
-        "every register as the map has it: words, settings that leave, sticky bits, counters",
-        FULL_WIDTH,
-    ),
-)
+from tb.camera.tb_camera_registers import OTHER, VGA
 
 
 @pytest.mark.parametrize("choices", [VGA, OTHER])

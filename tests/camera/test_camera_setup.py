@@ -1,13 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """camera_setup: RTL against the model, and the lists against the data sheets of the cameras."""
 
-from functools import partial
-from typing import Any
-
 import pytest
 
-from formal.entries import Proof
-from formal.tables import camera_list
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.camera.camera_setup import CameraSetup, Kind
 from tactile_depth.chip.camera.register_lists import (
@@ -17,54 +12,10 @@ from tactile_depth.chip.camera.register_lists import (
     Camera,
     ov5640,
     ov7725,
-    setup_parameters,
-    write_list,
 )
 from tb.camera.sccb_camera import SccbCamera
-from tb.camera.tb_camera_setup import LISTS
-from tb.structures import BOTH, ICARUS, Mutants, Structure
-from tests.rtl import test_rtl as test_rtl
 
 XCLK_HZ = 24e6
-TIMES = {"QuarterClocks": 4, "MillisecondClocks": 3, "XclkHalfClocks": 2, "Attempts": 4}
-
-
-def built(entries: str, **runs: Any) -> Structure:
-    device = {"short": (1, 0x42), "wide": (2, 0x78)}[entries]
-    camera = Camera(entries, *device, picture=(1, 1), bayer="bggr", frames_per_s=1, entries=LISTS[entries])
-    return Structure(
-        {**setup_parameters(camera), **TIMES},
-        device={"list": entries},
-        roms=partial(write_list, entries=camera.entries),
-        name=entries,
-        **runs,
-    )
-
-
-STRUCTURES = (
-    built("short", on=BOTH),
-    built("wide", on=ICARUS, mutants=True),
-)
-MUTANTS = Mutants("after_reset")
-REFUSED = {
-    "AddressBytes=3": "AddressBytes_must_be_1_or_2",
-    "QuarterClocks=3": "QuarterClocks_must_be_at_least_4_the_line_takes_three_to_be_seen",
-    "Entries=1": "MillisecondClocks_and_Entries_must_be_at_least_2_XclkHalfClocks_and_Attempts_1",
-    "Attempts=0": "MillisecondClocks_and_Entries_must_be_at_least_2_XclkHalfClocks_and_Attempts_1",
-    "DeviceId=67": "DeviceId_must_be_an_even_byte",
-    "DeviceId=256": "DeviceId_must_be_an_even_byte",
-}
-PROOFS = (
-    Proof(
-        "entries in order; at the end each that is compared was right at last, or one was wrong often in a row; "
-        "pins and waits as the list says",
-        "a list with every kind of entry",
-        {"Bus": 0},
-        depth=40,
-        roms=camera_list,
-        free=("sent", "caught"),
-    ),
-)
 
 
 @pytest.mark.parametrize("name", list(CAMERAS))

@@ -2,63 +2,14 @@
 """pixel_format: RTL against the model, the model against BT.601 in double precision and against pictures."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 
-from formal.entries import FULL_WIDTH, Proof
-from tactile_depth.chip.camera.pixel_format import CHROMA_OFFSET, photograph, pixel_format, pixel_format_parameters
+from tactile_depth.chip.camera.pixel_format import CHROMA_OFFSET, photograph, pixel_format
 from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraConfiguration
 from tactile_depth.chip.registers.register_map import CAMERA_REGISTERS
-from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
-from tests.rtl import test_rtl as test_rtl
-
-PICTURE, GRID = (96, 64), (2, 2)
-RAW = [name for name, form in FORMATS.items() if form.bayer]
-
-
-def built(form: str, phase: int, **runs: Any) -> Structure:
-    arguments: dict[str, Any] = {"picture": PICTURE, "grid": GRID, "pixel_format": form, "phase": PHASES[phase]}
-    camera = CameraConfiguration(**arguments)
-    return Structure(pixel_format_parameters(camera), device={"camera": arguments}, **runs)
-
-
-STRUCTURES = (
-    built("yuyv", 0, on=BOTH, mutants=True),
-    built("raw10", 1, on=VERILATOR, late=()),
-    built("raw10_lsb", 2, on=ICARUS, mutants=True),
-    built("rgb565_bytes", 0, on=ICARUS, mutants=True),
-    built("rgb888", 0, on=ICARUS, late=VERILATOR),
-    built("rgb565", 0, late=BOTH),
-    built("yuyv_bytes", 0),
-    built("raw8", 3, late=VERILATOR),
-    built("raw12_lsb", 2, late=VERILATOR),
-    *(built(form, phase) for form in RAW for phase in range(4)),
-)
-MUTANTS = Mutants(repeats=2)
-REFUSED = {
-    "Format=10": "Format_is_a_number_of_camera_format_e",
-    "Phase=4": "Phase_is_0_to_3",
-}
-PROOFS = (
-    *(
-        Proof(
-            "samples of the window's pixels with their marks, in order; breaks behind them; latency 1",
-            FULL_WIDTH,
-            {"Format": FORMATS[form].code, "Phase": phase},
-        )
-        for form, phase in (
-            *(("rgb888", 0), ("rgb565", 0), ("rgb565_bytes", 0), ("raw8", 1), ("raw10", 0), ("raw10_lsb", 2)),
-            *(("raw12", 3), ("raw12_lsb", 0)),
-        )
-    ),
-    Proof(
-        "YUYV: colours from luma and chroma of the pixel's own pair, in order; latency 3 and 4, breaks 4",
-        FULL_WIDTH,
-        {"Format": FORMATS["yuyv"].code},
-    ),
-)
+from tb.camera.tb_pixel_format import camera
 
 
 def test_the_formats_are_those_of_the_register() -> None:
@@ -68,10 +19,6 @@ def test_the_formats_are_those_of_the_register() -> None:
 
 def words(*values: int) -> np.ndarray:
     return np.array([values, values], np.int64)
-
-
-def camera(form: str, **choices: Any) -> CameraConfiguration:
-    return CameraConfiguration((2, 4), (1, 1), form, **choices)
 
 
 def test_raw_is_aligned_to_either_end_of_16_bits() -> None:

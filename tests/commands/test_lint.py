@@ -11,9 +11,9 @@ import pytest
 from commands.common import repository, simulator
 from commands.verify import items, lint
 from commands.verify.slang_lint import WAIVERS, findings, instantiated, waiver
+from conftest import chosen_structures
 from tactile_depth.chip.configuration import Configuration
 from tb.settings import RUN
-from tests.conftest import chosen_structures
 
 HEADER = """\
 // SPDX-License-Identifier: Apache-2.0

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from commands.verify import mutate, netlists
+from conftest import SEED
 from tb.settings import RUN
-from tests.conftest import SEED
 
 
 @pytest.mark.parametrize(

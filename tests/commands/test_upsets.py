@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from commands.verify.upsets import CASES, run
-from tests.conftest import SEED
+from conftest import SEED
 
 
 @pytest.mark.regress

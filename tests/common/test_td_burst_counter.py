@@ -6,29 +6,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formal.entries import Proof
 from tactile_depth.chip.common.td_burst_counter import burst_counter
-from tb.structures import ICARUS, VERILATOR, of_parameters
-from tests.rtl import test_rtl as test_rtl
-
-built = of_parameters("Words")
-STRUCTURES = (
-    built(16, on=VERILATOR),
-    built(8, on=ICARUS, mutants=True),
-    built(64),
-)
-REFUSED = {
-    "Words=1": "Words_must_be_at_least_2",
-}
-PROOFS = tuple(
-    Proof(
-        "position counts the words of a burst, active just as long",
-        why,
-        {"Words": words},
-        depth=20,
-    )
-    for words, why in ((2, "the smallest"), (8, "one counter, the same logic at every power of two"))
-)
 
 
 def test_bursts_apart_back_to_back_and_begun_again() -> None:

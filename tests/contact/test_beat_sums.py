@@ -5,14 +5,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formal.entries import Proof
 from tactile_depth.chip.contact.beat_sums import beat_sums
-from tests.contact.test_beat_peak import STRUCTURES as STRUCTURES
-from tests.contact.test_beat_peak import refused
-from tests.rtl import test_rtl as test_rtl
-
-REFUSED = refused("first")
-PROOFS = (Proof("sums and limits of an arbitrary beat, 2 clocks later", "sums are exact at any width"),)
 
 
 @given(st.lists(st.tuples(st.booleans(), st.integers(1, 7)), min_size=8, max_size=8))

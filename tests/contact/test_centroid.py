@@ -7,28 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formal.entries import ROUNDING, Proof
-from tactile_depth.chip.contact import centroid
 from tactile_depth.chip.contact.centroid import FRACTION, mean
-from tb.structures import ICARUS, VERILATOR, of_parameters
-from tests.rtl import test_rtl as test_rtl
-
-built = of_parameters("PositionWidth WeightWidth")
-STRUCTURES = (
-    built(7, 38, on=VERILATOR),
-    built(3, 6, on=ICARUS, mutants=True),
-    built(10, 52),
-    built(2, 4),
-    built(5, 9),
-)
-PROOFS = (
-    Proof(
-        "both means to the nearest, a fixed number of clocks after the last start",
-        f"every weight and moment of this width; a bit is found in the same way at any width; {ROUNDING}",
-        {"Latency": centroid.cycles(2)},
-        depth=40,
-    ),
-)
 
 
 @given(st.lists(st.tuples(st.integers(0, 1023), st.integers(1, 2**32 - 1)), min_size=1, max_size=300))

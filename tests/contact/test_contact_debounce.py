@@ -4,24 +4,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formal.entries import Proof
 from tactile_depth.chip.contact.contact_debounce import BEGAN, ENDED, TOUCHING, ContactDebounce
-from tb.structures import ICARUS, VERILATOR, of_parameters
-from tests.rtl import test_rtl as test_rtl
-
-built = of_parameters("AreaWidth")
-STRUCTURES = (
-    built(15, on=VERILATOR),
-    built(5, on=ICARUS, mutants=True),
-    built(21),
-)
-PROOFS = (
-    Proof(
-        "touching changes after `debounce` frames in a row that speak against it, and for no other reason",
-        "areas are only compared; a count of four frames",
-        depth=20,
-    ),
-)
 
 
 @given(st.lists(st.booleans(), max_size=60), st.integers(0, 5))

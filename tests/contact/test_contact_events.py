@@ -6,53 +6,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formal.entries import Proof
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.contact import contact_events
 from tactile_depth.chip.contact.contact_events import WORDS, ContactEvents, Record, Settings, record
 from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.chip.tactile_depth import tactile_depth
 from tactile_depth.pictures.frames import load_frames, on_grid
 from tactile_depth.sensor.built_in import load
-from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, of_parameters
-from tests.rtl import test_rtl as test_rtl
 
 WORD, CODE = st.integers(0, 2**32 - 1), st.integers(-(2**31), 2**31 - 1)
 PLACE = st.tuples(st.integers(0, 1023), st.integers(0, 1023))
-
-
-built = of_parameters("Width Rows Columns Lanes BottomFirst")
-STRUCTURES = (
-    built(24, 5, 8, 1, 0, on=VERILATOR),
-    built(6, 5, 8, 1, 1, on=ICARUS, mutants=True),
-    built(32, 5, 16, 1, 1),
-    built(12, 9, 4, 1, 0),
-    built(24, 8, 16, 1, 0),
-    built(24, 5, 32, 4, 1),
-    built(16, 8, 32, 8, 0),
-    built(12, 4, 16, 2, 0),
-)
-MUTANTS = Mutants(simulators=QUICK_FIRST, outside=("frame",), flat=False)
-REFUSED = {
-    "Width=1": "Width_must_be_2_to_32",
-    "Width=33": "Width_must_be_2_to_32",
-    "Rows=1": "Rows_must_be_2_to_1024",
-    "Rows=1025": "Rows_must_be_2_to_1024",
-    "Columns=1": "Columns_must_be_2_to_1024",
-    "Columns=1025": "Columns_must_be_2_to_1024",
-    "Rows=4 Columns=4": "a_frame_must_take_at_least_Latency_cycles",
-}
-PROOFS = (
-    Proof(
-        "a record at a fixed latency, kept until the next, with number and time of its frame",
-        "rows and columns are only counted; whatever count, peak, sums and centroid come out: these have proofs",
-        {"Rows": 4, "Columns": 8, "Latency": contact_events.latency(4, 8)},
-        depth=110,
-        free=("sums", "count", "peak", "middle"),
-    ),
-)
-
-
 RECORDS = st.builds(Record, WORD, WORD, WORD, CODE, PLACE, CODE, WORD, PLACE, PLACE, st.integers(0, 2**64 - 1), PLACE)
 
 

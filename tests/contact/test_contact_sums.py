@@ -9,17 +9,6 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from tactile_depth.chip.contact.contact_sums import ContactSums, Sums
-from tests.contact.test_contact_peak import proofs, refused, structures
-from tests.rtl import test_rtl as test_rtl
-
-STRUCTURES = structures(8)
-REFUSED = refused("first")
-PROOFS = proofs(
-    "sums 2 + log2(Lanes) clocks after a frame's last beat: area, weight and moments of all that is above; limits "
-    "enclose it, and are attained",
-    "positions are only counted; sums are exact at any width; either order of rows; the sums of a beat of "
-    "several depths are proven of beat_sums",
-)
 
 
 @given(arrays(np.int64, (5, 8), elements=st.integers(-8, 7)), st.integers(-8, 7), st.booleans())

@@ -4,24 +4,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formal.entries import Proof
 from tactile_depth.chip.contact.record_packets import RecordPackets
-from tb.structures import ICARUS, VERILATOR, of_parameters
-from tests.rtl import test_rtl as test_rtl
-
-built = of_parameters("Words")
-STRUCTURES = (
-    built(13, on=VERILATOR),
-    built(3, on=ICARUS, mutants=True),
-    built(2),
-)
-PROOFS = (
-    Proof(
-        "the newest record kept; whole packets in order, each sent, or lost and said so",
-        "words are sent alike; three of them to a packet",
-        depth=20,
-    ),
-)
 
 
 @given(st.lists(st.tuples(st.booleans(), st.booleans()), max_size=100))

@@ -6,47 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from formal.entries import WORD_FREE, Proof
-from formal.tables import gradient_rom
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.gradient_lookup import gradient_codes, gradient_lookup
-from tactile_depth.chip.rom_files import write_gradient
 from tactile_depth.depth import reference
 from tactile_depth.sensor.sensor import Sensor
 from tactile_depth.sensor.synthetic import synthetic
+from tb.gradient.tb_gradient_lookup import REFUSED
 from tb.settings import RUN
-from tb.structures import ICARUS, VERILATOR, Structure
-from tests.rtl import test_rtl as test_rtl
 
-
-def built(bits: int, data_width: int, **runs: Any) -> Structure:
-    choices: dict[str, Any] = {"columns": 16, "data_width": data_width, "bits_per_channel": bits}
-    config = Configuration(**choices)
-    width = config.gradient.width
-    return Structure(
-        {"Width": width, "BitsPerChannel": bits},
-        device={"configuration": choices},
-        roms=lambda folder: write_gradient(folder / "gradient.hex", gradient_codes(synthetic(bits), config), width),
-        **runs,
-    )
-
-
-STRUCTURES = (
-    built(2, 24, on=VERILATOR),
-    built(1, 32, on=ICARUS, mutants=True),
-    built(3, 12),
-    built(4, 24),
-)
-REFUSED = {
-    "BitsPerChannel=0": "BitsPerChannel_must_be_1_to_8",
-}
-PROOFS = (
-    Proof(
-        "slopes of the pixel's own index in the bank its frame began with, latency 4; reads of the other bank",
-        f"{WORD_FREE}; one bit a channel has the same index",
-        roms=gradient_rom,
-    ),
-)
 if RUN.full:  # 4 GB of table
     REFUSED["BitsPerChannel=9"] = "BitsPerChannel_must_be_1_to_8"
 

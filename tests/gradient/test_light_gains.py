@@ -6,46 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from formal.entries import ROUNDING, Proof
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.fixed_point import Format
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter, settled
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
-from tests.rtl import test_rtl as test_rtl
-
-
-def built(rows: int, columns: int, *widths: Any, **runs: Any) -> Structure:
-    return Structure(Light(rows, columns, *widths).parameters, **runs)
-
-
-SMALL = 8, 6, 8, Format(7, 5)
-STRUCTURES = (
-    built(8, 16, on=VERILATOR),
-    built(3, 8, *SMALL, on=ICARUS, late=VERILATOR, mutants=True),
-    built(9, 32),
-    built(2, 11, *SMALL),
-)
-MUTANTS = Mutants(repeats=6)
-REFUSED = {
-    "Columns=7": "Columns_must_be_at_least_8",
-    "OutFraction=1": "the_sum_of_a_frame_must_have_more_fraction_bits_than_a_gain",
-}
-PROOFS = (
-    Proof(
-        "each pixel has the gains that stood when its frame began; reset, write and last pixel change gains; 2 clocks",
-        f"products are exact at any width; rows and columns are only counted; {ROUNDING}",
-        {"Moves": 0, "RatioWidth": 3, "GainWidth": 4, "OutWidth": 5, "OutFraction": 3},
-        depth=30,
-    ),
-    Proof(
-        "the move at the last pixel is the rule, applied to all rows but the last, whatever the gaps",
-        "sums are exact at any width; the shortest row leaves the least time; deviations of any value",
-        {"Moves": 1},
-        depth=40,
-        engine="smtbmc bitwuzla -- --noincr",
-        free=("deviations",),
-    ),
-)
 
 LIGHT = Light.of(Configuration(columns=64, rows=48, solver="tridiagonal"))
 SHAPE = LIGHT.rows, LIGHT.columns, 3

@@ -8,60 +8,10 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formal.entries import ROUNDING, Proof
-from formal.tables import polynomial_roms
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.gradient.polynomial_gradient import coefficients, gradient_parameters, slope_codes
+from tactile_depth.chip.gradient.polynomial_gradient import coefficients, slope_codes
 from tactile_depth.chip.rom_files import write_polynomials
-from tb.structures import ICARUS, VERILATOR, Structure
-from tests.rtl import test_rtl as test_rtl
-
-WORDS = (2, 3, 10)
-
-
-def any_words(width: int, seed: int = 1) -> Any:
-    return np.random.default_rng(seed).integers(-(1 << width - 1), 1 << width - 1, WORDS)
-
-
-NAMES = ["Width", "DeviationWidth", "CoeffWidth", "WordWidth", "FineBits", "CorrectionWidth", "CorrectionUnit", "Drop"]
-
-
-def built(*values: int, **runs: Any) -> Structure:
-    word = values[NAMES.index("WordWidth")]
-    return Structure(
-        dict(zip(NAMES, values, strict=True)),
-        roms=lambda folder: write_polynomials(folder, any_words(word), word),
-        **runs,
-    )
-
-
-STRUCTURES = (
-    built(*gradient_parameters(Configuration(columns=16)).values(), on=VERILATOR),
-    built(3, 3, 3, 5, 1, 2, 5, 3, on=ICARUS, late=VERILATOR, mutants=True),
-    built(*gradient_parameters(Configuration(columns=16, data_width=12, coefficient_width=10)).values()),
-    built(14, 4, 5, 9, 2, 3, 20, 0),
-    built(*gradient_parameters(Configuration(columns=16, data_width=32, gradient_limit=2.0**-6)).values()),
-    built(6, 4, 4, 4, 0, 4, 9, 1),
-    built(10, 4, 5, 9, 3, 4, 3, -2),
-    built(12, 4, 5, 9, 1, 4, 31, -2),
-)
-REFUSED = {
-    "CoeffWidth=40": "CoeffWidth_must_be_at_most_WordWidth_and_FineBits",
-    "CorrectionUnit=1073741824": "a_correction_must_fit_the_sum",
-}
-PROOFS = tuple(
-    Proof(
-        "the coefficient of the pixel's own place, words written or from power-up, and its correction; latency 12",
-        f"frames of any size; additions are exact at any width; each colour, both axes; {ROUNDING}",
-        {"Polynomial": polynomial},
-        depth=35,
-        engine="smtbmc bitwuzla -- --noincr",
-        steps=3,
-        roms=polynomial_roms,
-    )
-    for polynomial in (0, 4, 2)
-)
+from tb.gradient.tb_polynomial_gradient import WORDS, any_words
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(2, 6), st.integers(4, 12), st.sampled_from([(6, 2), (32, 4)]))

@@ -6,20 +6,7 @@ from collections.abc import Sequence
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formal.entries import Proof
 from tactile_depth.chip.link.bank_choice import BankChoice
-from tb.structures import BOTH, Structure
-from tests.rtl import test_rtl as test_rtl
-
-STRUCTURES = (Structure(on=BOTH, mutants=True),)
-PROOFS = (
-    Proof(
-        "never the bank that is read is written; the frame that is taken is the newest that became ready, whole; each "
-        "frame is taken, waits, or is lost and counted once; without a reader none is lost before it is ready",
-        "it has no size; frames are numbered modulo 8, and at most three are inside",
-        depth=20,
-    ),
-)
 
 
 class Frames:

@@ -4,20 +4,8 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formal.entries import Proof
 from tactile_depth.chip.link.framing import CRC_BYTES, LONGEST_BODY, cobs_decode, from_line, to_line
 from tactile_depth.chip.link.packet_check import PacketCheck
-from tb.structures import BOTH, QUICK_FIRST, Mutants, Structure
-from tests.rtl import test_rtl as test_rtl
-
-STRUCTURES = (Structure(on=BOTH, mutants=True),)
-MUTANTS = Mutants(simulators=QUICK_FIRST)  # a CRC is slow in Icarus
-PROOFS = (
-    Proof(
-        "the bytes but the last four, in order; good if not bad, five bytes or more, and the remainder of a right CRC",
-        "the widths in use",
-    ),
-)
 
 
 def checked(piece: bytes) -> bytes | None:

@@ -6,19 +6,8 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.chip.link.packet_mux import DEPTH, RECORD, PacketMux
-from tb.structures import BOTH, Mutants, Structure
-from tests.rtl import test_rtl as test_rtl
 
-STRUCTURES = (Structure(on=BOTH, mutants=True),)
-MUTANTS = Mutants(repeats=2)
-PROOFS = (
-    Proof(
-        "packets pass whole and unchanged, each chosen by its turn; depth before the next record; stable under stall",
-        FULL_WIDTH,
-    ),
-)
 FOUR = st.tuples(*[st.booleans()] * 4)
 
 

@@ -4,30 +4,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formal.entries import Proof
 from tactile_depth.chip.link.packet_store import PacketStore
-from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, of_parameters
-from tests.rtl import test_rtl as test_rtl
-
-built = of_parameters("BankBytes")
-STRUCTURES = (
-    built(1024, on=VERILATOR),
-    built(8, on=ICARUS, mutants=True),
-    built(4),
-)
-MUTANTS = Mutants(simulators=QUICK_FIRST)
-REFUSED = {f"BankBytes={size}": "BankBytes_must_be_a_power_of_two_from_4_to_1024" for size in (2, 12, 2048)}
-PROOFS = (
-    Proof(
-        "each good packet that met a free bank leaves once, in order, its first bytes unchanged and its length with "
-        "it; every other one is said to be bad, and nothing of it leaves",
-        "places are only counted; an arbitrary byte is followed",
-        {"BankBytes": 4},
-        depth=30,
-        engine="smtbmc bitwuzla -- --noincr",
-        steps=3,
-    ),
-)
 
 packets = st.lists(st.tuples(st.binary(min_size=1, max_size=12), st.booleans(), st.integers(0, 30)), max_size=12)
 

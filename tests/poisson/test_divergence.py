@@ -5,32 +5,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from formal.entries import Proof
 from tactile_depth.chip.poisson.divergence import divergence
-from tb.structures import ICARUS, VERILATOR, of_parameters
-from tests.rtl import test_rtl as test_rtl
-
-built = of_parameters("Columns Width Neumann")
-STRUCTURES = (
-    built(16, 21, 0, on=VERILATOR),
-    built(16, 6, 0, on=ICARUS),
-    built(32, 24, 1, on=ICARUS),
-    built(128, 35, 0),
-    built(16, 21, 1),
-    built(4, 3, 1, mutants=True),
-)
-REFUSED = {
-    "Columns=1": "Columns_must_be_at_least_2",
-}
-PROOFS = tuple(
-    Proof(
-        "differences to the left and above, for every pixel of an arbitrary column; latency 2",
-        "the subtractions are exact at any width; columns and rows are only counted",
-        {"Neumann": neumann},
-        depth=45,
-    )
-    for neumann in (0, 1)
-)
 
 
 @settings(max_examples=30, deadline=None)

@@ -2,7 +2,6 @@
 """spectral_solver: RTL against the model, the model against the double-precision reference."""
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,37 +13,8 @@ from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.poisson.spectral_solver import spectral_solver
-from tactile_depth.chip.rom_files import write_solver
-from tactile_depth.chip.tactile_depth import hdl_parameters
 from tactile_depth.depth import reference
 from tactile_depth.sensor.scenes import dome, slopes_of
-from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
-
-
-def built(choices: Any, **runs: Any) -> Structure:
-    config = Configuration(**choices)
-    return Structure(
-        hdl_parameters(config),
-        device={"configuration": choices},
-        roms=lambda folder: write_solver(folder, config),
-        **runs,
-    )
-
-
-STRUCTURES = (
-    built({"columns": 16}, on=VERILATOR),
-    built({"columns": 16, "data_width": 20, "gradient_limit": 4.0}, on=ICARUS),
-    built({"columns": 32, "data_width": 12, "coefficient_width": 10}, mutants=True),
-    built({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 9.5}),
-)
-MUTANTS = Mutants("words", simulators=QUICK_FIRST, flat=False)
-NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"
-
-
-@pytest.mark.seeds
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
-
 
 PEAKS = np.linspace(3, 18, 6) / 128  # of the domes, over N: those of the accuracy bar (3 to 18 pixels at 128)
 

@@ -7,48 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from formal.entries import Proof
-from formal.tables import thomas_roms
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.thomas_table import thomas_table
 from tactile_depth.chip.poisson.transform.orders import eigenvalues
-from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
-from tactile_depth.chip.rom_files import write_thomas
-from tb.structures import ICARUS, VERILATOR, Structure
-from tests.rtl import test_rtl as test_rtl
-
-CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
-
-
-def built(choices: Any, **runs: Any) -> Structure:
-    config = Configuration(**choices)
-    parameters = solver_parameters(config)
-    taken = ("CoeffWidth", "Rows", "Columns", "SettledWidth", "LastShiftWidth")
-    return Structure(
-        {name: parameters[name] for name in taken} | {"Words": parameters["TableWords"]},
-        device={"configuration": choices},
-        roms=lambda folder: write_thomas(folder, config),
-        **runs,
-    )
-
-
-STRUCTURES = (
-    built(CHOICES | {"neumann": True}, on=VERILATOR, mutants=True),
-    built(CHOICES, on=ICARUS),
-    built(CHOICES | {"columns": 32, "rows": 50, "neumann": True}),
-)
-REFUSED = {
-    "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
-    "Rows=1": "Rows_must_be_at_least_2",
-}
-PROOFS = (
-    Proof(
-        "the coefficient of a row and position: base + min(row, settled), in the last row its own; latency 5",
-        "every row and position of a table with all its cases; contents do not matter",
-        {"Rows": 6, "Columns": 4, "Words": 14},
-        roms=thomas_roms(6, 4, 14, 5, 3, 2),
-    ),
-)
 
 
 @pytest.mark.parametrize("neumann", [False, True])

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """tridiagonal_solver: RTL against the model, the model against the double-precision reference."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,42 +11,10 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson import spectral_solver
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.poisson.tridiagonal_solver import tridiagonal_solver
-from tactile_depth.chip.resources import ULTRA
-from tactile_depth.chip.rom_files import write_solver
-from tactile_depth.chip.tactile_depth import config_value, top_parameters
 from tactile_depth.depth import reference
 from tactile_depth.sensor.scenes import dome, slopes_of
-from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
+from tb.poisson.tb_tridiagonal_solver import CHOICES
 from tests.poisson.test_spectral_solver import PEAKS
-
-CHOICES: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
-PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, models/tactile_depth/chip/configuration.py
-
-
-def built(choices: Any, store: Any, **runs: Any) -> Structure:
-    config = Configuration(**choices)
-    return Structure(
-        {"Config": config_value(top_parameters(config) | store)},
-        device={"configuration": choices},
-        roms=lambda folder: write_solver(folder, config),
-        **runs,
-    )
-
-
-STRUCTURES = (
-    built(CHOICES, {}, on=VERILATOR),
-    built(CHOICES | {"rows": 21, "neumann": True}, {}, on=ICARUS),
-    built(CHOICES | {"columns": 32, "rows": 9, "data_width": 16, "coefficient_width": 10}, {}, mutants=True),
-    built(CHOICES | {"data_width": 32, "coefficient_width": 24, "neumann": True, "depth_range_px": 5.3}, {}),
-    built(CHOICES | {"columns": 32, "rows": 11}, PACKED),
-)
-MUTANTS = Mutants("words", simulators=QUICK_FIRST, flat=False)
-NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"
-
-
-@pytest.mark.seeds
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def divergence_codes(slopes: np.ndarray, config: Configuration) -> tuple[Any, ...]:

@@ -1,52 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """wide_solver: RTL against the model; the model against the double-precision reference and against itself."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.tridiagonal_solver import tridiagonal_solver
 from tactile_depth.chip.poisson.wide_solver import wide_solver
-from tactile_depth.chip.rom_files import write_solver
-from tactile_depth.chip.tactile_depth import config_value, top_parameters
 from tactile_depth.sensor.scenes import dome, slopes_of
-from tb.structures import BOTH, ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
+from tb.poisson.tb_wide_solver import CHOICES
 from tests.poisson.test_spectral_solver import PEAKS
 from tests.poisson.test_tridiagonal_solver import divergence_codes, error_percent
-
-CHOICES: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
-
-
-def built(choices: Any, **runs: Any) -> Structure:
-    config = Configuration(**choices)
-    return Structure(
-        {"Config": config_value(top_parameters(config))},
-        device={"configuration": choices},
-        roms=lambda folder: write_solver(folder, config),
-        **runs,
-    )
-
-
-STRUCTURES = (
-    built(CHOICES | {"columns": 32, "rows": 11, "lanes": 8}, on=VERILATOR),
-    built(CHOICES | {"columns": 64, "rows": 8, "lanes": 32}, late=BOTH),
-    built(CHOICES | {"lanes": 8, "rows": 9, "neumann": True}, on=ICARUS),
-    built(CHOICES | {"lanes": 2, "rows": 9}, on=ICARUS, mutants=True),
-    built(CHOICES | {"columns": 32, "rows": 9, "lanes": 4, "data_width": 16, "coefficient_width": 10}, mutants=True),
-    built(CHOICES | {"columns": 32, "rows": 8, "lanes": 16, "data_width": 32, "coefficient_width": 24}),
-    built(CHOICES | {"columns": 64, "rows": 96, "lanes": 16, "neumann": True}),
-    built(CHOICES | {"columns": 128, "rows": 13, "lanes": 64}),
-)
-MUTANTS = Mutants("words", simulators=QUICK_FIRST, flat=False)
-NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"
-
-
-@pytest.mark.seeds
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize("neumann", [False, True])

@@ -5,36 +5,11 @@ from typing import Any
 
 import pytest
 
-from formal.entries import Proof
 from tactile_depth.chip.video.frame_guard import Word, frame_guard
 from tb.axis import BREAKS, WITHOUT_START, broken, faults_of, positions, video
-from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
-from tests.rtl import test_rtl as test_rtl
 
 TIMEOUT = 5
 ROWS, COLUMNS = 4, 8  # of the model's frames
-
-
-built = of_parameters("Rows Columns")
-STRUCTURES = (
-    built(8, 2, on=VERILATOR),
-    built(3, 4, on=ICARUS, mutants=True),
-    built(4, 8, late=BOTH),
-)
-MUTANTS = Mutants(outside=("silence",))
-REFUSED = {
-    "Rows=1": "Rows_and_Columns_must_be_at_least_2",
-    "Columns=1": "Rows_and_Columns_must_be_at_least_2",
-}
-PROOFS = tuple(
-    Proof(
-        "only whole frames leave, every fault flagged once, good frames unchanged, early starts kept",
-        "rows and columns are only counted; a count that is no power of two, and one that is",
-        {"Rows": rows, "Columns": columns},
-        depth=60,
-    )
-    for rows, columns in ((3, 4), (4, 2))
-)
 
 
 def frame(start: Any) -> Any:

@@ -16,6 +16,24 @@ from tactile_depth.chip.poisson.transform.dst_inverse import latency as dst_inve
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tb.stream import MANY, check_bursts, extremes, parameters, parametrize, sample, uniform, with_and_without_en
 
+# Parameters of dst_forward and dst_inverse, in the order of their structures.
+TRANSFORM_PARAMETERS = (
+    "Size",
+    "InWidth",
+    "InputDrop",
+    "Width",
+    "CoeffWidth",
+    "OutputDrop",
+    "OutWidth",
+    "Sine",
+)
+
+
+def transform_parameters(*values: int) -> dict[str, int]:
+    """Return the parameters of a sine transform by name."""
+    return dict(zip(TRANSFORM_PARAMETERS, values, strict=True))
+
+
 CORES: dict[str, tuple[Any, Any]] = {
     "dst_forward": (dst_forward, dst_forward_latency),
     "dst_inverse": (dst_inverse, dst_inverse_latency),

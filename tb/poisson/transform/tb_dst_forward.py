@@ -1,6 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
 """dst_forward against its model: the tests that both sine transforms share."""
 
-from tb.poisson.transform.dst_bench import bursts, limits, many_bursts, reset_in_mid_burst
+from typing import Any
+
+from formal.entries import Proof
+from formal.tables import transform_roms
+from tactile_depth.chip.poisson.transform.dst_forward import latency as dst_forward_latency
+from tactile_depth.chip.rom_files import write_direction
+from tb.poisson.transform.dst_bench import bursts, limits, many_bursts, reset_in_mid_burst, transform_parameters
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+
+
+def built(parameters: dict[str, int], **runs: Any) -> Structure:
+    size, coeff = parameters["Size"], parameters["CoeffWidth"]
+    return Structure(parameters, roms=lambda folder: write_direction(folder, size, 0, False, coeff), **runs)
+
+
+STRUCTURES = (
+    built(transform_parameters(32, 24, 1, 27, 18, 0, 27, 1), on=VERILATOR),
+    built(transform_parameters(16, 23, 0, 27, 18, 3, 24, 1), on=ICARUS),
+    built(transform_parameters(8, 12, -3, 15, 10, 3, 12, 1), on=ICARUS),
+    built(transform_parameters(16, 16, -4, 15, 10, 1, 12, 1)),  # the input alone can clip
+    built(transform_parameters(16, 23, 0, 27, 18, 3, 24, 0)),
+    built(transform_parameters(32, 6, -3, 9, 7, 3, 6, 1), mutants=True),  # four values can clip at once in sdf_fft
+    built(transform_parameters(64, 32, 1, 35, 24, 0, 35, 1)),
+)
+MUTANTS = Mutants("bursts", columns_are="Size", flat=False)
+PROOFS = (
+    Proof(
+        "start and frame_start leave with their burst, at the latency of models/tactile_depth/chip/latency.py",
+        "the smallest transform, every core of a longer one is in it",
+        {"Size": 8, "Latency": dst_forward_latency(8)},
+        depth=60,
+        roms=transform_roms,
+    ),
+)
+
 
 __all__ = ["bursts", "limits", "many_bursts", "reset_in_mid_burst"]

@@ -6,10 +6,35 @@ from typing import Any
 import cocotb
 import numpy as np
 
+from formal.entries import ONE_ORDER, WORD_FREE, Proof
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.mode_pairs import latency as mode_pairs_latency
 from tactile_depth.chip.poisson.transform.mode_pairs import mode_pairs
 from tb.stream import check_bursts, parameters, parametrize, uniform
+from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
+
+built = of_parameters("Size Width")
+STRUCTURES = (
+    built(32, 24, on=VERILATOR),
+    built(8, 27, on=ICARUS),
+    built(16, 12),
+    built(64, 24),
+    built(8, 4, mutants=True),
+)
+MUTANTS = Mutants("bursts", columns_are="Size")
+REFUSED = {
+    "Size=12": "Size_must_be_a_power_of_two_at_least_4",
+    "Size=2": "Size_must_be_a_power_of_two_at_least_4",
+}
+PROOFS = tuple(
+    Proof(
+        "an arbitrary mode, and beside it mode N - k; latency N / 2 + 2",
+        f"{ONE_ORDER}; at 8 the delay line is in memory; {WORD_FREE}",
+        {"Size": size},
+        depth=45,
+    )
+    for size in (4, 8)
+)
 
 
 async def check(dut: Any, x: Any, **behaviour: Any) -> None:

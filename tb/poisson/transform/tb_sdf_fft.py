@@ -6,10 +6,52 @@ from typing import Any
 import cocotb
 import numpy as np
 
+from formal.entries import Proof
+from formal.tables import transform_roms
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.sdf_fft import latency as sdf_fft_latency
 from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft
+from tactile_depth.chip.rom_files import write_direction
 from tb.stream import MANY, check_bursts, extremes, parameters, parametrize, uniform
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+
+
+def built(size: int, width: int, coeff: int, inverse: int, **runs: Any) -> Structure:
+    return Structure(
+        {"Size": size, "Width": width, "CoeffWidth": coeff, "Inverse": inverse},
+        roms=lambda folder: write_direction(folder, size, 0, bool(inverse), coeff),
+        **runs,
+    )
+
+
+STRUCTURES = (
+    built(32, 27, 18, 0, on=VERILATOR),
+    built(32, 27, 18, 1, on=ICARUS),
+    built(8, 12, 10, 0, on=ICARUS),
+    built(8, 12, 10, 1, mutants=True),
+    built(16, 27, 18, 0),
+    built(16, 27, 18, 1),
+    built(64, 15, 10, 0),
+    built(64, 15, 10, 1),
+    built(128, 35, 24, 0),
+    built(128, 35, 24, 1),
+)
+MUTANTS = Mutants("bursts", columns_are="Size")
+REFUSED = {
+    "Size=4": "Size_must_be_a_power_of_two_at_least_8",
+    "Size=24": "Size_must_be_a_power_of_two_at_least_8",
+}
+PROOFS = tuple(
+    Proof(
+        "start and frame_start leave with their burst, at the latency of models/tactile_depth/chip/latency.py",
+        "the smallest transform: pair, twiddle and lone butterfly; longer ones chain more of these",
+        {"Size": 8, "Inverse": inverse, "Latency": sdf_fft_latency(8)},
+        depth=60,
+        roms=transform_roms,
+    )
+    for inverse in (0, 1)
+)
+
 
 FIELDS = ["re", "im"]
 

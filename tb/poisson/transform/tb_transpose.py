@@ -5,8 +5,35 @@ from typing import Any
 
 import cocotb
 
+from formal.entries import ONE_ORDER, WORD_FREE, Proof
 from tactile_depth.chip.poisson.transform.transpose import LATENCY, transpose
 from tb.stream import check_frame_memory, parameters, parametrize, places
+from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
+
+built = of_parameters("Columns Width MakhoulIn MakhoulOut")
+STRUCTURES = (
+    built(16, 24, 0, 1, on=VERILATOR),
+    built(8, 16, 0, 0, on=ICARUS),
+    built(8, 16, 0, 1, on=ICARUS),
+    built(8, 16, 1, 0, on=ICARUS),
+    built(8, 16, 1, 1),
+    built(4, 5, 0, 1, mutants=True),
+)
+MUTANTS = Mutants("bursts", rows_are="Columns")
+REFUSED = {
+    "Columns=12": "Columns_must_be_a_power_of_two_at_least_4",
+    "Columns=2": "Columns_must_be_a_power_of_two_at_least_4",
+}
+PROOFS = tuple(
+    Proof(
+        "an arbitrary word at its place in its column; latency 2 from the first word of the last row",
+        f"{ONE_ORDER}; {WORD_FREE}",
+        {"Columns": 4, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out},
+        depth=45,
+    )
+    for makhoul_in, makhoul_out in ((0, 1), (1, 0))
+)
+
 
 FRAMES = 4  # in place, rows and columns of the memory change roles with every frame
 

@@ -6,6 +6,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
+from formal.entries import ROUNDING, Proof
+from formal.tables import factor_rom
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.twiddle_multiply import (
     LATENCY,
@@ -13,8 +15,72 @@ from tactile_depth.chip.poisson.transform.twiddle_multiply import (
     twiddle_factors,
     twiddle_multiply,
 )
+from tactile_depth.chip.rom_files import write_factors
 from tb.settings import RUN
 from tb.stream import check_bursts, extremes, parameters, parametrize, uniform
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+
+MAKERS = {"twiddle": twiddle_factors, "phase": phase_factors}
+
+
+def built(
+    factors: Any,
+    size: int,
+    block: Any,
+    in_width: int,
+    out_width: int,
+    coeff: int,
+    drop: int,
+    real_only: int,
+    **runs: Any,
+) -> Structure:
+    kind, direction = factors.split("_")
+    return Structure(
+        {
+            "Size": size,
+            "Block": block,
+            "InWidth": in_width,
+            "OutWidth": out_width,
+            "CoeffWidth": coeff,
+            "Drop": drop,
+            "RealOnly": real_only,
+        },
+        device={"factors": factors},
+        roms=lambda folder: write_factors(
+            folder / "twiddle_forward_0.hex", MAKERS[kind](block, direction == "inverse", coeff), coeff
+        ),
+        **runs,
+    )
+
+
+STRUCTURES = (
+    built("twiddle_forward", 32, 32, 27, 27, 18, 17, 0, on=VERILATOR),
+    built("twiddle_inverse", 32, 8, 12, 12, 10, 9, 0, on=ICARUS),
+    built("twiddle_forward", 16, 8, 35, 35, 24, 23, 0, on=ICARUS),
+    built("phase_forward", 16, 16, 27, 24, 18, 20, 1, on=ICARUS),
+    built("phase_forward", 16, 16, 15, 15, 10, 9, 1),
+    built("phase_inverse", 64, 64, 24, 27, 18, 14, 0),
+    built("twiddle_inverse", 16, 8, 6, 6, 5, 4, 0, mutants=True),
+)
+MUTANTS = Mutants("bursts", columns_are="Size")
+REFUSED = {
+    "Size=12": "Size_must_be_a_power_of_two_at_least_2",
+    "Size=1": "Size_must_be_a_power_of_two_at_least_2",
+    "Block=12": "Block_must_be_a_power_of_two_2_to_Size",
+    "Block=1": "Block_must_be_a_power_of_two_2_to_Size",
+    "Block=256": "Block_must_be_a_power_of_two_2_to_Size",
+}
+PROOFS = tuple(
+    Proof(
+        "an arbitrary word meets the factor of its own position; latency 7",
+        f"the address is the burst's position; {ROUNDING}",
+        {"Size": 8, "Block": block, "RealOnly": real_only},
+        depth=35,
+        roms=factor_rom(block),
+    )
+    for block, real_only in ((4, 0), (8, 1))
+)
+
 
 FIELDS = ["re", "im"]
 

@@ -6,12 +6,42 @@ from typing import Any
 import cocotb
 import numpy as np
 
+from formal.entries import ONE_ORDER, WORD_FREE, Proof
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.wide_commutator import LEAD, from_beats
 from tactile_depth.chip.poisson.transform.wide_corner_turn import latency as wide_corner_turn_latency
 from tactile_depth.chip.poisson.transform.wide_corner_turn import wide_corner_turn
 from tb.stream import parameters, parametrize, uniform
+from tb.structures import ICARUS, VERILATOR, of_parameters
 from tb.wide import RowPairDriver, WideMonitor, check_row_pairs
+
+built = of_parameters("Size Width Paths")
+STRUCTURES = (
+    built(32, 24, 4, on=VERILATOR),
+    built(16, 12, 1, on=ICARUS),
+    built(32, 12, 8, on=ICARUS),
+    built(16, 12, 2, on=ICARUS),
+    built(8, 9, 2, on=ICARUS, mutants=True),
+    built(64, 24, 16),
+    built(128, 24, 4),
+)
+REFUSED = {
+    "Size=12": "Size_must_be_a_power_of_two_at_least_8",
+    "Paths=3": "Paths_must_be_a_power_of_two_1_to_Size_4",
+    "Paths=64": "Paths_must_be_a_power_of_two_1_to_Size_4",
+}
+PROOFS = tuple(
+    Proof(
+        "an arbitrary word at its place in its row; rows in turn, one alone; latency Beats + 4",
+        f"{ONE_ORDER}; {WORD_FREE}",
+        {"Size": size, "Paths": paths},
+        depth=45,
+        engine="smtbmc bitwuzla -- --noincr",
+        steps=2,
+    )
+    for size, paths in ((8, 1), (8, 2), (16, 4))
+)
+
 
 BURSTS = 12
 

@@ -1,6 +1,34 @@
 # SPDX-License-Identifier: Apache-2.0
 """wide_rows against its model: the tests that it shares with row_reorder."""
 
+from formal.entries import ONE_ORDER, WORD_FREE, Proof
 from tb.poisson.transform.row_bench import a_frame_begins_afresh, reset_in_mid_row, rows
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+built = of_parameters("Columns Width Paths")
+STRUCTURES = (
+    built(32, 24, 4, on=VERILATOR),
+    built(16, 16, 2, on=ICARUS),
+    built(8, 16, 2, on=ICARUS, mutants=True),
+    built(8, 8, 4, on=ICARUS),
+    built(64, 24, 8),
+)
+REFUSED = {
+    "Columns=12": "Columns_must_be_a_power_of_two_at_least_4",
+    "Columns=2": "Columns_must_be_a_power_of_two_at_least_4",
+    "Paths=1": "Paths_must_be_a_power_of_two_2_to_Columns_2",
+    "Paths=3": "Paths_must_be_a_power_of_two_2_to_Columns_2",
+    "Paths=128": "Paths_must_be_a_power_of_two_2_to_Columns_2",
+}
+PROOFS = tuple(
+    Proof(
+        "an arbitrary word at its place in its row; start with the last word of the row",
+        f"{ONE_ORDER}; {WORD_FREE}",
+        {"Columns": 8, "Paths": paths},
+        depth=45,
+    )
+    for paths in (2, 4)
+)
+
 
 __all__ = ["a_frame_begins_afresh", "reset_in_mid_row", "rows"]

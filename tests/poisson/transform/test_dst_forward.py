@@ -9,44 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.fft import dst
 
-from formal.entries import Proof
-from formal.tables import transform_roms
 from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
-from tactile_depth.chip.poisson.transform.dst_forward import latency as dst_forward_latency
 from tactile_depth.chip.poisson.transform.orders import bit_reversed, makhoul
 from tactile_depth.chip.poisson.transform.sdf_fft import halvings, twiddle_stages
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
-from tactile_depth.chip.rom_files import write_direction
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
-from tests.poisson.transform.transforms import coefficient_noise, transform_parameters
-from tests.rtl import test_rtl as test_rtl
-
-
-def built(parameters: dict[str, int], **runs: Any) -> Structure:
-    size, coeff = parameters["Size"], parameters["CoeffWidth"]
-    return Structure(parameters, roms=lambda folder: write_direction(folder, size, 0, False, coeff), **runs)
-
-
-STRUCTURES = (
-    built(transform_parameters(32, 24, 1, 27, 18, 0, 27, 1), on=VERILATOR),
-    built(transform_parameters(16, 23, 0, 27, 18, 3, 24, 1), on=ICARUS),
-    built(transform_parameters(8, 12, -3, 15, 10, 3, 12, 1), on=ICARUS),
-    built(transform_parameters(16, 16, -4, 15, 10, 1, 12, 1)),  # the input alone can clip
-    built(transform_parameters(16, 23, 0, 27, 18, 3, 24, 0)),
-    built(transform_parameters(32, 6, -3, 9, 7, 3, 6, 1), mutants=True),  # four values can clip at once in sdf_fft
-    built(transform_parameters(64, 32, 1, 35, 24, 0, 35, 1)),
-)
-MUTANTS = Mutants("bursts", columns_are="Size", flat=False)
-PROOFS = (
-    Proof(
-        "start and frame_start leave with their burst, at the latency of models/tactile_depth/chip/latency.py",
-        "the smallest transform, every core of a longer one is in it",
-        {"Size": 8, "Latency": dst_forward_latency(8)},
-        depth=60,
-        roms=transform_roms,
-    ),
-)
+from tests.poisson.transform.transforms import coefficient_noise
 
 
 def transform(x: np.ndarray, coeff: int, width: int = 40) -> Any:

@@ -7,52 +7,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formal.entries import ROUNDING, Proof
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.sdf_butterfly import sdf_butterfly
 from tactile_depth.chip.poisson.transform.sdf_fft import Stage
-from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
-from tests.rtl import test_rtl as test_rtl
-
-built = of_parameters("Size Delay RotateBlock Inverse Halve Width")
-STRUCTURES = (
-    built(16, 8, 16, 1, 1, 27, on=VERILATOR),
-    built(16, 8, 0, 0, 0, 27, on=ICARUS),
-    built(16, 4, 16, 0, 1, 9, on=ICARUS, mutants=True),
-    built(32, 4, 8, 1, 0, 12, on=ICARUS),
-    built(32, 2, 8, 0, 1, 35, on=ICARUS),
-    built(16, 2, 4, 1, 1, 9),
-    built(16, 1, 4, 0, 1, 9),
-    built(8, 1, 0, 1, 1, 15),
-    built(8, 1, 0, 0, 0, 15),
-    built(64, 32, 64, 0, 0, 27),
-)
-MUTANTS = Mutants("bursts", columns_are="Size")
-REFUSED = {
-    "Size=12": "Size_must_be_a_power_of_two",
-    "Delay=0": "Delay_must_be_a_power_of_two_1_to_Size_2",
-    "Delay=128": "Delay_must_be_a_power_of_two_1_to_Size_2",
-    "Delay=6": "Delay_must_be_a_power_of_two_1_to_Size_2",
-    "RotateBlock=2": "RotateBlock_must_be_0_or_a_power_of_two_4_to_Size",
-    "RotateBlock=6": "RotateBlock_must_be_0_or_a_power_of_two_4_to_Size",
-    "RotateBlock=256": "RotateBlock_must_be_0_or_a_power_of_two_4_to_Size",
-}
-PROOFS = tuple(
-    Proof(
-        "sum and difference of an arbitrary pair at their places, turned and halved; latency Delay + 2",
-        f"stages as they occur in a transform of 8, one with its line in memory; {ROUNDING}",
-        {"Size": size, "Delay": delay, "RotateBlock": block, "Inverse": inverse, "Halve": halve},
-        depth=45,
-    )
-    for size, delay, block, inverse, halve in (
-        (8, 4, 0, 0, 0),
-        (8, 2, 8, 0, 1),
-        (8, 4, 8, 1, 1),
-        (8, 1, 0, 1, 1),
-        (16, 8, 0, 0, 0),
-    )
-)
-
 
 WORDS = st.lists(st.integers(-(2**20), 2**20), min_size=32, max_size=32)
 

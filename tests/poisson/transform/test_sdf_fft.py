@@ -8,53 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from formal.entries import Proof
-from formal.tables import transform_roms
 from tactile_depth.chip.poisson.transform.orders import bit_reversed
 from tactile_depth.chip.poisson.transform.sdf_fft import halvings, sdf_fft, twiddle_stages
-from tactile_depth.chip.poisson.transform.sdf_fft import latency as sdf_fft_latency
 from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
-from tactile_depth.chip.rom_files import write_direction
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.poisson.transform.transforms import coefficient_noise
-from tests.rtl import test_rtl as test_rtl
-
-
-def built(size: int, width: int, coeff: int, inverse: int, **runs: Any) -> Structure:
-    return Structure(
-        {"Size": size, "Width": width, "CoeffWidth": coeff, "Inverse": inverse},
-        roms=lambda folder: write_direction(folder, size, 0, bool(inverse), coeff),
-        **runs,
-    )
-
-
-STRUCTURES = (
-    built(32, 27, 18, 0, on=VERILATOR),
-    built(32, 27, 18, 1, on=ICARUS),
-    built(8, 12, 10, 0, on=ICARUS),
-    built(8, 12, 10, 1, mutants=True),
-    built(16, 27, 18, 0),
-    built(16, 27, 18, 1),
-    built(64, 15, 10, 0),
-    built(64, 15, 10, 1),
-    built(128, 35, 24, 0),
-    built(128, 35, 24, 1),
-)
-MUTANTS = Mutants("bursts", columns_are="Size")
-REFUSED = {
-    "Size=4": "Size_must_be_a_power_of_two_at_least_8",
-    "Size=24": "Size_must_be_a_power_of_two_at_least_8",
-}
-PROOFS = tuple(
-    Proof(
-        "start and frame_start leave with their burst, at the latency of models/tactile_depth/chip/latency.py",
-        "the smallest transform: pair, twiddle and lone butterfly; longer ones chain more of these",
-        {"Size": 8, "Inverse": inverse, "Latency": sdf_fft_latency(8)},
-        depth=60,
-        roms=transform_roms,
-    )
-    for inverse in (0, 1)
-)
 
 
 def transform(z: np.ndarray, inverse: bool, coeff: int, width: int = 40) -> Any:

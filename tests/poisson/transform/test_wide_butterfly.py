@@ -4,41 +4,9 @@
 import numpy as np
 import pytest
 
-from formal.entries import ROUNDING, Proof
 from tactile_depth.chip.poisson.transform.sdf_butterfly import Stage, sdf_butterfly
 from tactile_depth.chip.poisson.transform.wide_butterfly import wide_butterfly
 from tactile_depth.chip.poisson.transform.wide_commutator import to_beats
-from tb.structures import ICARUS, VERILATOR, of_parameters
-from tests.rtl import test_rtl as test_rtl
-
-built = of_parameters("Width Paths Beats PathBit RotateBit Inverse Halve")
-STRUCTURES = (
-    built(27, 4, 8, 1, 0, 1, 1, on=VERILATOR),
-    built(9, 2, 4, 0, 2, 0, 1, on=ICARUS, mutants=True),
-    built(9, 4, 2, 0, 1, 1, 0, on=ICARUS, mutants=True),
-    built(12, 8, 2, 2, -1, 0, 0, on=ICARUS),
-    built(12, 2, 4, 0, 1, 1, 1, on=ICARUS),
-)
-REFUSED = {
-    "Paths=1": "Paths_and_Beats_must_be_powers_of_two_at_least_2",
-    "Paths=3": "Paths_and_Beats_must_be_powers_of_two_at_least_2",
-    "Beats=1": "Paths_and_Beats_must_be_powers_of_two_at_least_2",
-    "Beats=24": "Paths_and_Beats_must_be_powers_of_two_at_least_2",
-    "PathBit=2": "PathBit_must_be_a_bit_of_the_path_number",
-    "PathBit=-1": "PathBit_must_be_a_bit_of_the_path_number",
-    "RotateBit=0": "RotateBit_must_be_minus_1_or_another_bit_of_beat_and_path",
-    "RotateBit=-2": "RotateBit_must_be_minus_1_or_another_bit_of_beat_and_path",
-    "RotateBit=7": "RotateBit_must_be_minus_1_or_another_bit_of_beat_and_path",
-}
-PROOFS = tuple(
-    Proof(
-        "sums and differences of every pair of a beat, rotated and halved, and their clip count; latency 2",
-        f"rotation by a bit of the path, of the beat, and none; {ROUNDING}",
-        {"Paths": 4, "Beats": 2, "PathBit": bit, "RotateBit": rotate, "Inverse": inverse, "Halve": halve},
-        depth=30,
-    )
-    for bit, rotate, inverse, halve in ((0, 1, 1, 1), (1, 2, 0, 0), (1, -1, 0, 1))
-)
 
 
 @pytest.mark.parametrize("inverse", [False, True])

@@ -4,35 +4,7 @@
 import numpy as np
 import pytest
 
-from formal.entries import ONE_ORDER, WORD_FREE, Proof
 from tactile_depth.chip.poisson.transform.wide_commutator import from_beats, positions, to_beats, wide_commutator
-from tb.structures import ICARUS, VERILATOR, of_parameters
-from tests.rtl import test_rtl as test_rtl
-
-built = of_parameters("Width Paths Beats Delay Up")
-STRUCTURES = (
-    built(27, 4, 16, 8, 1, on=VERILATOR),
-    built(12, 2, 4, 2, 0, on=ICARUS),
-    built(12, 8, 2, 1, 1, on=ICARUS),
-    built(9, 4, 8, 2, 0, on=ICARUS, mutants=True),
-    built(12, 4, 16, 8, 0),
-)
-REFUSED = {
-    "Paths=1": "Paths_must_be_a_power_of_two_at_least_2",
-    "Paths=3": "Paths_must_be_a_power_of_two_at_least_2",
-    "Delay=3": "Beats_and_Delay_must_be_powers_of_two_and_Delay_1_to_Beats_2",
-    "Delay=32": "Beats_and_Delay_must_be_powers_of_two_and_Delay_1_to_Beats_2",
-    "Beats=24": "Beats_and_Delay_must_be_powers_of_two_and_Delay_1_to_Beats_2",
-}
-PROOFS = tuple(
-    Proof(
-        "an arbitrary word at its position behind the core; latency Delay",
-        f"{ONE_ORDER}; {WORD_FREE}",
-        {"Paths": paths, "Beats": 4, "Delay": delay, "Up": up},
-        depth=30,
-    )
-    for paths, delay, up in ((4, 2, 1), (4, 1, 0), (2, 2, 0))
-)
 
 
 def test_positions_have_three_fields() -> None:

@@ -4,34 +4,8 @@
 import numpy as np
 import pytest
 
-from formal.entries import ONE_ORDER, Proof
 from tactile_depth.chip.poisson.transform.orders import mirror
 from tactile_depth.chip.poisson.transform.wide_row_pairs import rows_of_bursts, up_positions, wide_row_pairs
-from tb.structures import ICARUS, VERILATOR, of_parameters
-from tests.rtl import test_rtl as test_rtl
-
-built = of_parameters("Size Width Paths")
-STRUCTURES = (
-    built(32, 27, 4, on=VERILATOR),
-    built(16, 9, 1, on=ICARUS),
-    built(16, 9, 4, on=ICARUS),
-    built(8, 9, 2, on=ICARUS, mutants=True),
-    built(64, 27, 2),
-)
-REFUSED = {
-    "Size=12": "Size_must_be_a_power_of_two_at_least_8",
-    "Paths=3": "Paths_must_be_a_power_of_two_1_to_Size_4",
-    "Paths=64": "Paths_must_be_a_power_of_two_1_to_Size_4",
-}
-PROOFS = tuple(
-    Proof(
-        "an arbitrary word at the positions of its mode and of the mirrored one; latency Size / (2 Paths) + 2",
-        f"{ONE_ORDER}; sums are linear but for saturation, which is proven of td_round_saturate",
-        {"Size": size, "Paths": paths},
-        depth=45,
-    )
-    for size, paths in ((8, 2), (8, 1))
-)
 
 
 @pytest.mark.parametrize(("size", "words"), [(16, 2), (16, 8), (64, 4), (128, 64)])

@@ -5,23 +5,6 @@ from typing import Any
 
 import numpy as np
 
-# Parameters of dst_forward and dst_inverse, in the order of their structures.
-TRANSFORM_PARAMETERS = (
-    "Size",
-    "InWidth",
-    "InputDrop",
-    "Width",
-    "CoeffWidth",
-    "OutputDrop",
-    "OutWidth",
-    "Sine",
-)
-
-
-def transform_parameters(*values: int) -> dict[str, int]:
-    """Return the parameters of a sine transform by name."""
-    return dict(zip(TRANSFORM_PARAMETERS, values, strict=True))
-
 
 def coefficient_noise(stages: Any, coeff: int) -> Any:
     """RMS error, relative to the RMS of the result, of a chain of multiplications by rounded factors.

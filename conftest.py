@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fixtures that build and run a testbench on each simulator; SIM=icarus or SIM=verilator selects one, SEED a seed."""
+"""Tests of RTL: testbenches of tb/ on their STRUCTURES. SIM=icarus or SIM=verilator selects one, SEED a seed."""
 
 import os
 
@@ -12,7 +12,7 @@ import re
 import shutil
 import time
 import zlib
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -30,9 +30,31 @@ from tb.structures import Structure
 SEED = int(os.environ.get("SEED", "1"))
 STATES_OF_A_BOARD = 8
 QUICK_CLOCKS = 1000
+BENCHES = {core.benches[0] for core in repository.cores().values() if len(core.benches) == 1}
 SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")
 settings.register_profile("no deadline", deadline=None)  # a test of a model must not fail on a busy machine
 settings.load_profile("no deadline")
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
+
+
+class CoreBench(pytest.Module):
+    """Testbench of a core, which cocotb plays: to pytest it has one test, on each of its STRUCTURES."""
+
+    def collect(self) -> Iterable[pytest.Item | pytest.Collector]:
+        self.obj.test_rtl = test_rtl
+        return super().collect()
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    return CoreBench.from_parent(parent, path=file_path) if file_path in BENCHES else None
+
+
+def core_of(path: Path) -> str:
+    """Return the core that the file of a test tests."""
+    return path.stem.removeprefix("test_").removeprefix("tb_")
 
 
 def pytest_generate_tests(metafunc: Any) -> None:
@@ -45,7 +67,7 @@ def pytest_generate_tests(metafunc: Any) -> None:
         return
     mark = metafunc.definition.get_closest_marker("structures")
     structures = mark.args[0] if mark else metafunc.module.STRUCTURES
-    core = metafunc.definition.path.stem.removeprefix("test_")
+    core = core_of(metafunc.definition.path)
     inside = core in repository.cores() and core not in ("tactile_depth", *repository.outermost())
     cases = [
         pytest.param(simulator, structure, id=f"{simulator}-{structure.label}", marks=marks)
@@ -80,12 +102,18 @@ def begins_at_random(item: Any) -> bool:
     return device and "run_tb" in item.fixturenames and item.get_closest_marker("verilator") is not None
 
 
+def has_random_frames(item: Any) -> bool:
+    """Return whether `make regress` plays a test of RTL with another seed: each on Icarus, and a solver on both."""
+    structure = item.callspec.params.get("structure")
+    return item.get_closest_marker("icarus") is not None or (structure is not None and bool(structure.device))
+
+
 def pytest_collection_modifyitems(items: Any) -> None:
     """Mark the tests of RTL, before `-m` selects by mark; put the long ones first."""
     for item in items:
         if "simulator" in getattr(item, "fixturenames", ()):
             item.add_marker(item.callspec.params["simulator"])
-        if "run_tb" in getattr(item, "fixturenames", ()) and item.get_closest_marker("icarus"):
+        if "run_tb" in getattr(item, "fixturenames", ()) and has_random_frames(item):
             item.add_marker("seeds")
         if begins_at_random(item):
             item.add_marker("power_ups")
@@ -133,7 +161,7 @@ def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
     def run(
         structure: Structure, *, toplevel: str = "", test_module: str = "", files: Any = (), **settings: Any
     ) -> None:
-        toplevel = toplevel or request.path.stem.removeprefix("test_")
+        toplevel = toplevel or core_of(request.path)
         name = re.sub(r"[^\w-]+", "_", request.node.name).strip("_")
         folder = simulation.BUILD / "tests" / f"{request.node.path.stem}-{name}"
         stamp = folder / "parameters.json"  # the runners rebuild for newer sources, not for other parameters
