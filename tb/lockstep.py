@@ -14,7 +14,7 @@ from tb.settings import RUN
 Pins = dict[str, int]
 
 WORD: Sequence[int] = ()  # a choice: any word of the width of the pin
-CLOCKS = 30_000 if RUN.full else 6_000
+CLOCKS = 150_000 if RUN.full else 6_000
 RATES = (0, 0.03, 0.3, 0.7, 0.97, 1)
 
 
@@ -27,11 +27,11 @@ class Episodes:
         self.words = [pin for pin in choices if choices[pin] is WORD]
 
     def draw(self) -> Pins:
-        """Return the pins of the next clock, which may be changed: they are those of the clock before in the next."""
+        """Return the pins of the next clock."""
         chance = self.chance
         if not self.left:
             self.left = chance.choice((10, 40, 150, 600))
-            calm = chance.random() < 0.3  # words stay
+            calm = chance.random() < 0.4  # words stay
             self.rates = {pin: chance.choice(RATES) for pin in self.choices}
             for pin, choice in self.choices.items():
                 if not isinstance(choice, float):
@@ -43,13 +43,13 @@ class Episodes:
                 self.now[pin] = int(chance.random() < self.rates[pin] * choice)
             elif chance.random() < self.rates[pin]:
                 self.now[pin] = self.word(pin)
-        return self.now
+        return {**self.now}
 
     def word(self, pin: str) -> int:
-        """Return one of the values of a pin; those of any word are often at a limit, one bit, or next to another's."""
-        chance, width = self.chance, self.widths[pin]
-        if self.choices[pin] is not WORD:
-            return chance.choice(self.choices[pin])
+        """Return a value of a pin, often the first; any word is often at a limit, or one away from another pin's."""
+        chance, width, values = self.chance, self.widths[pin], self.choices[pin]
+        if values is not WORD:
+            return chance.choice((values[0], chance.choice(values)))
         other = self.now[chance.choice(self.words)]
         near = chance.choice((0, -1, 1 << chance.randrange(width), chance.getrandbits(width), other))
         return (near + chance.choice((-1, 0, 0, 1))) % (1 << width)
@@ -58,7 +58,7 @@ class Episodes:
 async def play(
     dut: Any,
     model: Any,
-    choices: Mapping[str, float | Sequence[int]],
+    choices: Mapping[str, Any],
     legal: Callable[[Any, Pins], None] = lambda model, pins: None,
     offers: Sequence[str] = (),
     clocks: int = CLOCKS,
@@ -71,7 +71,8 @@ async def play(
         Its `clock`, which gets the pins by their names, `rst` too, returns the outputs of this clock by their names,
         None where one does not count, and advances by the clock edge behind it.
     choices : mapping
-        What each input may be: a float is the highest probability of a bit, a sequence the values, WORD any word.
+        What each input may be: a float is the highest probability of a bit, a sequence the values, the usual one
+        first, WORD any word.
     legal : callable
         Changes pins into those that the state of the model allows.
     offers : sequence of str
@@ -86,8 +87,7 @@ async def play(
     await edge
     kept: Pins = {}
     for clock in range(clocks):
-        now = episodes.draw()
-        now |= kept
+        now = episodes.draw() | kept
         legal(model, now)
         write(**now)
         expected = model.clock(**now)

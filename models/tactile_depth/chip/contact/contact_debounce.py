@@ -18,10 +18,13 @@ class ContactDebounce:
         Result of the last frame.
     differing_frames : int
         Consecutive frames whose area speaks against `touching`.
+    status : int or None
+        Bits of the last frame, None before the first.
     """
 
     touching: bool = False
     differing_frames: int = 0
+    status: int | None = None
 
     def frame(self, area: int, minimum_area: int, debounce: int) -> int:
         """Take the area of a frame; return its status bits."""
@@ -34,6 +37,14 @@ class ContactDebounce:
         self.touching, self.differing_frames = not self.touching, 0
         return TOUCHING | BEGAN if self.touching else ENDED
 
-    def reset(self) -> None:
-        """Advance by one clock edge in reset."""
-        self.touching, self.differing_frames = False, 0
+    def clock(self, *, rst: int, area_valid: int, area: int, minimum_area: int, debounce: int) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        out: dict[str, int | None] = {"touching": self.touching}
+        if self.status is not None:
+            out |= {"began": bool(self.status & BEGAN), "ended": bool(self.status & ENDED)}
+        if rst:
+            self.touching, self.differing_frames, self.status = False, 0, None
+            return out
+        if area_valid:
+            self.status = self.frame(area, minimum_area, debounce)
+        return out | {"touching_next": self.touching}

@@ -213,7 +213,7 @@ class ContactEvents:
 
     def reset(self) -> None:
         """Advance by one clock edge in reset."""
-        self.debounce.reset()
+        self.debounce = ContactDebounce()
         self.frames, self.last_peak, self.settings = 0, None, None
         self.peak.found, self.sums.threshold = None, None
 
