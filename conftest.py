@@ -84,7 +84,7 @@ def chosen_structures(simulator: str, structures: Sequence[Structure], inside: b
     it, a core that is `inside` another only there. `make test CORE=` and `make regress` play all.
     """
     first = [structure for structure in structures if simulator in structure.on]
-    late = [structure for structure in structures if simulator in structure.late and simulator not in structure.on]
+    late = [structure for structure in structures if simulator not in structure.on]
     if not RUN.cores:
         other = inside and simulator == "verilator" and "icarus" in SIMULATORS
         elsewhere = first if other else [structure for structure in first[1:] if not structure.device]
@@ -177,7 +177,7 @@ def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
             structure.roms(folder)
         simulation.build(simulator, toplevel, sources, structure.parameters, folder, log=folder / "build.log")
         wanted = replace(RUN, device=structure.device, level=structure.level)
-        environment = {**replace(wanted, **settings).environment, **structure.environment}
+        environment = replace(wanted, **settings).environment | {"COCOTB_RANDOM_TEST_ORDER": "1"}
 
         def play(log: Path, **arguments: Any) -> None:
             count, failed = simulation.run(

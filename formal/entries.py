@@ -6,51 +6,43 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 
 @dataclass(frozen=True)
 class Proof:
-    """A bench with its parameters.
+    """Run of the bench formal/<unit>/fv_<core>.sv, whose header states the claim, with its parameters.
 
     Attributes
     ----------
-    claim : str
-        The property, in words.
     sufficient : str
         Why these sizes are enough.
     parameters : mapping
         Of the bench.
-    depth : int
-        Clocks within which every cover is reached.
-    engine : str
-        Of mode prove.
     steps : int
-        Clocks of the induction, and of its base case, with the engine smtbmc.
+        Clocks of the induction, and of its base case; 0: no induction, but the engine abc pdr.
     roms : callable
         Writes the files that $readmemh reads into the folder given.
     free : tuple of str
         Wires of the core that take any values instead of their own.
-    clocks : int
-        Clocks of the core. With more than one, time is in steps, and each clock rises whenever it likes.
     core : str
-        The bench is formal/<unit>/fv_<core>.sv; `make formal` sets it, from the bench that states the proof.
+        `make formal` sets it, from the testbench that states the proof.
     """
 
-    claim: str
     sufficient: str
     parameters: Mapping[str, int] = field(default_factory=dict)
-    depth: int = 20
-    engine: str = "abc pdr"
-    steps: int = 20
+    steps: int = 0
     roms: Callable[[Path], None] | None = None
     free: tuple[str, ...] = ()
-    clocks: int = 1
     core: str = ""
 
     @property
     def name(self) -> str:
         return "-".join([self.core, *(f"{key}{value}" for key, value in self.parameters.items())])
+
+    @property
+    def engine(self) -> str:
+        return "smtbmc bitwuzla -- --noincr" if self.steps else "abc pdr"
 
 
 @dataclass(frozen=True)
@@ -61,12 +53,10 @@ class Cone:
     holds of every frame, whatever it shows: the clocks at which words move are a function of the other inputs alone.
     """
 
-    claim: str
     sufficient: str
     choices: Mapping[str, Any]
     core: str = ""
-    engine: str = "yosys select"
-    depth: int = 0
+    engine: ClassVar[str] = "yosys select"
 
     @property
     def parameters(self) -> Mapping[str, int | str]:

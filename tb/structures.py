@@ -17,7 +17,6 @@ Simulators = tuple[str, ...]
 VERILATOR: Simulators = ("verilator",)
 ICARUS: Simulators = ("icarus",)
 BOTH = VERILATOR + ICARUS
-QUICK_FIRST = BOTH  # of mutants: Icarus, which sees X, gets the survivors of Verilator
 
 
 @dataclass(frozen=True)
@@ -29,35 +28,31 @@ class Structure:
     parameters : mapping
         Of the core.
     on : tuple of str
-        Simulators in `make test CORE=`; the whole suite plays the first that has no `device`, and all that have one,
-        and a core inside another on Icarus only.
+        Simulators in `make test CORE=`; `make regress` plays every structure on both. The whole suite plays the first
+        that has no `device`, and all that have one, and a core inside another on Icarus only.
         Icarus builds in 0.1 s what takes Verilator 5 s.
-    late : tuple of str
-        More simulators in `make regress`; by default Icarus, unless it is in `on`.
-    mutants : bool
-        `make mutate` and `make netlists` take this structure. Those of a core are small builds that together contain
-        every relevant generate branch.
+    mutants : tuple of str
+        Simulators on which `make mutate` plays this structure, each the survivors of the one before; `make netlists`
+        takes it too. Those of a core are small builds that together contain every relevant generate branch.
+        Icarus needs no build, and sees X; Verilator is fast where a test is long.
     device : mapping
-        Facts that the testbench must know; see RunSettings.
+        Facts that the testbench must know; see RunSettings. `level`: the last level that is played (tb/selection.py).
     roms : callable
         Writes the files that $readmemh reads into the folder given.
     name : str
         Name in tests and folders; by default the values of the parameters or of the configuration.
-    level : str
-        Last level that is played, of the testbench of the whole.
-    environment : mapping
-        Environment variables of cocotb.
     """
 
     parameters: Mapping[str, Any] = field(default_factory=dict)
     on: Simulators = ()
-    late: Simulators = ICARUS
-    mutants: bool = False
+    mutants: Simulators = ()
     device: Mapping[str, Any] = field(default_factory=dict)
     roms: Callable[[Path], None] | None = None
     name: str = ""
-    level: str = ""
-    environment: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def level(self) -> str:
+        return str(self.device.get("level", ""))
 
     @property
     def label(self) -> str:
@@ -88,8 +83,6 @@ class Mutants:
         protocol_<protocol>.sv in formal/; by default protocol_<name>.sv, if there is one.
     rows_are, columns_are : str
         Parameters of the core that the protocol calls Rows and Columns.
-    simulators : tuple of str
-        Each simulator gets the survivors of the one before. Icarus needs no build, and sees X.
     outside : sequence of str
         Registers of the core that its testbench writes.
     repeats : int
@@ -101,7 +94,6 @@ class Mutants:
     protocol: str = ""
     rows_are: str = ""
     columns_are: str = ""
-    simulators: Simulators = ICARUS
     outside: Sequence[str] = ()
     repeats: int = 60
     flat: bool = True

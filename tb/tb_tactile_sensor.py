@@ -41,10 +41,15 @@ def built(form: str, picture: tuple[int, int], window: tuple[int, int, int, int]
 
 
 STRUCTURES = (
-    built("raw10_lsb", (23, 42), (3, 2, 36, 18), on=VERILATOR, mutants=True),
-    built("yuyv_bytes", (13, 28), (2, 1, 24, 12), on=ICARUS, late=VERILATOR),
+    built("raw10_lsb", (23, 42), (3, 2, 36, 18), on=VERILATOR, mutants=VERILATOR),
+    built(
+        "yuyv_bytes",
+        (13, 28),
+        (2, 1, 24, 12),
+        on=ICARUS,
+    ),
 )
-MUTANTS = Mutants("tactile_depth", simulators=VERILATOR, flat=False)
+MUTANTS = Mutants("tactile_depth", flat=False)
 REFUSED = {"Camera=0": "Config_has_no_camera"}
 NO_PROOF = "camera_unit and tactile_depth in a row"
 

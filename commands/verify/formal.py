@@ -7,6 +7,7 @@ items of formal/test_proofs.py. CORE=a,b: these cores alone. LIST=1: print what 
 nothing.
 """
 
+import itertools
 import os
 import re
 import shutil
@@ -19,7 +20,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
-from commands.common import tabular, variables
+from commands.common import header, tabular, variables
 from commands.common.repository import ROOT, chosen, cores, sources, stated, tested, units
 from commands.hardware.yosys import in_wheel
 from commands.verify import items, sign_off
@@ -37,6 +38,9 @@ JOBS = 2
 TIMEOUT = 900  # time-out of one run of SymbiYosys in seconds
 MODES = ("prove", "cover")
 COVER_ENGINE = "smtbmc bitwuzla -- --noincr"
+COVER_DEPTH = 200  # clocks; a run ends as soon as every cover is reached
+PDR_DEPTH = 20  # that engine has no bound, but the file needs one
+STRUCTURAL = "no pixel, no word of a memory, no table reaches a handshake or side-band: the latency is fixed"
 
 
 @dataclass(frozen=True)
@@ -69,7 +73,10 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
     """Return the .sby file of one run."""
     file = cores()[proof.core].proof
     assert file is not None, proof.core
-    bench = file.stem
+    bench, clocks = (
+        file.stem,
+        [port for port in header.read(cores()[proof.core].hdl).of("input") if port.name.endswith("clk")],
+    )
     parameters = " ".join(f"-G{name}={value}" for name, value in proof.parameters.items())
     shared = [path for path in sorted(BENCHES.rglob("*.sv")) if not path.name.startswith("fv_")]
     files = [*sources(), *shared, file]
@@ -79,8 +86,8 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
         f"mode {mode}",
         f"timeout {TIMEOUT}",
         *(["aigsmt z3"] if mode == "prove" else []),
-        f"depth {proof.steps if mode == 'prove' else proof.depth}",
-        *(["multiclock on"] if proof.clocks > 1 else []),
+        f"depth {(proof.steps or PDR_DEPTH) if mode == 'prove' else COVER_DEPTH}",
+        *(["multiclock on"] if len(clocks) > 1 else []),
         "[engines]",
         proof.engine if mode == "prove" else COVER_ENGINE,
         "[script]",
@@ -213,6 +220,15 @@ def selected(names: str) -> list[Proof | Cone]:
     return [replace(proof, core=name) for name in dict.fromkeys(wanted) for proof in stated(name, "PROOFS") or ()]
 
 
+def claim(proof: Proof | Cone) -> str:
+    """Return what a proof shows: the first paragraph of the header of its bench."""
+    file = cores()[proof.core].proof
+    if isinstance(proof, Cone) or file is None:
+        return STRUCTURAL
+    _, *lines = (line.removeprefix("//").strip() for line in file.read_text().partition("\n\n")[0].splitlines())
+    return " ".join(itertools.takewhile(bool, lines)).partition(": ")[2]
+
+
 def item(proof: Proof | Cone, mode: str) -> str:
     """Return the name of a proof in a mode as pytest shows it."""
     return f"{proof.name}-{mode}"
@@ -239,7 +255,7 @@ def results_of(proofs: Sequence[Proof | Cone], outcomes: Mapping[str, Mapping[st
         mine = outcomes[proof.name]
         parameters = " ".join(f"{key}={value}" for key, value in proof.parameters.items())
         seconds = f"{sum(outcome.seconds for outcome in mine.values()):.1f}"
-        rows.append((proof.core, parameters, proof.claim, proof.engine, seconds, combined(mine)))
+        rows.append((proof.core, parameters, claim(proof), proof.engine, seconds, combined(mine)))
     return tabular.Table(head, rows)
 
 
@@ -248,8 +264,8 @@ def listing(proofs: Sequence[Proof | Cone], others: Mapping[str, str]) -> str:
     entries: dict[tuple[str, str, str], list[str]] = {}
     for proof in sorted(proofs, key=lambda proof: proof.core):
         sizes = ", ".join(f"{key} {value}" for key, value in proof.parameters.items())
-        entries.setdefault((proof.core, proof.claim, proof.sufficient), []).append(sizes)
-    rows = [(core, claim, "; ".join(sizes) or "the defaults", why) for (core, claim, why), sizes in entries.items()]
+        entries.setdefault((proof.core, claim(proof), proof.sufficient), []).append(sizes)
+    rows = [(core, what, "; ".join(sizes) or "the defaults", why) for (core, what, why), sizes in entries.items()]
     proven = tabular.Table(("core", "proven", "sizes", "why they suffice"), rows).markdown()
     unproven = tabular.Table(("core", "no proof, because"), list(others.items())).markdown()
     return f"{proven}\n{unproven}" if others else proven

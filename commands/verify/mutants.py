@@ -213,7 +213,7 @@ def run(
         device=structure.device,
         mutants={"numbers": [mutant.number for mutant in mutants], "jobs": jobs, "results": str(results)},
     )
-    environment = {**structure.environment, **settings.environment, "OPENBLAS_NUM_THREADS": "1"}
+    environment = settings.environment | {"OPENBLAS_NUM_THREADS": "1"}
     _, failed = simulation.run(
         core,
         f"tb.mutants,{repository.testbench(core)}",

@@ -82,7 +82,7 @@ def mutate(name: str, count: int, seed: int, jobs: int, seconds: int) -> Outcome
         made, every = mutants.make(name, built, count, seed, folder, core.outside, core.flat)
         outcome.every &= every
         lived, killed = made, []
-        for simulator in core.simulators:
+        for simulator in built.mutants:
             done = partial(lines_of, folder / f"{simulator}.jsonl")
             with following(f"{name}, {simulator}", len(lived) + 1, "mutant", done):
                 results = mutants.run(name, built, lived, folder, simulator, jobs, seed, core.repeats)

@@ -27,14 +27,30 @@ def built(numerator: int, denominator: int, bits: int, bayer: int, **runs: Any) 
 STRUCTURES = (
     built(15, 4, 10, 1, on=VERILATOR),
     built(5, 4, 8, 0, on=VERILATOR),
-    built(5, 2, 12, 1, on=ICARUS, mutants=True),
-    built(1, 1, 8, 0, on=ICARUS, late=VERILATOR),
-    built(3, 2, 10, 0, on=ICARUS, mutants=True),
+    built(5, 2, 12, 1, on=ICARUS, mutants=ICARUS),
+    built(
+        1,
+        1,
+        8,
+        0,
+        on=ICARUS,
+    ),
+    built(3, 2, 10, 0, on=ICARUS, mutants=ICARUS),
     *(built(*ratio, 8, 0) for ratio in RATIOS if ratio not in ((1, 1), (5, 4))),
     *(built(*ratio, 10, 1) for ratio in PATTERN_RATIOS if ratio != (15, 4)),
     built(2, 1, 8, 1),
-    built(2, 1, 12, 1, late=VERILATOR),
-    built(8, 1, 10, 0, late=VERILATOR),
+    built(
+        2,
+        1,
+        12,
+        1,
+    ),
+    built(
+        8,
+        1,
+        10,
+        0,
+    ),
 )
 MUTANTS = Mutants(repeats=2, flat=False)
 REFUSED = {
@@ -45,10 +61,8 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "a word 12 clocks behind each complete block and 18 behind each break, with the marks of its position",
         "rows and columns are only counted; what is complete is proven of row_sums and block_totals",
         {"Rows": rows, "Columns": columns},
-        depth=50,
         free=("complete",),
     )
     for rows, columns in ((3, 4), (2, 5))

@@ -14,9 +14,13 @@ from tb.structures import ICARUS, VERILATOR, of_parameters
 built = of_parameters("Numerator Denominator")
 STRUCTURES = (
     built(15, 4, on=VERILATOR),
-    built(1, 1, on=ICARUS, late=VERILATOR),
-    built(7, 5, on=ICARUS, mutants=True),
-    built(8, 1, on=ICARUS, mutants=True),
+    built(
+        1,
+        1,
+        on=ICARUS,
+    ),
+    built(7, 5, on=ICARUS, mutants=ICARUS),
+    built(8, 1, on=ICARUS, mutants=ICARUS),
     built(2, 1),
     built(3, 2),
     built(127, 16),
@@ -28,7 +32,6 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "the weight of a pixel is its overlap with the block it is in or begins in; the block's last pixel",
         "one counter; ratios of 1, of an integer, below and above 2",
         {"Numerator": numerator, "Denominator": denominator},
     )

@@ -10,13 +10,18 @@ import numpy as np
 from formal.entries import Proof
 from tactile_depth.chip.camera.round_divide import LATENCY, round_divide
 from tb.stream import MANY, drive, parameters, parametrize
-from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
+from tb.structures import BOTH, ICARUS, Mutants, of_parameters
 
 built = of_parameters("TotalWidth WeightWidth Drop")
 STRUCTURES = (
     built(36, 8, 14, on=BOTH),
-    built(12, 1, 2, on=ICARUS, late=VERILATOR),
-    built(17, 7, 2, on=ICARUS, mutants=True),
+    built(
+        12,
+        1,
+        2,
+        on=ICARUS,
+    ),
+    built(17, 7, 2, on=ICARUS, mutants=ICARUS),
     built(20, 3, 4),
     built(50, 25, 16),
 )
@@ -28,7 +33,6 @@ REFUSED = {
 }
 PROOFS = (
     Proof(
-        "the nearest integer, ties to even, clipped to 0..255; latency 10",
         "a stage for each bit of the quotient, the same at every width of the divisor",
         {"TotalWidth": 13, "WeightWidth": 2, "Drop": 3},
     ),

@@ -17,10 +17,10 @@ built = of_parameters("AWidth BWidth")
 STRUCTURES = (
     built(27, 18, on=VERILATOR),
     built(35, 24, on=ICARUS),
-    built(15, 10, mutants=True),
+    built(15, 10, mutants=ICARUS),
     built(2, 3),
 )
-PROOFS = (Proof("the exact product of every enabled clock's operands", "no control but en; no width enters"),)
+PROOFS = (Proof("no control but en; no width enters"),)
 
 
 @cocotb.test()

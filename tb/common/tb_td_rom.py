@@ -25,7 +25,7 @@ def built(width: int, depth: Any, style: int, **runs: Any) -> Structure:
 
 STRUCTURES = (
     built(54, 128, 3, on=VERILATOR),
-    built(10, 36, 3, on=ICARUS, mutants=True),
+    built(10, 36, 3, on=ICARUS, mutants=ICARUS),
     built(72, 33, 3),
     built(54, 128, 0),
     built(10, 36, 1),

@@ -15,17 +15,15 @@ from tb.structures import ICARUS, VERILATOR, of_parameters
 built = of_parameters("PositionWidth WeightWidth")
 STRUCTURES = (
     built(7, 38, on=VERILATOR),
-    built(3, 6, on=ICARUS, mutants=True),
+    built(3, 6, on=ICARUS, mutants=ICARUS),
     built(10, 52),
     built(2, 4),
     built(5, 9),
 )
 PROOFS = (
     Proof(
-        "both means to the nearest, a fixed number of clocks after the last start",
         f"every weight and moment of this width; a bit is found in the same way at any width; {ROUNDING}",
         {"Latency": centroid.cycles(2)},
-        depth=40,
     ),
 )
 

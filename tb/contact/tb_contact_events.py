@@ -16,12 +16,12 @@ from tb.axis import profile
 from tb.cases import on_bench
 from tb.contact.depth_bench import WORD_HIGH, DepthBench
 from tb.stream import REGRESS, parametrize
-from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, of_parameters
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
 
 built = of_parameters("Width Rows Columns Lanes BottomFirst")
 STRUCTURES = (
     built(24, 5, 8, 1, 0, on=VERILATOR),
-    built(6, 5, 8, 1, 1, on=ICARUS, mutants=True),
+    built(6, 5, 8, 1, 1, on=ICARUS, mutants=BOTH),
     built(32, 5, 16, 1, 1),
     built(12, 9, 4, 1, 0),
     built(24, 8, 16, 1, 0),
@@ -29,7 +29,7 @@ STRUCTURES = (
     built(16, 8, 32, 8, 0),
     built(12, 4, 16, 2, 0),
 )
-MUTANTS = Mutants(simulators=QUICK_FIRST, outside=("frame",), flat=False)
+MUTANTS = Mutants(outside=("frame",), flat=False)
 REFUSED = {
     "Width=1": "Width_must_be_2_to_32",
     "Width=33": "Width_must_be_2_to_32",
@@ -41,10 +41,8 @@ REFUSED = {
 }
 PROOFS = (
     Proof(
-        "a record at a fixed latency, kept until the next, with number and time of its frame",
         "rows and columns are only counted; whatever count, peak, sums and centroid come out: these have proofs",
         {"Rows": 4, "Columns": 8, "Latency": contact_events.latency(4, 8)},
-        depth=110,
         free=("sums", "count", "peak", "middle"),
     ),
 )

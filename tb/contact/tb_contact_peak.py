@@ -21,8 +21,8 @@ def structures(columns: int) -> tuple[Structure, ...]:
     """Return the structures of a core that measures frames, with the columns of the first one that has mutants."""
     return (
         built(24, 5, 8, 1, 0, on=VERILATOR),
-        built(6, 5, columns, 1, 1, on=ICARUS, mutants=True),
-        built(6, 5, 8, 4, 1, on=ICARUS, mutants=True),
+        built(6, 5, columns, 1, 1, on=ICARUS, mutants=ICARUS),
+        built(6, 5, 8, 4, 1, on=ICARUS, mutants=ICARUS),
         built(6, 5, 8, 1, 0),
         built(32, 5, 16, 1, 1),
         built(12, 9, 4, 1, 0),
@@ -38,10 +38,10 @@ def refused(missing: str) -> dict[str, Any]:
     return {"Lanes=3": Refused(rule, {"verilator": f"can't find definition of '{missing}'"}), "Lanes=128": rule}
 
 
-def proofs(claim: str, bounds: str) -> tuple[Proof, ...]:
+def proofs(bounds: str) -> tuple[Proof, ...]:
     """Return the proofs of such a core, for both orders of rows, and for one and two depths per beat."""
     return tuple(
-        Proof(claim, bounds, {"BottomFirst": bottom_first, "Columns": columns, "Lanes": lanes}, depth=30)
+        Proof(bounds, {"BottomFirst": bottom_first, "Columns": columns, "Lanes": lanes})
         for bottom_first, columns, lanes in ((0, 3, 1), (1, 3, 1), (0, 4, 2), (1, 4, 2))
     )
 
@@ -49,8 +49,6 @@ def proofs(claim: str, bounds: str) -> tuple[Proof, ...]:
 STRUCTURES = structures(7)
 REFUSED = refused("some")
 PROOFS = proofs(
-    "count 2 and peak 3 + log2(Lanes) clocks after a frame's last beat; the peak is none below what is above, and "
-    "is attained first",
     "positions are only counted; either order of rows; the peak of a beat of several depths is proven of beat_peak",
 )
 

@@ -16,8 +16,6 @@ from tb.stream import REGRESS, parametrize
 STRUCTURES = structures(8)
 REFUSED = refused("first")
 PROOFS = proofs(
-    "sums 2 + log2(Lanes) clocks after a frame's last beat: area, weight and moments of all that is above; limits "
-    "enclose it, and are attained",
     "positions are only counted; sums are exact at any width; either order of rows; the sums of a beat of "
     "several depths are proven of beat_sums",
 )

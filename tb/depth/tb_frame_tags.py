@@ -20,14 +20,12 @@ STRUCTURES = (
     built(4, 9, 16, on=ICARUS),
     built(33, 32, 16),
     built(33, 50, 13),
-    built(4, 9, 6, mutants=True),
+    built(4, 9, 6, mutants=ICARUS),
 )
 PROOFS = tuple(
     Proof(
-        "an arbitrary tag is due exactly Latency enabled clocks after it was pushed, nothing else ever",
         f"one, two and three places; {WORD_FREE}",
         {"Latency": latency, "Pixels": pixels},
-        depth=30,
     )
     for latency, pixels in ((3, 4), (5, 4), (7, 3))
 )

@@ -46,7 +46,7 @@ def built(*values: int, **runs: Any) -> Structure:
 
 STRUCTURES = (
     built(*gradient_parameters(Configuration(columns=16)).values(), on=VERILATOR),
-    built(3, 3, 3, 5, 1, 2, 5, 3, on=ICARUS, late=VERILATOR, mutants=True),
+    built(3, 3, 3, 5, 1, 2, 5, 3, on=ICARUS, mutants=ICARUS),
     built(*gradient_parameters(Configuration(columns=16, data_width=12, coefficient_width=10)).values()),
     built(14, 4, 5, 9, 2, 3, 20, 0),
     built(*gradient_parameters(Configuration(columns=16, data_width=32, gradient_limit=2.0**-6)).values()),
@@ -60,11 +60,8 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "the coefficient of the pixel's own place, words written or from power-up, and its correction; latency 12",
         f"frames of any size; additions are exact at any width; each colour, both axes; {ROUNDING}",
         {"Polynomial": polynomial},
-        depth=35,
-        engine="smtbmc bitwuzla -- --noincr",
         steps=3,
         roms=polynomial_roms,
     )

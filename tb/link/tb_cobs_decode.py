@@ -10,24 +10,19 @@ from formal.entries import Proof
 from tactile_depth.chip.link.cobs_decode import LONGEST_PIECE, CobsDecode, Decoded
 from tactile_depth.chip.link.framing import RUN, cobs_encode
 from tb.stream import drive, parameters, parametrize
-from tb.structures import BOTH, ICARUS, QUICK_FIRST, VERILATOR, Mutants, of_parameters
+from tb.structures import BOTH, ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("Longest")
 STRUCTURES = (
     built(LONGEST_PIECE, on=VERILATOR),
-    built(300, on=BOTH, mutants=True),
+    built(300, on=BOTH, mutants=BOTH),
     built(2, on=ICARUS),
 )
-MUTANTS = Mutants(simulators=QUICK_FIRST)
 REFUSED = {"Longest=0": "Longest_must_be_at_least_1"}
 PROOFS = (
     Proof(
-        "what comes out is what the codes of the piece stand for, at once and in order; a piece is bad if a code "
-        "points beyond its end, a byte was broken, or it is too long; nothing before the first delimiter",
         "the length of a piece is only counted",
         {"Longest": 5},
-        depth=16,
-        engine="smtbmc bitwuzla -- --noincr",
         steps=3,
     ),
 )

@@ -11,12 +11,12 @@ from tactile_depth.chip.link.framing import DELIMITER, RUN, cobs_encode
 from tb.cases import on_bench
 from tb.link.byte_packets import BYTE, STREAMS, Bench, random_packet, words
 from tb.stream import MANY, REGRESS, parameters, parametrize
-from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
+from tb.structures import BOTH, ICARUS, Mutants, of_parameters
 
 built = of_parameters("Run")
 STRUCTURES = (
     built(254, on=BOTH),
-    built(3, on=ICARUS, late=VERILATOR, mutants=True),
+    built(3, on=ICARUS, mutants=ICARUS),
     built(2),
 )
 REFUSED = {
@@ -26,11 +26,8 @@ REFUSED = {
 MUTANTS = Mutants(repeats=2)
 PROOFS = tuple(
     Proof(
-        "the line, decoded, has each packet as it came, between two zeros; no other zero, no code that is not needed; "
-        "stable under stall; memory as td_ram.sv asks",
         "the length of a run is only counted; an arbitrary byte is followed",
         {"Run": run},
-        depth=40,
     )
     for run in (2, 3)
 )

@@ -11,16 +11,13 @@ from tactile_depth.chip.link.framing import CRC_BYTES
 from tb.cases import on_bench
 from tb.link.byte_packets import STREAMS, Bench, random_packet, words
 from tb.stream import MANY, parametrize
-from tb.structures import BOTH, Mutants, Structure
+from tb.structures import BOTH, ICARUS, Mutants, Structure
 
-STRUCTURES = (Structure(on=BOTH, mutants=True),)
+STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
 MUTANTS = Mutants(repeats=2)
 PROOFS = (
     Proof(
-        "bytes pass unchanged and at once, then the CRC-32 over them, last with its fourth byte; stable under stall",
         FULL_WIDTH,
-        depth=30,
-        engine="smtbmc bitwuzla -- --noincr",
         steps=2,
     ),
 )

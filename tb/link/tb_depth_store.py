@@ -19,8 +19,8 @@ from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
 built = of_parameters("Rows Columns DataWidth Lanes")
 STRUCTURES = (
     built(5, 8, 24, 2, on=VERILATOR),
-    built(3, 4, 12, 1, on=ICARUS, mutants=True),
-    built(3, 4, 5, 2, on=ICARUS, mutants=True),
+    built(3, 4, 12, 1, on=ICARUS, mutants=ICARUS),
+    built(3, 4, 5, 2, on=ICARUS, mutants=ICARUS),
     built(6, 16, 20, 4),
     built(2, 2, 8, 1),
 )
@@ -33,11 +33,8 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "each value and word that is read is that of the frame taken, which came whole with its record and was the "
-        "newest; the memories' rules",
         f"values and words are only stored, and an arbitrary one is followed; {WORD_FREE}",
         {"Rows": 2, "Columns": 2 * lanes, "Lanes": lanes},
-        depth=30,
     )
     for lanes in (1, 2)
 )

@@ -12,15 +12,13 @@ from tactile_depth.chip.contact.contact_events import WORDS, record
 from tactile_depth.chip.link.packets import RECORD, RecordPacket
 from tb.axis import PROFILES, profile
 from tb.stream import drive, parametrize
-from tb.structures import BOTH, Mutants, Structure
+from tb.structures import BOTH, ICARUS, Mutants, Structure
 
-STRUCTURES = (Structure(on=BOTH, mutants=True),)
+STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
 MUTANTS = Mutants(flat=False)
 PROOFS = (
     Proof(
-        "whole packets of the kind and the 48 bytes of the newest record that was there as the first byte was taken",
         f"the size in use; one bit of an arbitrary word is followed: {WORD_FREE}",
-        depth=30,
     ),
 )
 

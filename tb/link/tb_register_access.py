@@ -20,7 +20,7 @@ from tb.structures import BOTH, ICARUS, Mutants, of_parameters
 built = of_parameters("AddressWidth Accesses")
 STRUCTURES = (
     built(10, 128, on=BOTH),
-    built(4, 3, on=ICARUS, mutants=True),
+    built(4, 3, on=ICARUS, mutants=ICARUS),
     built(16, 128),
 )
 MUTANTS = Mutants(repeats=2)
@@ -32,11 +32,7 @@ REFUSED = {
 }
 PROOFS = (
     Proof(
-        "each access once, one at a time, in its clock, with its own address and value; none behind a refused one, "
-        "above the width, or of a repeated request; the reply has what was done and the values read, a repeated one "
-        "the same",
         "accesses are only counted, and no value is looked at; td_ram is proven by itself",
-        depth=32,
         free=("word",),
     ),
 )

@@ -16,7 +16,7 @@ STRUCTURES = (
     built(8, 16, 3, 1, on=ICARUS),
     built(4, 4, 3, 1, on=ICARUS),
     built(8, 16, 3, 2, on=ICARUS),
-    built(4, 4, 4, 3, on=ICARUS, mutants=True),
+    built(4, 4, 4, 3, on=ICARUS, mutants=ICARUS),
     built(4, 4, 4, 2),
     built(5, 6, 2, 2),
     built(2, 5, 2, 6),
@@ -39,11 +39,9 @@ REFUSED = {
 MUTANTS = Mutants("bursts")
 PROOFS = tuple(
     Proof(
-        "an arbitrary word at its place, last row first; latency 3 from the first word of the last row",
         "rows, positions and memory rows are only counted; rows and memory rows no power of two, and one; words to "
         f"a memory row that divide a burst, and not; {WORD_FREE}",
         {"Rows": rows, "Columns": size, "WordsPerRow": words},
-        depth=3 * rows * size + 5,
     )
     for rows, size, words in (
         (3, 4, 1),

@@ -37,7 +37,7 @@ STRUCTURES = (
     built({"columns": 16}, on=VERILATOR),
     # Here the largest reciprocals exceed 2^(CoeffWidth - 1): they shift further than Drop drops.
     built({"columns": 16, "coefficient_width": 10, "depth_range_px": 0.1, "gradient_limit": 4.0}, on=ICARUS),
-    built({"columns": 32, "data_width": 12, "coefficient_width": 10}, mutants=True),
+    built({"columns": 32, "data_width": 12, "coefficient_width": 10}, mutants=ICARUS),
     built({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 40.0}),
 )
 MUTANTS = Mutants("bursts", rows_are="Columns")
@@ -47,10 +47,8 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "word t of burst p meets the reciprocal of the pair (p, t); latency 6",
         f"one recurrence for every size; {ROUNDING}",
         {"Columns": size},
-        depth=40,
         roms=divide_rom(size),
     )
     for size in (4, 8)

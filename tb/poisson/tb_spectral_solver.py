@@ -10,7 +10,7 @@ from tactile_depth.chip.rom_files import write_solver
 from tactile_depth.chip.tactile_depth import hdl_parameters
 from tb.poisson.solver_bench import a_frame_begins_afresh, check, codes, many_frames
 from tb.stream import configuration, parametrize
-from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
 
 
 def built(choices: Any, **runs: Any) -> Structure:
@@ -26,10 +26,10 @@ def built(choices: Any, **runs: Any) -> Structure:
 STRUCTURES = (
     built({"columns": 16}, on=VERILATOR),
     built({"columns": 16, "data_width": 20, "gradient_limit": 4.0}, on=ICARUS),
-    built({"columns": 32, "data_width": 12, "coefficient_width": 10}, mutants=True),
+    built({"columns": 32, "data_width": 12, "coefficient_width": 10}, mutants=BOTH),
     built({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 9.5}),
 )
-MUTANTS = Mutants("words", simulators=QUICK_FIRST, flat=False)
+MUTANTS = Mutants("words", flat=False)
 NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"
 
 

@@ -15,7 +15,7 @@ from tb.poisson.solver_bench import (
     many_frames,
     reset_in_mid_frame,
 )
-from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
 
 CHOICES: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, models/tactile_depth/chip/configuration.py
@@ -34,11 +34,11 @@ def built(choices: Any, store: Any, **runs: Any) -> Structure:
 STRUCTURES = (
     built(CHOICES, {}, on=VERILATOR),
     built(CHOICES | {"rows": 21, "neumann": True}, {}, on=ICARUS),
-    built(CHOICES | {"columns": 32, "rows": 9, "data_width": 16, "coefficient_width": 10}, {}, mutants=True),
+    built(CHOICES | {"columns": 32, "rows": 9, "data_width": 16, "coefficient_width": 10}, {}, mutants=BOTH),
     built(CHOICES | {"data_width": 32, "coefficient_width": 24, "neumann": True, "depth_range_px": 5.3}, {}),
     built(CHOICES | {"columns": 32, "rows": 11}, PACKED),
 )
-MUTANTS = Mutants("words", simulators=QUICK_FIRST, flat=False)
+MUTANTS = Mutants("words", flat=False)
 NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"
 
 

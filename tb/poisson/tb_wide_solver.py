@@ -14,7 +14,7 @@ from tb.poisson.solver_bench import (
     many_frames,
     reset_in_mid_frame,
 )
-from tb.structures import BOTH, ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
 
 CHOICES: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 
@@ -31,15 +31,17 @@ def built(choices: Any, **runs: Any) -> Structure:
 
 STRUCTURES = (
     built(CHOICES | {"columns": 32, "rows": 11, "lanes": 8}, on=VERILATOR),
-    built(CHOICES | {"columns": 64, "rows": 8, "lanes": 32}, late=BOTH),
+    built(
+        CHOICES | {"columns": 64, "rows": 8, "lanes": 32},
+    ),
     built(CHOICES | {"lanes": 8, "rows": 9, "neumann": True}, on=ICARUS),
-    built(CHOICES | {"lanes": 2, "rows": 9}, on=ICARUS, mutants=True),
-    built(CHOICES | {"columns": 32, "rows": 9, "lanes": 4, "data_width": 16, "coefficient_width": 10}, mutants=True),
+    built(CHOICES | {"lanes": 2, "rows": 9}, on=ICARUS, mutants=BOTH),
+    built(CHOICES | {"columns": 32, "rows": 9, "lanes": 4, "data_width": 16, "coefficient_width": 10}, mutants=BOTH),
     built(CHOICES | {"columns": 32, "rows": 8, "lanes": 16, "data_width": 32, "coefficient_width": 24}),
     built(CHOICES | {"columns": 64, "rows": 96, "lanes": 16, "neumann": True}),
     built(CHOICES | {"columns": 128, "rows": 13, "lanes": 64}),
 )
-MUTANTS = Mutants("words", simulators=QUICK_FIRST, flat=False)
+MUTANTS = Mutants("words", flat=False)
 NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"
 
 

@@ -43,8 +43,8 @@ STRUCTURES = (
     built(CHOICES | {"lanes": 8, "neumann": True}, on=ICARUS),  # z goes straight into the next product
     built(CHOICES | {"rows": 11, "lanes": 2}, on=ICARUS),
     # Few bits are dropped: ties are common.
-    built(CHOICES | {"data_width": 12, "coefficient_width": 10}, mutants=True, on=ICARUS),
-    built(CHOICES | {"rows": 9, "data_width": 12, "coefficient_width": 10, "lanes": 8}, mutants=True),
+    built(CHOICES | {"data_width": 12, "coefficient_width": 10}, mutants=ICARUS, on=ICARUS),
+    built(CHOICES | {"rows": 9, "data_width": 12, "coefficient_width": 10, "lanes": 8}, mutants=ICARUS),
     built(CHOICES | {"rows": 21, "data_width": 32, "coefficient_width": 24}),
     built(CHOICES | {"columns": 64, "lanes": 32}),
 )
@@ -53,11 +53,9 @@ REFUSED = {"Words=1": RULE, "Words=3": RULE, "Words=128": RULE, "Columns=96": RU
 MUTANTS = Mutants("wide_pairs")
 PROOFS = tuple(
     Proof(
-        "the recursion up an arbitrary column, in both rows of a pair, and the clips; latency 2",
         "z that goes straight into the next product, and z that waits; an even and an odd number of rows; three pairs, "
         f"so that a product follows a product; each of two words; {ROUNDING}",
         {"Rows": rows, "Columns": columns, "Words": 2, "Word": word, "TableWords": 16},
-        depth=60,
         roms=wide_up_roms(rows, columns // 2),
     )
     for rows, columns, word in ((5, 4, 0), (4, 4, 1), (5, 8, 1))

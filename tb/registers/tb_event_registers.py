@@ -24,9 +24,9 @@ from tactile_depth.chip.registers.register_map import WORD
 from tb import structs
 from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
-from tb.structures import BOTH, Mutants, Structure
+from tb.structures import BOTH, ICARUS, Mutants, Structure
 
-STRUCTURES = (Structure(on=BOTH, mutants=True),)
+STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
 MUTANTS = Mutants(protocol="after_reset", outside=("counts",))
 NO_PROOF = "every register and output of it is proven through the port: axil_registers"
 

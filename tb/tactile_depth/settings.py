@@ -29,16 +29,14 @@ def built(
     config = Configuration(**choices)
     return Structure(
         {"Config": config_value({**top_parameters(config), **replaced})},
-        device={"configuration": choices, "parameters": dict(replaced)},
+        device={"configuration": choices, "parameters": dict(replaced), "level": level},
         roms=lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
         name=name,
-        level=level,
-        environment={"COCOTB_RANDOM_TEST_ORDER": "1"},
         **runs,
     )
 
 
-SMALLEST = built("tridiagonal-8x16", TRIDIAGONAL | {"bits_per_channel": 2}, WHOLE, on=VERILATOR, mutants=True)
+SMALLEST = built("tridiagonal-8x16", TRIDIAGONAL | {"bits_per_channel": 2}, WHOLE, on=VERILATOR, mutants=VERILATOR)
 STRUCTURES = (
     built("tridiagonal-8x16-quadratic", TRIDIAGONAL | FLAT_QUADRATIC | {"gain_width": 17}, FORMATS, on=VERILATOR),
     SMALLEST,
@@ -49,27 +47,31 @@ STRUCTURES = (
         TRIDIAGONAL | {"bits_per_channel": 2, "neumann": True, "zero_offset": True},
         FORMATS,
         on=ICARUS,
-        late=VERILATOR,
     ),
-    built("32-12", {"columns": 32, "data_width": 12, "bits_per_channel": 3}, "stream", late=BOTH),
+    built(
+        "32-12",
+        {"columns": 32, "data_width": 12, "bits_per_channel": 3},
+        "stream",
+    ),
     built(
         "16-flat-neumann",
         {"columns": 16, "flat_field": True, "neumann": True, "zero_offset": True},
         FORMATS,
-        late=BOTH,
     ),
-    built("16-27-neumann", {"columns": 16, "data_width": 27, "neumann": True}, FORMATS, late=BOTH),
+    built(
+        "16-27-neumann",
+        {"columns": 16, "data_width": 27, "neumann": True},
+        FORMATS,
+    ),
     built(
         "tridiagonal-21x16-neumann",
         TRIDIAGONAL | {"rows": 21, "data_width": 27, "neumann": True},
         FORMATS,
-        late=BOTH,
     ),
     built(
         "tridiagonal-8x16-2-lanes",
         TRIDIAGONAL | {"lanes": 2, "bits_per_channel": 2, "neumann": True},
         FORMATS,
-        late=BOTH,
     ),
     built(
         "tridiagonal-9x32-4-lanes",
@@ -81,9 +83,13 @@ STRUCTURES = (
         TRIDIAGONAL | {"rows": 21, "lanes": 2, "bits_per_channel": 2, "zero_offset": True},
         FORMATS,
     ),
-    built("tridiagonal-9x32-4-lanes-sensor", SENSOR | {"columns": 32}, FORMATS, late=BOTH),
+    built(
+        "tridiagonal-9x32-4-lanes-sensor",
+        SENSOR | {"columns": 32},
+        FORMATS,
+    ),
 )
-MUTANTS = Mutants(simulators=VERILATOR, flat=False)
+MUTANTS = Mutants(flat=False)
 REFUSED = {
     "Polynomial=1": "Polynomial_needs_FlatField",
     "Rows=64": "the_spectral_solver_takes_square_grids_Rows_must_be_Columns",
@@ -92,7 +98,6 @@ REFUSED = {
 }
 PROOFS = tuple(
     Cone(
-        "no pixel, no word of a memory, no table reaches a handshake or side-band: the latency is fixed",
         "a structural fact, the same generate blocks at every grid; narrow words, since no bit is left out",
         {"solver": solver, "rows": rows, "columns": 16, "neumann": neumann, "data_width": 12, "coefficient_width": 10}
         | colours,

@@ -14,8 +14,8 @@ from tb.common.tb_td_ram import BLOCK, DISTRIBUTED, built
 from tb.structures import ICARUS, VERILATOR, Structure
 
 OF_ECP5 = (
-    built(21, 4096, BLOCK, "contents.hex", on=VERILATOR, late=()),
-    built(9, 16384, BLOCK, on=VERILATOR, late=()),
+    built(21, 4096, BLOCK, "contents.hex", on=VERILATOR),
+    built(9, 16384, BLOCK, on=VERILATOR),
     built(5, 2500, BLOCK, "contents.hex", on=ICARUS),
     built(11, 5000, BLOCK, "contents.hex", on=ICARUS),
     built(9, 24, DISTRIBUTED, "contents.hex", on=ICARUS),

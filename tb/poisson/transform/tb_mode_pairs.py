@@ -19,7 +19,7 @@ STRUCTURES = (
     built(8, 27, on=ICARUS),
     built(16, 12),
     built(64, 24),
-    built(8, 4, mutants=True),
+    built(8, 4, mutants=ICARUS),
 )
 MUTANTS = Mutants("bursts", columns_are="Size")
 REFUSED = {
@@ -28,10 +28,8 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "an arbitrary mode, and beside it mode N - k; latency N / 2 + 2",
         f"{ONE_ORDER}; at 8 the delay line is in memory; {WORD_FREE}",
         {"Size": size},
-        depth=45,
     )
     for size in (4, 8)
 )

@@ -17,7 +17,7 @@ STRUCTURES = (
     built(8, 16, 0, 1, on=ICARUS),
     built(8, 16, 1, 0, on=ICARUS),
     built(8, 16, 1, 1),
-    built(4, 5, 0, 1, mutants=True),
+    built(4, 5, 0, 1, mutants=ICARUS),
 )
 MUTANTS = Mutants("bursts", rows_are="Columns")
 REFUSED = {
@@ -26,10 +26,8 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "an arbitrary word at its place in its column; latency 2 from the first word of the last row",
         f"{ONE_ORDER}; {WORD_FREE}",
         {"Columns": 4, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out},
-        depth=45,
     )
     for makhoul_in, makhoul_out in ((0, 1), (1, 0))
 )

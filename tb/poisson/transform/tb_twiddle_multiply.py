@@ -60,7 +60,7 @@ STRUCTURES = (
     built("phase_forward", 16, 16, 27, 24, 18, 20, 1, on=ICARUS),
     built("phase_forward", 16, 16, 15, 15, 10, 9, 1),
     built("phase_inverse", 64, 64, 24, 27, 18, 14, 0),
-    built("twiddle_inverse", 16, 8, 6, 6, 5, 4, 0, mutants=True),
+    built("twiddle_inverse", 16, 8, 6, 6, 5, 4, 0, mutants=ICARUS),
 )
 MUTANTS = Mutants("bursts", columns_are="Size")
 REFUSED = {
@@ -72,10 +72,8 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "an arbitrary word meets the factor of its own position; latency 7",
         f"the address is the burst's position; {ROUNDING}",
         {"Size": 8, "Block": block, "RealOnly": real_only},
-        depth=35,
         roms=factor_rom(block),
     )
     for block, real_only in ((4, 0), (8, 1))

@@ -18,7 +18,7 @@ STRUCTURES = (
     built(27, 4, 16, 8, 1, on=VERILATOR),
     built(12, 2, 4, 2, 0, on=ICARUS),
     built(12, 8, 2, 1, 1, on=ICARUS),
-    built(9, 4, 8, 2, 0, on=ICARUS, mutants=True),
+    built(9, 4, 8, 2, 0, on=ICARUS, mutants=ICARUS),
     built(12, 4, 16, 8, 0),
 )
 REFUSED = {
@@ -30,10 +30,8 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "an arbitrary word at its position behind the core; latency Delay",
         f"{ONE_ORDER}; {WORD_FREE}",
         {"Paths": paths, "Beats": 4, "Delay": delay, "Up": up},
-        depth=30,
     )
     for paths, delay, up in ((4, 2, 1), (4, 1, 0), (2, 2, 0))
 )

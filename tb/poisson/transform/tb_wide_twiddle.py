@@ -41,7 +41,7 @@ def built(factors: str, *values: int, **runs: object) -> Structure:
 
 STRUCTURES = (
     built("twiddle_inverse", 4, 8, 27, 27, 18, 17, 0, on=VERILATOR),
-    built("twiddle_forward", 4, 4, 9, 9, 7, 6, 0, on=ICARUS, mutants=True),
+    built("twiddle_forward", 4, 4, 9, 9, 7, 6, 0, on=ICARUS, mutants=ICARUS),
     built("phase_forward", 2, 4, 15, 12, 10, 12, 1, on=ICARUS),
     built("phase_inverse", 4, 2, 9, 9, 7, 4, 0, on=ICARUS),
     built("phase_inverse", 1, 8, 9, 9, 7, 6, 0, on=ICARUS),
@@ -58,10 +58,8 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "the product of every word with the factor of its path and beat, and the clip count; latency 5",
         f"paths with multipliers and without; {ROUNDING}",
         {"Paths": 2, "Beats": 2, "RealOnly": real_only, "Ones": ones_of_paths},
-        depth=35,
         roms=wide_factor_rom(2, 2, ones_of_paths),
     )
     for real_only, ones_of_paths in ((0, 1), (1, 0))
