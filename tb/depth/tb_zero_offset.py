@@ -59,7 +59,7 @@ STRUCTURES = (
     built(128, 21, 3, 24, 32),
     built(128, 21, 3, 24, 64),
     built(16, 9, 1, 12, 8, on=ICARUS),
-    built(64, 19, 5, 16, 4),
+    built(64, 35, 5, 16, 4),
 )
 REFUSED = {  # by td_node_map
     **dict.fromkeys(
