@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// ram_check: conditions under which hdl/common/td_ram.sv may be used. A bench binds it to a ram.
+// ram_check: conditions under which hdl/common/td_ram.sv may be used. A proof binds it to a ram; in simulation
+// (TD_SIMULATED) each memory has one, and the first clock that breaks a rule ends the run.
 //
-// No word is read in the clock that writes it, and (Defined) none before it was written. Power-up is the first clock,
-// which a bench spends in reset: nothing counts before its end.
+// No word is read in the clock that writes it, and none beyond the depth is written. Proofs add what simulation shows as
+// unknown values, where they are used: no word beyond the depth is read, and (Defined) none before it was written.
+// Power-up is the first clock, which a bench spends in reset: nothing counts before its end.
 
 `default_nettype none
 
@@ -20,21 +22,30 @@ module ram_check #(
 );
 
   logic started = 1'b0;
-  logic [Depth-1:0] written = '0;
-  always_ff @(posedge clk) begin
-    started <= 1'b1;
-    if (started && write_en) written[write_address] <= 1'b1;
-  end
+  always_ff @(posedge clk) started <= 1'b1;
 
+  logic write_outside, collision;
+  assign write_outside = started && write_en && 32'(write_address) >= Depth;
+  assign collision = started && read_en && write_en && read_address == write_address;
+
+`ifdef TD_SIMULATED
+  always @(posedge clk) begin
+    if (write_outside) $fatal(1, "word %0d of %0d is written", write_address, Depth);
+    if (collision) $fatal(1, "word %0d is read in the clock that writes it", read_address);
+  end
+`else
+  logic [Depth-1:0] written = '0;
+  always_ff @(posedge clk) if (started && write_en) written[write_address] <= 1'b1;
   always_comb begin
+    write_inside: assert (!write_outside);
+    no_collision: assert (!collision);
     if (started && read_en) begin
       read_inside: assert (32'(read_address) < Depth);
-      no_collision: assert (!(write_en && read_address == write_address));
       if (Defined != 0) written_before: assert (written[read_address]);
       if (Covered != 0) last_word_read: cover (read_address == AddressWidth'(Depth - 1));
     end
-    if (started && write_en) write_inside: assert (32'(write_address) < Depth);
   end
+`endif
 
 endmodule
 

@@ -60,6 +60,10 @@ module td_ram #(
     end
   end
 
+`ifdef TD_SIMULATED
+  ram_check #(.Depth(Depth), .Defined(0)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
+`endif
+
 endmodule
 
 `default_nettype wire

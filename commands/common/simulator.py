@@ -36,6 +36,7 @@ from tactile_depth.base.errors import Argument, InputError, one_of
 SIMULATORS = ("verilator", "icarus")
 Simulator = Annotated[str, variables.one(SIMULATORS), "SIM"]
 VERILATOR = "verilator_bin"  # the program itself: the script around it starts three more, longer than most lints take
+RAM_CHECK = ROOT / "formal" / "ram_check.sv"  # each memory has one, with TD_SIMULATED alone
 LOG = "build.log"  # of a build, in its folder
 
 # By default cocotb makes pytest rewrite every module that a simulation imports, numpy included, so that a failed
@@ -111,16 +112,19 @@ def build(
     fast: bool = False,
     program: Path | None = None,
     waves: bool = False,
+    checked: bool = True,
     log: Path | None = None,
 ) -> None:
     """Build a testbench, with -Wall; a warning of Verilator is an error.
 
     In Verilator Python sees the signals of the top level, and those of `INSIDE`. With `fast`, Verilator optimises for
-    long runs, and leaves the latter out; `program` is then a C++ file in place of cocotb's main program.
+    long runs, and leaves the latter out; `program` is then a C++ file in place of cocotb's main program. `checked`: a
+    run ends at the first clock in which a memory is used against its rules.
     """
     check(simulator)
     runner: Runner = WholeVerilator() if simulator == "verilator" else get_runner(simulator)
     arguments, settings = ["-Wall"], dict[str, str]()
+    files = [*files, *[RAM_CHECK] * checked]
     if simulator == "verilator":
         folder.mkdir(parents=True, exist_ok=True)
         visible = folder / "visible.vlt"
@@ -151,6 +155,7 @@ def build(
         runner.build(
             sources=files,
             hdl_toplevel=toplevel,
+            defines={"TD_SIMULATED": 1} if checked else {},
             parameters=dict(parameters),
             build_dir=folder,
             build_args=arguments,
@@ -170,7 +175,7 @@ def built_once(values: Sequence[object], sources: Iterable[Path], what: str, mak
     Raises RuntimeError if the build fails; its folder has the output in `LOG`.
     """
     key = hashlib.sha256(json.dumps([*values, versions()]).encode())
-    for source in (*sources, Path(__file__)):
+    for source in (*sources, RAM_CHECK, Path(__file__)):
         key.update(source.read_bytes())
     folder = BUILD / "simulators" / key.hexdigest()[:16]
     complete = folder / "complete"

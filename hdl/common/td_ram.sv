@@ -62,6 +62,10 @@ module td_ram #(
     an_ultra_memory_has_no_contents_at_power_up u_refused ();
   end
 
+`ifdef TD_SIMULATED
+  ram_check #(.Depth(Depth), .Defined(0)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
+`endif
+
 endmodule
 
 `default_nettype wire
