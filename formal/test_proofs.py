@@ -7,10 +7,11 @@ import pytest
 
 from commands.verify import formal
 from formal.entries import Cone, Proof
+from tb.settings import RUN
 
 RUNS = [
     pytest.param(proof, mode, id=formal.item(proof, mode))
-    for proof in formal.selected("")
+    for proof in formal.selected(",".join(RUN.cores))
     for mode in formal.modes(proof)
 ]
 

@@ -3,8 +3,8 @@
 
 Each proof runs twice: in mode prove (abc pdr or induction, no bound on time), and in mode cover, which must reach every
 cover statement of the bench, so that no proof is void. Any result other than PASS is a failure. pytest runs them, as
-items of formal/test_proofs.py. CORE=a,b: these cores alone. LIST=1: print what is proven at which sizes, and prove
-nothing.
+items of formal/test_proofs.py, JOBS at a time. CORE=a,b: these cores alone. LIST=1: print what is proven at which
+sizes, and prove nothing.
 """
 
 import itertools
@@ -24,11 +24,13 @@ from commands.common import header, tabular, variables
 from commands.common.repository import ROOT, chosen, cores, sources, stated, tested, units
 from commands.hardware.yosys import in_wheel
 from commands.verify import items, sign_off
+from commands.verify.fingerprint import fingerprint
 from formal.entries import Cone, Proof
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
 from tactile_depth.sensor.synthetic import synthetic_for
+from tb.settings import RunSettings
 
 BENCHES = ROOT / "formal"
 ITEMS = "formal/test_proofs.py::test_proof"
@@ -234,11 +236,12 @@ def item(proof: Proof | Cone, mode: str) -> str:
     return f"{proof.name}-{mode}"
 
 
-def run_all(proofs: Sequence[Proof | Cone]) -> dict[str, dict[str, Outcome]]:
-    """Run every proof in every mode as an item of pytest, JOBS at a time, and show each as it ends."""
+def run_all(proofs: Sequence[Proof | Cone], jobs: int) -> dict[str, dict[str, Outcome]]:
+    """Run every proof in every mode as an item of pytest, `jobs` at a time, and show each as it ends."""
     names = {f"{ITEMS}[{item(proof, mode)}]": (proof, mode) for proof in proofs for mode in modes(proof)}
     arguments = [f"--junitxml={RESULTS}", "--tb=line", *names]
-    _, ended = items.run(arguments, lambda _: "", marks="formal", workers=JOBS, verbose=True)
+    settings = RunSettings(cores=tuple({proof.core for proof in proofs}))
+    _, ended = items.run(arguments, lambda _: "", marks="formal", workers=jobs, verbose=True, settings=settings)
     outcomes: dict[str, dict[str, Outcome]] = {
         proof.name: dict.fromkeys(modes(proof), Outcome("ERROR", 0.0)) for proof in proofs
     }
@@ -272,11 +275,13 @@ def listing(proofs: Sequence[Proof | Cone], others: Mapping[str, str]) -> str:
 
 
 def main(
-    core: variables.Name = "", list_only: Annotated[bool, variables.one({"0": False, "1": True}), "LIST"] = False
+    core: variables.Name = "",
+    list_only: Annotated[bool, variables.one({"0": False, "1": True}), "LIST"] = False,
+    jobs: variables.Jobs = JOBS,
 ) -> int:
     proofs = selected(core)
     if not list_only:
-        return prove(proofs)
+        return prove(proofs, jobs)
     print(listing(proofs, {} if core else reasons()))
     return variables.EQUAL
 
@@ -289,17 +294,20 @@ def first_error(folder: Path) -> str:
     return ""
 
 
-def prove(proofs: Sequence[Proof | Cone]) -> int:
+def prove(proofs: Sequence[Proof | Cone], jobs: int = JOBS) -> int:
     """Run proofs and print their table; return the exit status."""
     begun = time.monotonic()
-    outcomes = run_all(proofs)
+    sources = {proof.core: fingerprint(proof.core, "proof") for proof in proofs}
+    outcomes = run_all(proofs, jobs)
     print(f"\n{results_of(proofs, outcomes)}")
     failed = [proof.name for proof in proofs if combined(outcomes[proof.name]) != "PASS"]
-    for core in dict.fromkeys(proof.core for proof in proofs):
+    share = sum(os.times()[:4]) / max(1, sum(run.seconds for of in outcomes.values() for run in of.values()))
+    for core, of in sources.items():
         ended = [run for proof in proofs if proof.core == core for run in outcomes[proof.name].values()]
         refuted = sum(run.status == "FAIL" for run in ended)
         without_result = sum(run.status not in ("PASS", "FAIL") for run in ended)
-        sign_off.record(core, "proof", {"failed": refuted, "not ended": without_result})
+        seconds = round(share * sum(run.seconds for run in ended))
+        sign_off.record(core, "proof", of, {"failed": refuted, "not ended": without_result, "seconds": seconds})
     print(f"\nformal: {len(proofs) - len(failed)} of {len(proofs)} proven in {time.monotonic() - begun:.0f} s")
     for name in failed:
         print(f"not proven: {name}, see {(BUILD / name).relative_to(ROOT)}")

@@ -25,6 +25,7 @@ from commands.common.progress import following, progress_bar
 from commands.common.results import save
 from commands.verify import equivalence, mutants, sign_off
 from commands.verify.equivalence import EQUIVALENT, settle
+from commands.verify.fingerprint import fingerprint
 from tactile_depth.chip.configuration import Configuration
 
 OUT = repository.ROOT / "build" / "mutate"
@@ -146,12 +147,16 @@ def main(
 ) -> int:
     """Mutate each core and print its row; return the exit status."""
     OUT.mkdir(parents=True, exist_ok=True)
-    outcomes = []
+    outcomes, used = [], 0.0  # processor time, the start of this command included
     print(HEAD)
     for name in repository.tested(cores() if chosen is None else chosen):
+        sources = fingerprint(name, "mutants")
         outcomes.append(mutate(name, mutants, seed, jobs, seconds))
         print(row(outcomes[-1]), flush=True)
-        sign_off.record(name, "mutants", {kind: getattr(outcomes[-1], kind) for kind in sign_off.COUNTED})
+        figures = {kind: getattr(outcomes[-1], kind) for kind in sign_off.COUNTED}
+        figures |= {"each": "all" if outcomes[-1].every else mutants, "seconds": round(sum(os.times()[:4]) - used)}
+        used = sum(os.times()[:4])
+        sign_off.record(name, "mutants", sources, figures)
         for survivor in outcomes[-1].survivors:
             if survivor["verdict"] != EQUIVALENT:
                 print("    {structure}/{mutant} {verdict} {how}: {what}".format(**survivor), flush=True)

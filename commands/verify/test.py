@@ -13,7 +13,7 @@ from pathlib import Path
 from commands.common import repository
 from commands.common.simulator import Simulator
 from commands.common.variables import Mismatch
-from commands.verify import lint
+from commands.verify import lint, sign_off
 from tb.settings import RunSettings
 
 REPORTS = ("--junitxml=build/junit.xml", "--durations=10", "--durations-min=20")
@@ -56,5 +56,8 @@ def main(cores: repository.Cores | None = None, simulator: Simulator | None = No
     if cores:
         tests = tests_of(cores)
         environment |= settings(cores)
-    if not all_succeed([pytest(tests)], environment):
+    succeeded = all_succeed([pytest(tests)], environment)
+    if not cores:
+        print(sign_off.summary())
+    if not succeeded:
         raise Mismatch("failed: see above")

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fingerprints of all that a result of a core depends on, as the files stand, committed or not.
+
+A proof depends on the RTL of the core and of the parts and packages below it, on the modules of its bench in formal/,
+and on PROOFS; mutants on the same RTL, on the testbench, on the protocol, and on STRUCTURES and MUTANTS. Of Python the
+definitions count that these reach, in tb/, formal/ and the models too: one that nothing reaches may change. Comments,
+docstrings, type hints of functions and white space do not count, nor do commands and tools.
+"""
+
+import ast
+import hashlib
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from commands.common import repository
+from commands.common.repository import ROOT
+
+KINDS = {"proof": ("PROOFS",), "mutants": ("STRUCTURES", "MUTANTS", "PROTOCOL")}  # and the settings of each
+OTHERS = ("NO_PROOF", "REFUSED")  # settings that no result depends on
+ANY, REST = "*", ""  # all definitions of a file; its statements that define no name
+TOKEN = re.compile(r"[\w$`']+|[()\[\]{},;]|[^\w\s()\[\]{},;]+")
+MODULE = re.compile(r"\b(\w+)(?=\s*::|\s*#|\s+\w+\s*\()")  # may be a package or a module that is instantiated
+Place = tuple[Path, str]  # a file and a name in it
+
+
+@dataclass(frozen=True)
+class Statement:
+    """Statement of Python: its code, the names in it, and its texts."""
+
+    code: str
+    names: frozenset[str]
+    texts: frozenset[str]
+
+
+@dataclass(frozen=True)
+class Source:
+    """Python file: the statements that define each name, and the places of names that it imports."""
+
+    defined: Mapping[str, list[Statement]]
+    imported: Mapping[str, Place]
+
+
+def code(value: object) -> str:
+    """Return a tree of Python as text, the same in every version of Python."""
+    if isinstance(value, ast.AST):
+        fields = [f"{name}={code(each)}" for name, each in ast.iter_fields(value) if each is not None and each != []]
+        return f"{type(value).__name__}({','.join(fields)})"
+    return f"[{','.join(map(code, value))}]" if isinstance(value, list) else repr(value)
+
+
+def bare(tree: ast.Module) -> list[ast.AST]:
+    """Take the docstrings and the type hints of functions out of a tree, and return its nodes."""
+    nodes = list(ast.walk(tree))
+    for node in nodes:
+        if isinstance(node, ast.arg):
+            node.annotation = None
+        elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            node.returns = None
+        if isinstance(body := getattr(node, "body", None), list):
+            body[:] = [
+                each for each in body if not (isinstance(each, ast.Expr) and isinstance(each.value, ast.Constant))
+            ]
+    return nodes
+
+
+def file_of(module: str) -> Path | None:
+    """Return the file of a Python module, None for one that is not of this repository."""
+    base = (ROOT / "models" if module.split(".")[0] == "tactile_depth" else ROOT).joinpath(*module.split("."))
+    return next((file for file in (base.with_suffix(".py"), base / "__init__.py") if file.is_file()), None)
+
+
+def imports(nodes: Iterable[ast.AST]) -> dict[str, Place]:
+    """Return the places of the names that a file imports from this repository, wherever it does."""
+    found = {}
+    for node in nodes:
+        if isinstance(node, ast.ImportFrom) and node.module and (file := file_of(node.module)):
+            for each in node.names:
+                inside = file_of(f"{node.module}.{each.name}") if file.name == "__init__.py" else None
+                found[each.asname or each.name] = (inside, ANY) if inside else (file, each.name)
+        elif isinstance(node, ast.Import):
+            for each in node.names:
+                if file := file_of(each.name):
+                    found[each.asname or each.name.split(".")[0]] = file, ANY
+    return found
+
+
+def defines(statement: ast.stmt) -> list[str]:
+    """Return the names that a statement of a file defines."""
+    if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+        return [statement.name]
+    if isinstance(statement, (ast.Assign, ast.AnnAssign)):
+        targets = statement.targets if isinstance(statement, ast.Assign) else [statement.target]
+        return [node.id for target in targets for node in ast.walk(target) if isinstance(node, ast.Name)]
+    return []
+
+
+@cache
+def read_python(file: Path, _: int) -> Source:
+    tree = ast.parse(file.read_text())
+    imported = imports(bare(tree))
+    defined = defaultdict(list)
+    for each in tree.body:
+        if not isinstance(each, (ast.Import, ast.ImportFrom)):
+            nodes = list(ast.walk(each))
+            names = frozenset(node.id for node in nodes if isinstance(node, ast.Name))
+            texts = [node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+            for name in defines(each) or [REST]:
+                defined[name].append(Statement(code(each), names, frozenset(texts)))
+    return Source(defined, imported)
+
+
+def read(file: Path) -> Source:
+    return read_python(file, file.stat().st_mtime_ns)
+
+
+def reached(places: Iterable[Place]) -> set[str]:
+    """Return the code of all definitions of this repository that these places use, and the files of data they name."""
+    waiting, seen, found = list(places), set(), set()
+    while waiting:
+        place = file, name = waiting.pop()
+        if place in seen:
+            continue
+        seen.add(place)
+        source = read(file)
+        if name in source.imported and name not in source.defined:
+            waiting.append(source.imported[name])
+            continue
+        every = name == ANY or (name not in source.defined and name != REST)
+        waiting += [(file, each) for each in (source.defined if every else (REST,))]
+        for statement in source.defined.get(name, ()):
+            found.add(statement.code)
+            waiting += [(file, each) for each in statement.names if each in source.defined or each in source.imported]
+            data = [file.parent / text for text in statement.texts if re.fullmatch(r"[\w-]+\.\w+", text)]
+            found |= {each.read_text() for each in data if each.is_file()}
+    return found
+
+
+def tests_in(file: Path) -> list[Place]:
+    """Return the places of a testbench but for settings and what these alone use."""
+    source = read(file)
+    every = {*source.defined, *source.imported}
+    used = {name for own, all in source.defined.items() for each in all for name in each.names if name != own}
+    return [(file, name) for name in every - used - {*OTHERS, *(name for names in KINDS.values() for name in names)}]
+
+
+@cache
+def read_rtl(file: Path, _: int) -> tuple[str, frozenset[str]]:
+    code = repository.code(file.read_text())
+    return " ".join(TOKEN.findall(code)), frozenset(MODULE.findall(code))
+
+
+def rtl_below(tops: Iterable[Path]) -> set[str]:
+    """Return the tokens of files of SystemVerilog, of those whose modules and packages they use, and so on."""
+    waiting, found = list(tops), {}
+    while waiting:
+        file = waiting.pop()
+        if file not in found:
+            found[file], names = read_rtl(file, file.stat().st_mtime_ns)
+            waiting += [rtl_files()[name] for name in names & rtl_files().keys()]
+    return set(found.values())
+
+
+@cache
+def rtl_files() -> dict[str, Path]:
+    return {file.stem: file for folder in ("hdl", "formal") for file in (ROOT / folder).rglob("*.sv")}
+
+
+def words(core: str, name: str) -> set[str]:
+    """Return the texts in a setting of a core."""
+    settings = repository.cores()[core].settings
+    stated = read(settings).defined.get(name, ()) if settings else ()
+    return {text for each in stated for text in each.texts}
+
+
+def fingerprint(core: str, kind: str) -> str:
+    """Return a fingerprint of what a result of a core depends on; `kind` is one of KINDS."""
+    files = repository.cores()[core]
+    settings = files.settings
+    own = [(settings, name) for name in KINDS[kind] if settings and name in read(settings).defined]
+    if kind == "proof":
+        below, python = [files.proof], own
+    else:
+        named = [text for name in KINDS[kind] for text in words(core, name)]
+        below = [rtl_files().get(f"protocol_{name}") for name in (core, *named)]
+        python = own + [place for bench in files.benches for place in tests_in(bench)]
+    texts = rtl_below([files.hdl, *filter(None, below)]) | reached(python)
+    return hashlib.sha256("\0".join(sorted(texts)).encode()).hexdigest()[:16]
