@@ -239,7 +239,11 @@ def main(
         print(f"{core}: {', '.join(f'{kind} {why}' for kind, why in left[core].items())}")
     print(summary())
     if left:
-        print(f"{len(left)} cores: {remaining(seconds, jobs)}", flush=True)
+        untimed = sum("seconds" not in load().get(core, {}).get(kind, {}) for core in left for kind in left[core])
+        print(
+            f"{len(left)} cores: {remaining(seconds, jobs)}; {untimed} runs without a time count as the mean",
+            flush=True,
+        )
     if left and not check:
         sign(left, jobs)
         left = lacking(load())
