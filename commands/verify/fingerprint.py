@@ -182,7 +182,7 @@ def fingerprint(core: str, kind: str) -> str:
     settings = files.settings
     own = [(settings, name) for name in KINDS[kind] if settings and name in read(settings).defined]
     if kind == "proof":
-        below, python = [files.proof], own
+        below, python = [files.proof, rtl_files().get("assumed")], own
     else:
         named = [text for name in KINDS[kind] for text in words(core, name)]
         below = [rtl_files().get(f"protocol_{name}") for name in (core, *named)]

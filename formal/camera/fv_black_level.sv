@@ -2,68 +2,39 @@
 // fv_black_level: out is the sample less the black level, beside the gains, both of those that stood beside the frame's
 // first pixel; pixels, marks and breaks leave an enabled clock later.
 
-`default_nettype none
+parameter int Bits = 10;
+parameter int Channels = 1;
+parameter int GainsWidth = 48;
 
-module fv_black_level #(
-  parameter int Bits       = 10,
-  parameter int Channels   = 1,
-  parameter int GainsWidth = 48,
-  localparam int Width = Bits + 2
-) (
-  input logic                      clk,
-  input logic                      rst,
-  input logic                      en,
-  input logic [Bits-1:0]           level,
-  input logic [GainsWidth-1:0]     gains,
-  input logic                      in_valid,
-  input logic [Channels*Width-1:0] in_samples,
-  input logic [1:0]                in_colour,
-  input logic                      in_row_start,
-  input logic                      in_frame_start,
-  input logic                      in_abort
-);
+protocol_black_level u_protocol (.clk, .rst, .en, .in_valid, .in_frame_start, .out_valid, .holds(allowed));
 
-  logic out_valid, out_row_start, out_frame_start, out_abort;
-  logic [1:0] out_colour;
-  logic [Channels*Width-1:0] out_samples;
-  logic [GainsWidth-1:0] out_gains;
-  black_level #(.Bits(Bits), .Channels(Channels), .GainsWidth(GainsWidth)) dut (.*);
-
-  logic allowed, started;
-  protocol_black_level u_protocol (.clk, .rst, .en, .in_valid, .in_frame_start, .out_valid, .holds(allowed));
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-
-  logic valid, abort, held;
-  logic [3:0] marks;
-  logic [Bits-1:0] own_level, level_now;
-  logic [GainsWidth-1:0] own_gains;
-  logic [Channels*Width-1:0] samples;  // with their black level
-  logic [Channels*Width+GainsWidth+5:0] out;
-  assign level_now = in_valid && in_frame_start ? level : own_level;
-  assign out = {out_valid, out_abort, out_colour, out_row_start, out_frame_start, out_samples, out_gains};
-  kept #(.Width(Channels * Width + GainsWidth + 6)) u_kept (.clk, .rst, .en, .out, .held);
-  always_ff @(posedge clk) begin
-    if (en) begin
-      if (in_valid && in_frame_start) {own_level, own_gains} <= {level, gains};
-      {valid, abort, marks} <= {in_valid, in_abort, in_colour, in_row_start, in_frame_start};
-      for (int c = 0; c < Channels; c++) samples[c*Width+:Width] <= in_samples[c*Width+:Width] - Width'(level_now);
-    end
-    if (rst) {valid, abort} <= '0;
+logic valid, abort, held;
+logic [3:0] marks;
+logic [Bits-1:0] own_level, level_now;
+logic [GainsWidth-1:0] own_gains;
+logic [Channels*Width-1:0] samples;  // with their black level
+logic [Channels*Width+GainsWidth+5:0] out;
+assign level_now = in_valid && in_frame_start ? level : own_level;
+assign out = {out_valid, out_abort, out_colour, out_row_start, out_frame_start, out_samples, out_gains};
+kept #(.Width(Channels * Width + GainsWidth + 6)) u_kept (.clk, .rst, .en, .out, .held);
+always_ff @(posedge clk) begin
+  if (en) begin
+    if (in_valid && in_frame_start) {own_level, own_gains} <= {level, gains};
+    {valid, abort, marks} <= {in_valid, in_abort, in_colour, in_row_start, in_frame_start};
+    for (int c = 0; c < Channels; c++) samples[c*Width+:Width] <= in_samples[c*Width+:Width] - Width'(level_now);
   end
+  if (rst) {valid, abort} <= '0;
+end
 
-  always_comb begin
-    if (started) begin
-      in_time: assert (out_valid == valid && out_abort == abort);
-      if (out_valid) begin
-        marked: assert ({out_colour, out_row_start, out_frame_start} == marks);
-        difference: assert (out_samples == samples);
-        own: assert (out_gains == own_gains);
-        old_settings: cover (out_samples != '0 && !out_frame_start && level == '0 && own_level != '0);
-        below_black: cover (out_samples[Width-1] && out_colour == 2'd3);
-      end
+always_comb begin
+  if (started) begin
+    in_time: assert (out_valid == valid && out_abort == abort);
+    if (out_valid) begin
+      marked: assert ({out_colour, out_row_start, out_frame_start} == marks);
+      difference: assert (out_samples == samples);
+      own: assert (out_gains == own_gains);
+      old_settings: cover (out_samples != '0 && !out_frame_start && level == '0 && own_level != '0);
+      below_black: cover (out_samples[Width-1] && out_colour == 2'd3);
     end
   end
-
-endmodule
-
-`default_nettype wire
+end

@@ -3,43 +3,25 @@
 //
 // The specification counts how far the axis has come, modulo the length of a block; the core counts what is left of it.
 
-`default_nettype none
+parameter int Numerator = 15;
+parameter int Denominator = 4;
 
-module fv_block_weights #(
-  parameter int Numerator   = 15,
-  parameter int Denominator = 4,
-  localparam int Width = $clog2(Denominator + 1)
-) (
-  input logic clk,
-  input logic en,
-  input logic step,
-  input logic restart
-);
-
-  logic [Width-1:0] weight;
-  logic block_ends;
-  block_weights #(.Numerator(Numerator), .Denominator(Denominator)) dut (.*);
-
-  logic [15:0] begin_q, begins, ends;  // of the pixel, from the beginning of a block
-  logic known = 1'b0;                  // an axis has begun
-  assign begins = restart ? 16'd0 : begin_q;
-  assign ends = begins + 16'(Denominator);
-  always_ff @(posedge clk) begin
-    if (en && step) begin
-      known <= known | restart;
-      begin_q <= ends >= 16'(Numerator) ? ends - 16'(Numerator) : ends;
-    end
+logic [15:0] begin_q, begins, ends;  // of the pixel, from the beginning of a block
+logic known = 1'b0;                  // an axis has begun
+assign begins = restart ? 16'd0 : begin_q;
+assign ends = begins + 16'(Denominator);
+always_ff @(posedge clk) begin
+  if (en && step) begin
+    known <= known | restart;
+    begin_q <= ends >= 16'(Numerator) ? ends - 16'(Numerator) : ends;
   end
+end
 
-  always_comb begin
-    if (known || restart) begin
-      last: assert (block_ends == (ends >= 16'(Numerator)));
-      overlap: assert (16'(weight) == (block_ends ? 16'(Numerator) - begins : 16'(Denominator)));
-      whole_at_the_end: cover (block_ends && 32'(weight) == Denominator);
-      split: cover ((Numerator % Denominator == 0) || (block_ends && 32'(weight) < Denominator && !restart));
-    end
+always_comb begin
+  if (known || restart) begin
+    last: assert (block_ends == (ends >= 16'(Numerator)));
+    overlap: assert (16'(weight) == (block_ends ? 16'(Numerator) - begins : 16'(Denominator)));
+    whole_at_the_end: cover (block_ends && 32'(weight) == Denominator);
+    split: cover ((Numerator % Denominator == 0) || (block_ends && 32'(weight) < Denominator && !restart));
   end
-
-endmodule
-
-`default_nettype wire
+end

@@ -4,80 +4,51 @@
 //
 // An arbitrary address is watched.
 
-`default_nettype none
+parameter int Width = 1;
+parameter int Depth = 3;
+input logic [AddressWidth-1:0] chosen;
 
-module fv_td_banked_table #(
-  parameter int Width = 1,
-  parameter int Depth = 3,
-  localparam int AddressWidth = $clog2(Depth)
-) (
-  input logic                    clk,
-  input logic                    rst,
-  input logic                    en,
-  input logic                    table_bank,
-  input logic                    frame_start,
-  input logic                    change,
-  input logic                    read,
-  input logic [AddressWidth-1:0] read_address,
-  input logic                    free_write,
-  input logic [AddressWidth-1:0] free_write_address,
-  input logic [Width-1:0]        free_write_word,
-  input logic                    free_read,
-  input logic [AddressWidth-1:0] free_read_address,
-  input logic [AddressWidth-1:0] chosen
+protocol_td_banked_table #(.Depth(Depth)) u_protocol (
+  .clk, .rst, .en, .table_bank, .table_in_use, .frame_start, .change, .read, .read_address, .free_write,
+  .free_write_address, .free_read, .free_read_address, .holds(allowed)
 );
+always_comb assume (32'(chosen) < Depth);
 
-  logic table_in_use;
-  logic [Width-1:0] read_word, free_word;
-  td_banked_table #(.Width(Width), .Depth(Depth)) dut (.*);
-
-  logic allowed, started;
-  protocol_td_banked_table #(.Depth(Depth)) u_protocol (
-    .clk, .rst, .en, .table_bank, .table_in_use, .frame_start, .change, .read, .read_address, .free_write,
-    .free_write_address, .free_read, .free_read_address, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-  always_comb assume (32'(chosen) < Depth);
-
-  logic [AddressWidth-1:0] watched;  // chosen in the first clock, then constant
-  logic [1:0] known = '0, word;      // of each bank: what the watched address holds
-  logic bank, named, used, changed;
-  assign used = en && change ? named : bank;
-  logic shown, free_shown, stays;  // the watched word stands on the port; and has through a clock without en
-  logic expected, free_expected;
-  always_ff @(posedge clk) begin
-    if (!started) watched <= chosen;
-    else if (free_write && free_write_address == watched) begin
-      known[~bank] <= 1'b1;
-      word[~bank] <= free_write_word[0];
-    end
-    bank <= rst ? table_bank : used;
-    if (rst || (en && frame_start)) named <= table_bank;
-    changed <= ~rst & (changed | (en & change & named != bank));
-    stays <= shown & ~en;
-    if (en) begin
-      shown <= read && read_address == watched && known[used];
-      expected <= word[used];
-    end
-    free_shown <= !rst && free_read && free_read_address == watched && known[~used];
-    free_expected <= word[~used];
-    if (rst) shown <= 1'b0;
+logic [AddressWidth-1:0] watched;  // chosen in the first clock, then constant
+logic [1:0] known = '0, word;      // of each bank: what the watched address holds
+logic bank, named, used, changed;
+assign used = en && change ? named : bank;
+logic shown, free_shown, stays;  // the watched word stands on the port; and has through a clock without en
+logic expected, free_expected;
+always_ff @(posedge clk) begin
+  if (!started) watched <= chosen;
+  else if (free_write && free_write_address == watched) begin
+    known[~bank] <= 1'b1;
+    word[~bank] <= free_write_word[0];
   end
-
-  always_comb begin
-    if (started) begin
-      which: assert (table_in_use == bank);
-      if (shown) of_frame: assert (read_word[0] == expected);
-      if (free_shown) of_free: assert (free_word[0] == free_expected);
-      after_change: cover (shown && stays && changed && known == 2'b11 && word == 2'b01 && expected);
-      read_in_change: cover (en && change && named != bank && free_read && shown);
-      free_read_shown: cover (free_shown && free_expected && shown && !expected);
-    end
+  bank <= rst ? table_bank : used;
+  if (rst || (en && frame_start)) named <= table_bank;
+  changed <= ~rst & (changed | (en & change & named != bank));
+  stays <= shown & ~en;
+  if (en) begin
+    shown <= read && read_address == watched && known[used];
+    expected <= word[used];
   end
+  free_shown <= !rst && free_read && free_read_address == watched && known[~used];
+  free_expected <= word[~used];
+  if (rst) shown <= 1'b0;
+end
 
-  bind fv_td_banked_table.dut.g_bank[0].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_0 (.*);
-  bind fv_td_banked_table.dut.g_bank[1].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (.*);
+always_comb begin
+  if (started) begin
+    which: assert (table_in_use == bank);
+    if (shown) of_frame: assert (read_word[0] == expected);
+    if (free_shown) of_free: assert (free_word[0] == free_expected);
+    after_change: cover (shown && stays && changed && known == 2'b11 && word == 2'b01 && expected);
+    read_in_change: cover (en && change && named != bank && free_read && shown);
+    free_read_shown: cover (free_shown && free_expected && shown && !expected);
+  end
+end
 
-endmodule
-
-`default_nettype wire
+bind dut.g_bank[0].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_0 (.*);
+bind dut.g_bank[1].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (.*);

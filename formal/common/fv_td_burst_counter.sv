@@ -2,46 +2,25 @@
 // fv_td_burst_counter: position is the number of enabled clocks since the last start, active while that is less than
 // Words.
 
-`default_nettype none
+parameter int Words = 8;
 
-module fv_td_burst_counter #(
-  parameter int Words = 8,
-  localparam int PositionWidth = $clog2(Words)
-) (
-  input logic clk,
-  input logic rst,
-  input logic en,
-  input logic start
-);
+logic [PositionWidth:0] since, age;  // enabled clocks from the last start to this clock; Words: none, or long ago
+assign age = start ? '0 : since;
+always_ff @(posedge clk) begin
+  if (en) since <= age == (PositionWidth + 1)'(Words) ? age : age + (PositionWidth + 1)'(1);
+  if (rst) since <= (PositionWidth + 1)'(Words);
+end
 
-  logic [PositionWidth-1:0] position;
-  logic active;
-  td_burst_counter #(.Words(Words)) dut (.clk, .rst, .en, .start, .position, .active);
-
-  logic started;
-  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
-
-  logic [PositionWidth:0] since, age;  // enabled clocks from the last start to this clock; Words: none, or long ago
-  assign age = start ? '0 : since;
-  always_ff @(posedge clk) begin
-    if (en) since <= age == (PositionWidth + 1)'(Words) ? age : age + (PositionWidth + 1)'(1);
-    if (rst) since <= (PositionWidth + 1)'(Words);
+always_comb begin
+  if (started) begin
+    whole_burst: assert (active == (age < (PositionWidth + 1)'(Words)));
+    if (active) in_order: assert ((PositionWidth + 1)'(position) == age);
+    last_word: cover (active && age == (PositionWidth + 1)'(Words - 1));
+    after_burst: cover (!active && en);
+    begins_again: cover (start && since != '0 && since < (PositionWidth + 1)'(Words));
   end
+end
 
-  always_comb begin
-    if (started) begin
-      whole_burst: assert (active == (age < (PositionWidth + 1)'(Words)));
-      if (active) in_order: assert ((PositionWidth + 1)'(position) == age);
-      last_word: cover (active && age == (PositionWidth + 1)'(Words - 1));
-      after_burst: cover (!active && en);
-      begins_again: cover (start && since != '0 && since < (PositionWidth + 1)'(Words));
-    end
-  end
-
-  logic ended;
-  always_ff @(posedge clk) ended <= en & (age == (PositionWidth + 1)'(Words - 1)) & ~rst;
-  always_comb if (started && ended) back_to_back: cover (start);
-
-endmodule
-
-`default_nettype wire
+logic ended;
+always_ff @(posedge clk) ended <= en & (age == (PositionWidth + 1)'(Words - 1)) & ~rst;
+always_comb if (started && ended) back_to_back: cover (start);

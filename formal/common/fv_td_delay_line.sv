@@ -4,42 +4,23 @@
 // What leaves in the first Delay enabled clocks after a reset is no one's word: a memory that has not been written is
 // read there. Those who use the line look only later, which their own proofs show.
 
-`default_nettype none
+parameter int Width = 1;
+parameter int Delay = 5;
+input logic pick;
 
-module fv_td_delay_line #(
-  parameter int Width = 1,
-  parameter int Delay = 5
-) (
-  input logic             clk,
-  input logic             rst,
-  input logic             en,
-  input logic [Width-1:0] in,
-  input logic             pick
-);
+logic due, held;
+logic [Width-1:0] value;
+follow_delay #(.Width(Width), .Latency(Delay)) u_follow (.clk, .rst, .en, .pick, .in, .due, .word(value));
+kept #(.Width(Width)) u_kept (.clk, .rst(1'b0), .en, .out, .held);
 
-  logic [Width-1:0] out;
-  td_delay_line #(.Width(Width), .Delay(Delay)) dut (.clk, .rst, .en, .in, .out);
-
-  logic started;
-  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
-
-  logic due, held;
-  logic [Width-1:0] value;
-  follow_delay #(.Width(Width), .Latency(Delay)) u_follow (.clk, .rst, .en, .pick, .in, .due, .word(value));
-  kept #(.Width(Width)) u_kept (.clk, .rst(1'b0), .en, .out, .held);
-
-  always_comb begin
-    if (started) begin
-      if (due) delayed: assert (out == value);
-      word_out: cover (due && value == '1);
-      word_out_paused: cover (due && held && value == '0);
-    end
+always_comb begin
+  if (started) begin
+    if (due) delayed: assert (out == value);
+    word_out: cover (due && value == '1);
+    word_out_paused: cover (due && held && value == '0);
   end
+end
 
-  if (Delay > 4) begin : g_memory  // longer than the longest shift register
-    bind fv_td_delay_line.dut.g_memory.u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
-  end
-
-endmodule
-
-`default_nettype wire
+if (Delay > 4) begin : g_memory  // longer than the longest shift register
+  bind dut.g_memory.u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
+end

@@ -1,60 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_td_divide: done exactly Latency clocks after the last start; with it the quotient and the remainder, or overflow.
 
-`default_nettype none
+parameter int DivisorWidth = 3;
+parameter int QuotientWidth = 4;
+parameter int Latency = 5;  // models/tactile_depth/chip/common/td_divide.py
 
-module fv_td_divide #(
-  parameter int DivisorWidth  = 3,
-  parameter int QuotientWidth = 4,
-  parameter int Latency       = 5,  // models/tactile_depth/chip/common/td_divide.py
-  localparam int NumeratorWidth = DivisorWidth + QuotientWidth
-) (
-  input logic                      clk,
-  input logic                      rst,
-  input logic                      start,
-  input logic [NumeratorWidth-1:0] numerator,
-  input logic [DivisorWidth-1:0]   divisor
+protocol_td_divide #(.DivisorWidth(DivisorWidth), .QuotientWidth(QuotientWidth)) u_protocol (
+  .clk, .rst, .start, .divisor, .done, .overflow, .holds(allowed)
 );
 
-  logic done, overflow;
-  logic [QuotientWidth-1:0] quotient;
-  logic [DivisorWidth-1:0] remainder;
-  td_divide #(.DivisorWidth(DivisorWidth), .QuotientWidth(QuotientWidth)) dut (.*);
-
-  logic allowed, started;
-  protocol_td_divide #(.DivisorWidth(DivisorWidth), .QuotientWidth(QuotientWidth)) u_protocol (
-    .clk, .rst, .start, .divisor, .done, .overflow, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-
-  logic [Latency-1:0] due;  // bit n: done is due in n clocks
-  logic [NumeratorWidth-1:0] numerator_q, product;
-  logic [DivisorWidth-1:0] divisor_q;
-  logic fits;
-  assign fits = numerator_q < {divisor_q, QuotientWidth'(0)};
-  assign product = NumeratorWidth'(quotient) * NumeratorWidth'(divisor_q);
-  always_ff @(posedge clk) begin
-    due <= start ? Latency'(1) << (Latency - 1) : due >> 1;
-    if (start) begin
-      numerator_q <= numerator;
-      divisor_q <= divisor;
-    end
-    if (rst) due <= '0;
+logic [Latency-1:0] due;  // bit n: done is due in n clocks
+logic [NumeratorWidth-1:0] numerator_q, product;
+logic [DivisorWidth-1:0] divisor_q;
+logic fits;
+assign fits = numerator_q < {divisor_q, QuotientWidth'(0)};
+assign product = NumeratorWidth'(quotient) * NumeratorWidth'(divisor_q);
+always_ff @(posedge clk) begin
+  due <= start ? Latency'(1) << (Latency - 1) : due >> 1;
+  if (start) begin
+    numerator_q <= numerator;
+    divisor_q <= divisor;
   end
+  if (rst) due <= '0;
+end
 
-  always_comb begin
-    if (started) begin
-      in_time: assert (done == due[0]);
-      if (done) begin
-        too_large: assert (overflow == !fits);
-        if (fits) divided: assert (remainder < divisor_q && numerator_q == product + NumeratorWidth'(remainder));
-      end
-      one_after_another: cover (done && start && fits && quotient == '1 && remainder != '0);
-      overflows: cover (done && overflow && divisor_q != '0);
-      abandoned: cover (start && due[1]);
+always_comb begin
+  if (started) begin
+    in_time: assert (done == due[0]);
+    if (done) begin
+      too_large: assert (overflow == !fits);
+      if (fits) divided: assert (remainder < divisor_q && numerator_q == product + NumeratorWidth'(remainder));
     end
+    one_after_another: cover (done && start && fits && quotient == '1 && remainder != '0);
+    overflows: cover (done && overflow && divisor_q != '0);
+    abandoned: cover (start && due[1]);
   end
-
-endmodule
-
-`default_nettype wire
+end

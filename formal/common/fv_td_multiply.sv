@@ -1,39 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_td_multiply: the exact product of the operands of every enabled clock stands until the next one.
 
-`default_nettype none
+parameter int AWidth = 5;
+parameter int BWidth = 3;
 
-module fv_td_multiply #(
-  parameter int AWidth = 5,
-  parameter int BWidth = 3
-) (
-  input logic                     clk,
-  input logic                     en,
-  input logic signed [AWidth-1:0] a,
-  input logic signed [BWidth-1:0] b
-);
-
-  logic signed [AWidth+BWidth-1:0] product;
-  td_multiply #(.AWidth(AWidth), .BWidth(BWidth)) dut (.clk, .en, .a, .b, .product);
-
-  logic taken = 1'b0, held = 1'b0;
-  logic signed [AWidth-1:0] a_q;
-  logic signed [BWidth-1:0] b_q;
-  always_ff @(posedge clk) begin
-    held <= taken & ~en;
-    if (en) begin
-      taken <= 1'b1;
-      a_q <= a;
-      b_q <= b;
-    end
+logic taken = 1'b0, held = 1'b0;
+logic signed [AWidth-1:0] a_q;
+logic signed [BWidth-1:0] b_q;
+always_ff @(posedge clk) begin
+  held <= taken & ~en;
+  if (en) begin
+    taken <= 1'b1;
+    a_q <= a;
+    b_q <= b;
   end
+end
 
-  always_comb begin
-    if (taken) exact: assert (32'(product) == 32'(a_q) * 32'(b_q));
-    largest: cover (taken && product == (AWidth + BWidth)'(1 << (AWidth + BWidth - 2)));
-    kept: cover (held && product != '0);
-  end
-
-endmodule
-
-`default_nettype wire
+always_comb begin
+  if (taken) exact: assert (32'(product) == 32'(a_q) * 32'(b_q));
+  largest: cover (taken && product == (AWidth + BWidth)'(1 << (AWidth + BWidth - 2)));
+  kept: cover (held && product != '0);
+end

@@ -3,57 +3,39 @@
 //
 // One arbitrary address is watched. What the protocol asks is proven of every core that uses a ram (ram_check).
 
-`default_nettype none
+parameter int Width = 1;
+parameter int Depth = 6;
+parameter int Style = 1;
+input logic [AddressWidth-1:0] chosen;
 
-module fv_td_ram #(
-  parameter int Width = 1,
-  parameter int Depth = 6,
-  parameter int Style = 1,
-  localparam int AddressWidth = $clog2(Depth)
-) (
-  input logic                    clk,
-  input logic                    write_en,
-  input logic [AddressWidth-1:0] write_address,
-  input logic [Width-1:0]        write_data,
-  input logic                    read_en,
-  input logic [AddressWidth-1:0] read_address,
-  input logic [AddressWidth-1:0] chosen
+logic allowed;
+protocol_td_ram #(.Depth(Depth)) u_protocol (
+  .write_en, .write_address, .read_en, .read_address, .holds(allowed)
 );
+always_comb assume (allowed && 32'(chosen) < Depth);
 
-  logic [Width-1:0] read_data;
-  td_ram #(.Width(Width), .Depth(Depth), .Style(Style)) dut (.*);
-  logic allowed;
-  protocol_td_ram #(.Depth(Depth)) u_protocol (
-    .write_en, .write_address, .read_en, .read_address, .holds(allowed)
-  );
-  always_comb assume (allowed && 32'(chosen) < Depth);
-
-  logic started = 1'b0;
-  logic known = 1'b0, rewritten = 1'b0, returned = 1'b0, held = 1'b0;
-  logic [AddressWidth-1:0] watched;  // chosen in the first clock, then constant
-  logic [Width-1:0] value, expected, read_data_q;
-  always_ff @(posedge clk) begin
-    started <= 1'b1;
-    if (!started) watched <= chosen;
-    else begin
-      if (write_en && write_address == watched) begin
-        known <= 1'b1;
-        rewritten <= known;
-        value <= write_data;
-      end
-      returned <= read_en & (read_address == watched) & known;
-      expected <= value;
-      held <= ~read_en;
-      read_data_q <= read_data;
+logic started = 1'b0;
+logic known = 1'b0, rewritten = 1'b0, returned = 1'b0, held = 1'b0;
+logic [AddressWidth-1:0] watched;  // chosen in the first clock, then constant
+logic [Width-1:0] value, expected, read_data_q;
+always_ff @(posedge clk) begin
+  started <= 1'b1;
+  if (!started) watched <= chosen;
+  else begin
+    if (write_en && write_address == watched) begin
+      known <= 1'b1;
+      rewritten <= known;
+      value <= write_data;
     end
+    returned <= read_en & (read_address == watched) & known;
+    expected <= value;
+    held <= ~read_en;
+    read_data_q <= read_data;
   end
+end
 
-  always_comb begin
-    if (returned) last_written: assert (read_data == expected);
-    if (held) holds: assert (read_data == read_data_q);
-    read_again: cover (returned && rewritten && value != read_data_q);
-  end
-
-endmodule
-
-`default_nettype wire
+always_comb begin
+  if (returned) last_written: assert (read_data == expected);
+  if (held) holds: assert (read_data == read_data_q);
+  read_again: cover (returned && rewritten && value != read_data_q);
+end

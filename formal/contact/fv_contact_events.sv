@@ -5,86 +5,54 @@
 //
 // Sums, decision, centroid and packets are proven of the cores in it.
 
-`default_nettype none
+parameter int Width = 2;
+parameter int Rows = 4;
+parameter int Columns = 8;
+parameter int Latency = 28;  // models/tactile_depth/chip/contact/contact_events.py
 
-module fv_contact_events
-  import td_types_pkg::*;
-#(
-  parameter int Width   = 2,
-  parameter int Rows    = 4,
-  parameter int Columns = 8,
-  parameter int Latency = 28  // models/tactile_depth/chip/contact/contact_events.py
-) (
-  input logic                    clk,
-  input logic                    rst,
-  input logic                    in_valid,
-  input depth_position_t         in_position,
-  input logic [Width-1:0]        in_data,
-  input logic [31:0]             in_time,
-  input logic signed [31:0]      on_threshold,
-  input logic signed [31:0]      off_threshold,
-  input logic signed [31:0]      area_threshold,
-  input logic [31:0]             minimum_area,
-  input logic [7:0]              debounce,
-  input logic                    m_event_tready
+protocol_contact_events #(.Rows(Rows), .Columns(Columns)) u_protocol (
+  .clk, .rst, .in_valid, .in_position, .m_event_tvalid, .holds(allowed)
 );
 
-  localparam int Words = 12;
-
-  logic touching, record_valid, record_lost, m_event_tvalid, m_event_tlast;
-  logic [32*Words-1:0] record;
-  logic [31:0] m_event_tdata;
-  contact_events #(.Width(Width), .Rows(Rows), .Columns(Columns)) dut (.*);
-
-  logic allowed, started;
-  protocol_contact_events #(.Rows(Rows), .Columns(Columns)) u_protocol (
-    .clk, .rst, .in_valid, .in_position, .m_event_tvalid, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-
-  // When a record is due, and what it says of its frame.
-  logic [Latency-1:0] due;
-  logic [32*Words-1:0] record_q;
-  logic [31:0] number, begun, begun_last;
-  logic was_reset, touching_q;
-  always_ff @(posedge clk) begin
-    was_reset <= rst;
-    if (in_valid) begin
-      if (in_position.frame_start) begun <= in_time;
-      if (in_position.frame_end) begun_last <= begun;
-    end
-    due <= Latency'({due, in_valid & in_position.frame_end});
-    if (due[1]) number <= number + 32'd1;
-    record_q <= record;
-    touching_q <= touching;
-    if (rst) begin
-      due <= '0;
-      number <= '0;
-    end
+// When a record is due, and what it says of its frame.
+logic [Latency-1:0] due;
+logic [32*Words-1:0] record_q;
+logic [31:0] number, begun, begun_last;
+logic was_reset, touching_q;
+always_ff @(posedge clk) begin
+  was_reset <= rst;
+  if (in_valid) begin
+    if (in_position.frame_start) begun <= in_time;
+    if (in_position.frame_end) begun_last <= begun;
   end
-
-  logic [Latency-1:0] early;
-  for (genvar n = 0; n < Latency; n++) begin : g_early
-    assign early[n] = due[n] && 32'(u_protocol.u_frames.next_place) > n;
+  due <= Latency'({due, in_valid & in_position.frame_end});
+  if (due[1]) number <= number + 32'd1;
+  record_q <= record;
+  touching_q <= touching;
+  if (rst) begin
+    due <= '0;
+    number <= '0;
   end
-  always_comb begin
-    if (started) begin
-      // Behind the proof: frames of so many depths are Latency clocks long.
-      apart: assert (early == '0);
-      record_due: assert (record_valid == due[Latency-1]);
-      if (!record_valid && !was_reset) keeps: assert (record == record_q);
-      if (!was_reset && !due[2]) between_frames: assert (touching == touching_q);
-      if (record_valid) begin
-        status: assert (record[0] == touching && !(record[1] && !touching) && !(record[2] && touching));
-        of_frame: assert (record[63:32] == number && record[95:64] == begun_last);
-      end
-      if (was_reset) quiet: assert (!m_event_tvalid && !touching && record == '0);
-      begins: cover (record_valid && record[1]);
-      ends: cover (record_valid && record[2]);
-      sends: cover (m_event_tvalid && m_event_tready && m_event_tlast);
+end
+
+logic [Latency-1:0] early;
+for (genvar n = 0; n < Latency; n++) begin : g_early
+  assign early[n] = due[n] && 32'(u_protocol.u_frames.next_place) > n;
+end
+always_comb begin
+  if (started) begin
+    // Behind the proof: frames of so many depths are Latency clocks long.
+    apart: assert (early == '0);
+    record_due: assert (record_valid == due[Latency-1]);
+    if (!record_valid && !was_reset) keeps: assert (record == record_q);
+    if (!was_reset && !due[2]) between_frames: assert (touching == touching_q);
+    if (record_valid) begin
+      status: assert (record[0] == touching && !(record[1] && !touching) && !(record[2] && touching));
+      of_frame: assert (record[63:32] == number && record[95:64] == begun_last);
     end
+    if (was_reset) quiet: assert (!m_event_tvalid && !touching && record == '0);
+    begins: cover (record_valid && record[1]);
+    ends: cover (record_valid && record[2]);
+    sends: cover (m_event_tvalid && m_event_tready && m_event_tlast);
   end
-
-endmodule
-
-`default_nettype wire
+end

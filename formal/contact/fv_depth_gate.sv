@@ -6,112 +6,87 @@
 //
 // One arbitrary word is followed: `pick` is free. drop_frames and m_ready move freely.
 
-`default_nettype none
+parameter int Width = 1;
+input logic pick;
 
-module fv_depth_gate
-  import td_types_pkg::*;
-#(
-  parameter int Width = 1
-) (
-  input logic             clk,
-  input logic             rst,
-  input logic             drop_frames,
-  input logic             in_valid,
-  input depth_position_t  in_position,
-  input logic [Width-1:0] in_data,
-  input logic             m_ready,
-  input logic             pick
+protocol_depth_gate #(.Width(Width)) u_protocol (
+  .clk, .rst, .en, .in_valid, .in_position, .in_data, .m_valid, .tap_valid, .holds(allowed)
 );
 
-  logic en, event_dropped, m_valid, tap_valid;
-  depth_position_t m_position, tap_position;
-  logic [Width-1:0] m_data, tap_data;
-  depth_gate #(.Width(Width)) dut (.*);
+// What is given to the output: as long as its two places and the frame allow.
+logic drops, refused, moves, room, given, leaves;  // `drops`: of the frame that is, or would be, present
+logic fresh;
+logic [1:0] held, untapped;  // words that have not left, that have not been tapped
+assign moves = en & in_valid;
+assign room = (held != 2'd2) & ~fresh;
+assign given = moves & room & (in_position.frame_start | ~refused);
+assign leaves = m_valid & m_ready;
 
-  logic allowed, started;
-  protocol_depth_gate #(.Width(Width)) u_protocol (
-    .clk, .rst, .en, .in_valid, .in_position, .in_data, .m_valid, .tap_valid, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
+logic [Width+2:0] word, value, sent, tapped, stalled_word;
+assign word = {in_position, in_data};
+assign sent = {m_position, m_data};
+assign tapped = {tap_position, tap_data};
 
-  // What is given to the output: as long as its two places and the frame allow.
-  logic drops, refused, moves, room, given, leaves;  // `drops`: of the frame that is, or would be, present
-  logic fresh;
-  logic [1:0] held, untapped;  // words that have not left, that have not been tapped
-  assign moves = en & in_valid;
-  assign room = (held != 2'd2) & ~fresh;
-  assign given = moves & room & (in_position.frame_start | ~refused);
-  assign leaves = m_valid & m_ready;
-
-  logic [Width+2:0] word, value, sent, tapped, stalled_word;
-  assign word = {in_position, in_data};
-  assign sent = {m_position, m_data};
-  assign tapped = {tap_position, tap_data};
-
-  logic stalled, drops_q, came_dropping, follows_out, follows_tap, waits, forced;
-  logic [1:0] ahead_out, ahead_tap;  // words before the one followed
-  logic leaves_now, tapped_now;
-  assign leaves_now = follows_out & (ahead_out == 2'd0) & leaves;
-  assign tapped_now = follows_tap & (ahead_tap == 2'd0) & tap_valid;
-  always_ff @(posedge clk) begin
-    fresh <= rst;
-    if (moves) refused <= ~given;
-    if (!in_valid || (moves && in_position.frame_end)) drops <= drop_frames;
-    drops_q <= drops;
-    came_dropping <= moves & drops;
-    held <= held + 2'(given) - 2'(leaves);
-    untapped <= untapped + 2'(moves) - 2'(tap_valid);
-    stalled <= m_valid & ~m_ready;
-    stalled_word <= sent;
-    if (!follows_out && !follows_tap) begin
-      follows_tap <= moves & pick;
-      follows_out <= given & pick;
-      ahead_tap <= untapped - 2'(tap_valid);
-      ahead_out <= held - 2'(leaves);
-      value <= word;
-      waits <= ~drops;
-    end else begin
-      if (tap_valid) follows_tap <= follows_tap & ~tapped_now;
-      if (tap_valid) ahead_tap <= ahead_tap - 2'd1;
-      if (leaves) follows_out <= follows_out & ~leaves_now;
-      if (leaves) ahead_out <= ahead_out - 2'd1;
-    end
-    if (rst) begin
-      drops <= 1'b0;
-      drops_q <= 1'b0;
-      came_dropping <= 1'b0;
-      held <= '0;
-      untapped <= '0;
-      stalled <= 1'b0;
-      follows_out <= 1'b0;
-      follows_tap <= 1'b0;
-    end
+logic stalled, drops_q, came_dropping, follows_out, follows_tap, waits, forced;
+logic [1:0] ahead_out, ahead_tap;  // words before the one followed
+logic leaves_now, tapped_now;
+assign leaves_now = follows_out & (ahead_out == 2'd0) & leaves;
+assign tapped_now = follows_tap & (ahead_tap == 2'd0) & tap_valid;
+always_ff @(posedge clk) begin
+  fresh <= rst;
+  if (moves) refused <= ~given;
+  if (!in_valid || (moves && in_position.frame_end)) drops <= drop_frames;
+  drops_q <= drops;
+  came_dropping <= moves & drops;
+  held <= held + 2'(given) - 2'(leaves);
+  untapped <= untapped + 2'(moves) - 2'(tap_valid);
+  stalled <= m_valid & ~m_ready;
+  stalled_word <= sent;
+  if (!follows_out && !follows_tap) begin
+    follows_tap <= moves & pick;
+    follows_out <= given & pick;
+    ahead_tap <= untapped - 2'(tap_valid);
+    ahead_out <= held - 2'(leaves);
+    value <= word;
+    waits <= ~drops;
+  end else begin
+    if (tap_valid) follows_tap <= follows_tap & ~tapped_now;
+    if (tap_valid) ahead_tap <= ahead_tap - 2'd1;
+    if (leaves) follows_out <= follows_out & ~leaves_now;
+    if (leaves) ahead_out <= ahead_out - 2'd1;
   end
-  assign forced = waits & drops;  // it has waited, but what comes now does not
-
-  always_comb begin
-    if (started) begin
-      enable_is_room: assert (dut.en == (dut.dropping ? dut.tap_room : dut.room));
-      offered: assert (m_valid == (held != 2'd0));
-      if (stalled) stable: assert (m_valid && sent == stalled_word);
-      if (follows_out && ahead_out == 2'd0) in_place: assert (sent == value);
-      said: assert (event_dropped == (moves & ~given & (in_position.frame_start | ~refused)));
-      if (!drops) nothing_refused: assert (!moves || given);
-      if (drops && drops_q && !fresh) never_waits: assert (en);
-      if (!drops) waits_for_room: assert (en == room);
-      no_tap_of_nothing: assert (!tap_valid || untapped != 2'd0);
-      if (tapped_now) as_it_came: assert (tapped == value);
-      if (came_dropping) seen_at_once: assert (tap_valid && untapped == 2'd1);
-      if (leaves_now) no_later: assert (!follows_tap || tapped_now);
-      if (tapped_now && waits && !forced) no_sooner: assert (leaves_now);
-      cut: cover (event_dropped && !in_position.frame_start && follows_out);
-      whole_dropped: cover (event_dropped && in_position.frame_start && held == 2'd2);
-      two_stand: cover (drops && !en && follows_tap && ahead_tap == 2'd1);
-      seen_before: cover (leaves_now && !follows_tap && !drops && waits && held == 2'd2 && untapped == 2'd1);
-      recovers: cover (leaves && m_position.frame_end && refused && drops);
-    end
+  if (rst) begin
+    drops <= 1'b0;
+    drops_q <= 1'b0;
+    came_dropping <= 1'b0;
+    held <= '0;
+    untapped <= '0;
+    stalled <= 1'b0;
+    follows_out <= 1'b0;
+    follows_tap <= 1'b0;
   end
+end
+assign forced = waits & drops;  // it has waited, but what comes now does not
 
-endmodule
-
-`default_nettype wire
+always_comb begin
+  if (started) begin
+    enable_is_room: assert (dut.en == (dut.dropping ? dut.tap_room : dut.room));
+    offered: assert (m_valid == (held != 2'd0));
+    if (stalled) stable: assert (m_valid && sent == stalled_word);
+    if (follows_out && ahead_out == 2'd0) in_place: assert (sent == value);
+    said: assert (event_dropped == (moves & ~given & (in_position.frame_start | ~refused)));
+    if (!drops) nothing_refused: assert (!moves || given);
+    if (drops && drops_q && !fresh) never_waits: assert (en);
+    if (!drops) waits_for_room: assert (en == room);
+    no_tap_of_nothing: assert (!tap_valid || untapped != 2'd0);
+    if (tapped_now) as_it_came: assert (tapped == value);
+    if (came_dropping) seen_at_once: assert (tap_valid && untapped == 2'd1);
+    if (leaves_now) no_later: assert (!follows_tap || tapped_now);
+    if (tapped_now && waits && !forced) no_sooner: assert (leaves_now);
+    cut: cover (event_dropped && !in_position.frame_start && follows_out);
+    whole_dropped: cover (event_dropped && in_position.frame_start && held == 2'd2);
+    two_stand: cover (drops && !en && follows_tap && ahead_tap == 2'd1);
+    seen_before: cover (leaves_now && !follows_tap && !drops && waits && held == 2'd2 && untapped == 2'd1);
+    recovers: cover (leaves && m_position.frame_end && refused && drops);
+  end
+end

@@ -3,64 +3,43 @@
 // While hold is high it does not fall. Otherwise it is high from such a depth on until the clock after the first depth of
 // the next frame, so it falls in the clock after hold is cleared if this frame has had no depth above the threshold.
 
-`default_nettype none
+parameter int Width = 24;
+parameter int Lanes = 1;
 
-module fv_threshold_comparator #(
-  parameter int Width = 24,
-  parameter int Lanes = 1
-) (
-  input logic                   clk,
-  input logic                   rst,
-  input logic                   in_valid,
-  input logic                   in_frame_start,
-  input logic [Lanes*Width-1:0] in_data,
-  input logic signed [31:0]     threshold,
-  input logic                   hold
-);
+protocol_threshold_comparator u_protocol (.clk, .rst, .in_valid, .in_frame_start, .holds(allowed));
 
-  logic contact;
-  threshold_comparator #(.Width(Width), .Lanes(Lanes)) dut (.*);
+logic signed [31:0] of_frame, in_force;  // threshold when the frame began; that which counts now
+assign in_force = in_valid & in_frame_start ? threshold : of_frame;
+logic [Lanes-1:0] exceeds;  // depths of the beat above the threshold
+for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
+  logic signed [Width-1:0] depth;
+  logic signed [33:0] excess;
+  assign depth = in_data[lane*Width+:Width];
+  assign excess = 34'(depth) - 34'(in_force);
+  assign exceeds[lane] = excess > 0;
+end
 
-  logic allowed, started;
-  protocol_threshold_comparator u_protocol (.clk, .rst, .in_valid, .in_frame_start, .holds(allowed));
-  assumed u_assumed (.clk, .rst, .allowed, .started);
+logic fired, of_this_frame, contact_q, hold_q, beat_q, within_frame;
+always_ff @(posedge clk) begin
+  of_frame <= in_force;
+  fired <= ~rst & in_valid & (exceeds != '0);
+  of_this_frame <= ~rst & (in_valid ? exceeds != '0 | (of_this_frame & ~in_frame_start) : of_this_frame);
+  within_frame <= in_valid & ~in_frame_start;
+  contact_q <= contact & ~rst;
+  hold_q <= hold;
+  beat_q <= in_valid;
+end
 
-  logic signed [31:0] of_frame, in_force;  // threshold when the frame began; that which counts now
-  assign in_force = in_valid & in_frame_start ? threshold : of_frame;
-  logic [Lanes-1:0] exceeds;  // depths of the beat above the threshold
-  for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
-    logic signed [Width-1:0] depth;
-    logic signed [33:0] excess;
-    assign depth = in_data[lane*Width+:Width];
-    assign excess = 34'(depth) - 34'(in_force);
-    assign exceeds[lane] = excess > 0;
+always_comb begin
+  if (started) begin
+    if (fired) fires_in_one_clock: assert (contact);
+    else if (hold_q && contact_q) keeps: assert (contact);
+    else follows_this_frame: assert (contact == of_this_frame);
+    if (contact && !contact_q) rises_for_a_depth: assert (fired);
+    fires_late: cover (fired && within_frame && !contact_q && of_frame < 0);
+    refires: cover (fired && contact_q && !within_frame);
+    holds: cover (contact && !fired && !within_frame && in_valid && in_frame_start);
+    falls: cover (contact_q && !contact);
+    falls_as_hold_is_cleared: cover (contact_q && !contact && !beat_q);
   end
-
-  logic fired, of_this_frame, contact_q, hold_q, beat_q, within_frame;
-  always_ff @(posedge clk) begin
-    of_frame <= in_force;
-    fired <= ~rst & in_valid & (exceeds != '0);
-    of_this_frame <= ~rst & (in_valid ? exceeds != '0 | (of_this_frame & ~in_frame_start) : of_this_frame);
-    within_frame <= in_valid & ~in_frame_start;
-    contact_q <= contact & ~rst;
-    hold_q <= hold;
-    beat_q <= in_valid;
-  end
-
-  always_comb begin
-    if (started) begin
-      if (fired) fires_in_one_clock: assert (contact);
-      else if (hold_q && contact_q) keeps: assert (contact);
-      else follows_this_frame: assert (contact == of_this_frame);
-      if (contact && !contact_q) rises_for_a_depth: assert (fired);
-      fires_late: cover (fired && within_frame && !contact_q && of_frame < 0);
-      refires: cover (fired && contact_q && !within_frame);
-      holds: cover (contact && !fired && !within_frame && in_valid && in_frame_start);
-      falls: cover (contact_q && !contact);
-      falls_as_hold_is_cleared: cover (contact_q && !contact && !beat_q);
-    end
-  end
-
-endmodule
-
-`default_nettype wire
+end

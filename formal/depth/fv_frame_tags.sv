@@ -2,56 +2,36 @@
 // fv_frame_tags: an arbitrary tag is due exactly Latency enabled clocks after it was pushed, unchanged, and nothing
 // else is ever due; held is high just while there are tags.
 
-`default_nettype none
+parameter int Width = 1;
+parameter int Latency = 10;
+parameter int Pixels = 4;
+input logic pick;
 
-module fv_frame_tags #(
-  parameter int Width   = 1,
-  parameter int Latency = 10,
-  parameter int Pixels  = 4
-) (
-  input logic             clk,
-  input logic             rst,
-  input logic             en,
-  input logic             push,
-  input logic [Width-1:0] tag,
-  input logic             pick
+protocol_frame_tags #(.Pixels(Pixels)) u_protocol (.clk, .rst, .en, .push, .holds(allowed));
+
+logic [Latency-1:0] pushed;
+logic followed_due;
+logic [Width-1:0] value;
+follow_delay #(.Width(Width), .Latency(Latency)) u_follow (
+  .clk, .rst, .en, .pick(pick & push), .in(tag), .due(followed_due), .word(value)
 );
+always_ff @(posedge clk) begin
+  if (en) pushed <= Latency'({pushed, push});
+  if (rst) pushed <= '0;
+end
 
-  logic due, held;
-  logic [Width-1:0] due_tag;
-  frame_tags #(.Width(Width), .Latency(Latency), .Pixels(Pixels)) dut (.*);
+int tags;  // on their way
+always_comb begin
+  tags = 0;
+  for (int i = 0; i < Latency; i++) tags += 32'(pushed[i]);
+end
 
-  logic allowed, started;
-  protocol_frame_tags #(.Pixels(Pixels)) u_protocol (.clk, .rst, .en, .push, .holds(allowed));
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-
-  logic [Latency-1:0] pushed;
-  logic followed_due;
-  logic [Width-1:0] value;
-  follow_delay #(.Width(Width), .Latency(Latency)) u_follow (
-    .clk, .rst, .en, .pick(pick & push), .in(tag), .due(followed_due), .word(value)
-  );
-  always_ff @(posedge clk) begin
-    if (en) pushed <= Latency'({pushed, push});
-    if (rst) pushed <= '0;
+always_comb begin
+  if (started) begin
+    due_just_then: assert (due == pushed[Latency-1]);
+    if (followed_due) own_tag: assert (due && due_tag == value);
+    held_meanwhile: assert (held == (pushed != '0));
+    most_tags: cover (tags == (Latency + Pixels - 1) / Pixels && due);
+    alone: cover (due && en && pushed[Latency-2:0] == '0);
   end
-
-  int tags;  // on their way
-  always_comb begin
-    tags = 0;
-    for (int i = 0; i < Latency; i++) tags += 32'(pushed[i]);
-  end
-
-  always_comb begin
-    if (started) begin
-      due_just_then: assert (due == pushed[Latency-1]);
-      if (followed_due) own_tag: assert (due && due_tag == value);
-      held_meanwhile: assert (held == (pushed != '0));
-      most_tags: cover (tags == (Latency + Pixels - 1) / Pixels && due);
-      alone: cover (due && en && pushed[Latency-2:0] == '0);
-    end
-  end
-
-endmodule
-
-`default_nettype wire
+end

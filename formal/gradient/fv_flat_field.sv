@@ -8,81 +8,31 @@
 // Assumed: places in raster order; of each colour the lowest bits alone differ from zero (products of any width are
 // exact).
 
-`default_nettype none
+parameter int Meets = 0;
+parameter int Rows = 3;
+parameter int Columns = 4;
+parameter int GainWidth = 3;
+parameter int Drop = 2;
+parameter int Offset = 0;
+parameter int OutWidth = 1;
+parameter int Flat = 1;
+localparam int BlockLog2 = 1;
+input logic choose;  // the pixel that is followed
 
-module fv_flat_field #(
-  parameter int Meets     = 0,
-  parameter int Rows      = 3,
-  parameter int Columns   = 4,
-  parameter int GainWidth = 3,
-  parameter int Drop      = 2,
-  parameter int Offset    = 0,
-  parameter int OutWidth  = 1,
-  parameter int Flat      = 1,
-  localparam int NodeWidth = 1
-) (
-  input logic                   clk,
-  input logic                   rst,
-  input logic                   en,
-  input logic [7:0]             dark_level,
-  input logic                   table_bank,
-  input td_types_pkg::table_command_t table_command,
-  input logic                   in_valid,
-  input logic [23:0]            in_pixel,
-  input logic [3:0]             in_position,
-  input logic                   choose  // the pixel that is followed
-);
+assign capture_write = 1'b0;
+assign capture_write_node = '0;
+assign capture_gains = '0;
+assign capture_read = 1'b0;
+assign capture_read_node = '0;
 
-  logic table_in_use, out_valid, dark;
-  td_types_pkg::table_answer_t table_answer;
-  logic [3*GainWidth-1:0] capture_read_gains;
-  logic [3:0] out_position;
-  logic [OutWidth-1:0] out_red, out_green, out_blue;
-  logic [1:0] saturations;
-  flat_field #(
-    .Rows(Rows), .Columns(Columns), .BlockLog2(1), .GainWidth(GainWidth), .Drop(Drop), .Offset(Offset),
-    .OutWidth(OutWidth), .Flat(Flat)
-  ) dut (
-    .*, .capture_write(1'b0), .capture_write_node('0), .capture_gains('0), .capture_read(1'b0), .capture_read_node('0)
-  );
+// Pixels in raster order, as the protocol has them; what it asks of the table these properties do not need.
+logic [3:0] place;
+raster_places #(.Rows(Rows), .Columns(Columns)) u_places (.*, .reset(rst), .row(), .column());
+assign allowed = !in_valid || in_position == place;
+always_comb assume ((in_pixel & ~24'h010101) == '0);
 
-  // Pixels in raster order, as the protocol has them; what it asks of the table these properties do not need.
-  logic started;
-  logic [3:0] place;
-  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (.*, .reset(rst), .row(), .column());
-  assumed u_assumed (.clk, .rst, .allowed(!in_valid || in_position == place), .started);
-  always_comb assume ((in_pixel & ~24'h010101) == '0);
-
-  if (Meets != 0) begin : g_meets
-    bind fv_flat_field.dut flat_field_meets u_check (.*, .choose(fv_flat_field.choose));
-  end else begin : g_leaves
-    bind fv_flat_field.dut flat_field_leaves #(
-      .GainWidth(GainWidth), .Drop(Drop), .Offset(Offset), .OutWidth(OutWidth), .Flat(Flat)
-    ) u_check (.*);
-  end
-
-endmodule
-
-// Inside the core, beside its td_node_map.
-module flat_field_meets (
-  input logic        clk,
-  input logic        rst,
-  input logic        en,
-  input logic        choose,
-  input logic [7:0]  dark_level,
-  input logic        in_valid,
-  input logic [23:0] in_pixel,
-  input logic [3:0]  in_position,
-  input logic        gain_valid,
-  input logic [3:0]  gain_position,
-  input logic        dim,
-  input logic [23:0] colours      // blue, green, red
-);
-
+if (Meets != 0) begin : g_meets
   localparam int ToGain = 10;
-
-  logic started = 1'b0;
-  always_ff @(posedge clk) started <= 1'b1;
 
   logic [7:0] level, level_now;
   logic [3:0] age, place;  // enabled clocks since the pixel came
@@ -106,56 +56,27 @@ module flat_field_meets (
   end
   always_comb begin
     if (started && follows && age == 4'(ToGain)) begin
-      valid_meets: assert (gain_valid);
-      place_meets: assert (gain_position == place);
-      pixel_meets: assert ({dim, colours} == pixel);
+      valid_meets: assert (dut.gain_valid);
+      place_meets: assert (dut.gain_position == place);
+      pixel_meets: assert ({dut.dim, dut.colours} == pixel);
     end
-    meets_dim: cover (started && follows && age == 4'(ToGain) && dim && colours[0]);
-    meets_bright: cover (started && follows && age == 4'(ToGain) && !dim && place[1:0] == 2'b01);
+    meets_dim: cover (started && follows && age == 4'(ToGain) && dut.dim && dut.colours[0]);
+    meets_bright: cover (started && follows && age == 4'(ToGain) && !dut.dim && place[1:0] == 2'b01);
   end
-
-endmodule
-
-module flat_field_leaves #(
-  parameter int GainWidth = 3,
-  parameter int Drop      = 2,
-  parameter int Offset    = 0,
-  parameter int OutWidth  = 1,
-  parameter int Flat      = 1
-) (
-  input logic                   clk,
-  input logic                   rst,
-  input logic                   en,
-  input logic                   gain_valid,
-  input logic [3:0]             gain_position,
-  input logic                   dim,
-  input logic [23:0]            colours,
-  input logic [3*GainWidth-1:0] gains,
-  input logic                   out_valid,
-  input logic [3:0]             out_position,
-  input logic [OutWidth-1:0]    out_red,
-  input logic [OutWidth-1:0]    out_green,
-  input logic [OutWidth-1:0]    out_blue,
-  input logic                   dark,
-  input logic [1:0]             saturations
-);
-
+end else begin : g_leaves
   localparam int ToOut = 3;
   localparam int Lowest = Offset == 0 ? 0 : -(1 << (OutWidth - 1));
   localparam int Highest = Offset == 0 ? (1 << OutWidth) - 1 : (1 << (OutWidth - 1)) - 1;
-
-  logic started = 1'b0;
-  always_ff @(posedge clk) started <= 1'b1;
 
   logic signed [GainWidth+9:0] result[3];
   logic [2:0] clips;
   logic is_dark;
   always_comb begin
-    assume ((colours & ~24'h010101) == '0);
-    is_dark = dim || gains[GainWidth-1] || gains[2*GainWidth-1] || gains[3*GainWidth-1];
+    assume ((dut.colours & ~24'h010101) == '0);
+    is_dark = dut.dim || dut.gains[GainWidth-1] || dut.gains[2*GainWidth-1] || dut.gains[3*GainWidth-1];
     for (int c = 0; c < 3; c++) begin
       logic [GainWidth-1:0] product, whole;
-      product = colours[8*c] ? gains[c*GainWidth+:GainWidth] : '0;
+      product = dut.colours[8*c] ? dut.gains[c*GainWidth+:GainWidth] : '0;
       whole = product >> Drop;
       if (product[Drop-1] && (Drop > 1 && (product & GainWidth'((1 << (Drop - 1)) - 1)) != '0 || whole[0])) begin
         result[c] = $signed((GainWidth + 10)'(whole)) + 1 - Offset;
@@ -183,8 +104,8 @@ module flat_field_leaves #(
     expected_clips <= en && !rst && valid[ToOut-2] && !dark_q[1]
         ? 2'(clips_q[3]) + 2'(clips_q[4]) + 2'(clips_q[5]) : '0;
     if (en) begin
-      valid <= {valid[ToOut-2:0], gain_valid};
-      place <= {place[4*ToOut-5:0], gain_position};
+      valid <= {valid[ToOut-2:0], dut.gain_valid};
+      place <= {place[4*ToOut-5:0], dut.gain_position};
       dark_q <= {dark_q[0], is_dark};
       clips_q <= {clips_q[2:0], clips};
       results_q <= {results_q[3*OutWidth-1:0], OutWidth'(result[2]), OutWidth'(result[1]), OutWidth'(result[0])};
@@ -211,7 +132,4 @@ module flat_field_leaves #(
       clipped: cover (saturations == 2'd2);
     end
   end
-
-endmodule
-
-`default_nettype wire
+end

@@ -5,82 +5,61 @@
 //
 // Places are counted modulo 256: a code names one at most 255 further on. Anything comes before the first delimiter.
 
-`default_nettype none
+parameter int Longest = 5;
 
-module fv_cobs_decode #(
-  parameter int Longest = 5
-) (
-  input logic       clk,
-  input logic       rst,
-  input logic       in_valid,
-  input logic [7:0] in_data,
-  input logic       in_broken
-);
+logic counts_out_data, counts_out_bad, counts;
+protocol_cobs_decode u_protocol (.*, .holds(allowed));
 
-  logic started, allowed;
-  assumed u_assumed (.clk, .rst, .allowed, .started);
+logic begun, broken, is_code, first, after_full;
+logic [7:0] place, next_code;  // of the next byte, and of the next code
+logic [3:0] bytes;             // of the piece, up to Longest + 1
+assign is_code = place == next_code;
 
-  logic out_valid, out_end, out_bad;
-  logic [7:0] out_data;
-  cobs_decode #(.Longest(Longest)) dut (.*);
-
-  logic counts_out_data, counts_out_bad, counts;
-  protocol_cobs_decode u_protocol (.*, .holds(allowed));
-
-  logic begun, broken, is_code, first, after_full;
-  logic [7:0] place, next_code;  // of the next byte, and of the next code
-  logic [3:0] bytes;             // of the piece, up to Longest + 1
-  assign is_code = place == next_code;
-
-  logic due, ends, was_broken, was_cut, was_long;
-  logic [7:0] value;
-  always_ff @(posedge clk) begin
-    due <= begun & in_valid & (in_data != '0) & ~(is_code & (first | after_full));
-    value <= is_code ? 8'd0 : in_data;
-    ends <= begun & in_valid & (in_data == '0) & (bytes != '0 | broken);
-    was_broken <= broken;
-    was_cut <= ~is_code;
-    was_long <= bytes > 4'(Longest);
-    if (in_valid && in_data == '0) begin
-      begun <= 1'b1;
-      {place, next_code} <= '0;
-      {broken, after_full} <= '0;
-      first <= 1'b1;
-      bytes <= '0;
-    end else if (in_valid && begun) begin
-      place <= place + 8'd1;
-      if (is_code) begin
-        next_code <= next_code + in_data;
-        first <= 1'b0;
-        after_full <= in_data == 8'd255;
-      end
-      if (bytes <= 4'(Longest)) bytes <= bytes + 4'd1;
+logic due, ends, was_broken, was_cut, was_long;
+logic [7:0] value;
+always_ff @(posedge clk) begin
+  due <= begun & in_valid & (in_data != '0) & ~(is_code & (first | after_full));
+  value <= is_code ? 8'd0 : in_data;
+  ends <= begun & in_valid & (in_data == '0) & (bytes != '0 | broken);
+  was_broken <= broken;
+  was_cut <= ~is_code;
+  was_long <= bytes > 4'(Longest);
+  if (in_valid && in_data == '0) begin
+    begun <= 1'b1;
+    {place, next_code} <= '0;
+    {broken, after_full} <= '0;
+    first <= 1'b1;
+    bytes <= '0;
+  end else if (in_valid && begun) begin
+    place <= place + 8'd1;
+    if (is_code) begin
+      next_code <= next_code + in_data;
+      first <= 1'b0;
+      after_full <= in_data == 8'd255;
     end
-    if (begun && in_broken) broken <= 1'b1;
-    if (rst) begin
-      {begun, due, ends} <= '0;
-    end
+    if (bytes <= 4'(Longest)) bytes <= bytes + 4'd1;
   end
-
-  always_comb begin
-    if (started) begin
-      in_time: assert (out_valid == due && out_end == ends);
-      if (out_valid) decoded: assert (out_data == value);
-      if (out_end) judged: assert (out_bad == (was_broken | was_cut | was_long));
-      as_counted: assert (dut.begun == begun && (begun || dut.length == '0));
-      if (begun) begin
-        code_in: assert (dut.left == next_code - place);
-        zero_behind: assert (dut.zero_due == (!first && !after_full));
-        length: assert (dut.length == 3'(broken ? 4'(Longest + 1) : bytes));
-        counted: assert (bytes <= 4'(Longest + 1) && (bytes == '0) == first && (!first || is_code));
-      end
-      zero_between: cover (out_valid && out_data == '0 && bytes == 4'd3);
-      good: cover (out_end && !out_bad);
-      too_long: cover (out_end && was_long && !was_cut && !was_broken);
-      cut: cover (out_end && was_cut && !was_long && !was_broken);
-    end
+  if (begun && in_broken) broken <= 1'b1;
+  if (rst) begin
+    {begun, due, ends} <= '0;
   end
+end
 
-endmodule
-
-`default_nettype wire
+always_comb begin
+  if (started) begin
+    in_time: assert (out_valid == due && out_end == ends);
+    if (out_valid) decoded: assert (out_data == value);
+    if (out_end) judged: assert (out_bad == (was_broken | was_cut | was_long));
+    as_counted: assert (dut.begun == begun && (begun || dut.length == '0));
+    if (begun) begin
+      code_in: assert (dut.left == next_code - place);
+      zero_behind: assert (dut.zero_due == (!first && !after_full));
+      length: assert (dut.length == 3'(broken ? 4'(Longest + 1) : bytes));
+      counted: assert (bytes <= 4'(Longest + 1) && (bytes == '0) == first && (!first || is_code));
+    end
+    zero_between: cover (out_valid && out_data == '0 && bytes == 4'd3);
+    good: cover (out_end && !out_bad);
+    too_long: cover (out_end && was_long && !was_cut && !was_broken);
+    cut: cover (out_end && was_cut && !was_long && !was_broken);
+  end
+end

@@ -2,57 +2,39 @@
 // fv_depth_value: the value is the sum of its codes, four times the code if there is one, as td_round_saturate rounds and
 // clips it for that shift; from 3 clocks behind the last code on.
 
-`default_nettype none
+parameter int DataWidth = 20;
 
-module fv_depth_value #(
-  parameter int DataWidth = 20
-) (
-  input logic                        clk,
-  input logic                        average,
-  input logic [4:0]                  shift,
-  input logic                        in_valid,
-  input logic                        in_first,
-  input logic signed [DataWidth-1:0] in_code
-);
+localparam int SumWidth = DataWidth + 2;
+localparam int Shifts = 17;
 
-  localparam int SumWidth = DataWidth + 2;
-  localparam int Shifts = 17;
+logic holds, counts;
+protocol_depth_value u_protocol (.*);
+always_comb assume (holds);
 
-  logic signed [15:0] value;
-  depth_value #(.DataWidth(DataWidth)) dut (.*);
+logic signed [SumWidth-1:0] weighed, sum, sum_q;
+logic [4:0] shift_q;
+assign weighed = average ? SumWidth'(in_code) : SumWidth'(in_code) <<< 2;
+always_ff @(posedge clk) begin
+  if (in_valid) sum <= (in_first ? '0 : sum) + weighed;
+  sum_q <= sum;
+  shift_q <= shift;
+end
 
-  logic holds, counts;
-  protocol_depth_value u_protocol (.*);
-  always_comb assume (holds);
+logic signed [15:0] rounded[Shifts];
+logic signed [15:0] wanted;
+logic [Shifts-1:0] clipped;
+for (genvar n = 0; n < Shifts; n++) begin : g_shift
+  td_round_saturate #(.InWidth(SumWidth), .Drop(n + 2), .OutWidth(16)) u_round (
+    .in(sum_q), .out(rounded[n]), .clipped(clipped[n])
+  );
+end
+always_ff @(posedge clk) wanted <= rounded[shift_q];
 
-  logic signed [SumWidth-1:0] weighed, sum, sum_q;
-  logic [4:0] shift_q;
-  assign weighed = average ? SumWidth'(in_code) : SumWidth'(in_code) <<< 2;
-  always_ff @(posedge clk) begin
-    if (in_valid) sum <= (in_first ? '0 : sum) + weighed;
-    sum_q <= sum;
-    shift_q <= shift;
+always_comb begin
+  if (u_protocol.codes != '0) same_sum: assert (dut.sum == sum);  // behind the proof
+  if (counts) begin
+    as_rounded: assert (value == wanted);
+    clips: cover (value == 16'sh7fff && wanted == 16'sh7fff);
+    negative: cover (value < 0 && shift_q == 5'd16);
   end
-
-  logic signed [15:0] rounded[Shifts];
-  logic signed [15:0] wanted;
-  logic [Shifts-1:0] clipped;
-  for (genvar n = 0; n < Shifts; n++) begin : g_shift
-    td_round_saturate #(.InWidth(SumWidth), .Drop(n + 2), .OutWidth(16)) u_round (
-      .in(sum_q), .out(rounded[n]), .clipped(clipped[n])
-    );
-  end
-  always_ff @(posedge clk) wanted <= rounded[shift_q];
-
-  always_comb begin
-    if (u_protocol.codes != '0) same_sum: assert (dut.sum == sum);  // behind the proof
-    if (counts) begin
-      as_rounded: assert (value == wanted);
-      clips: cover (value == 16'sh7fff && wanted == 16'sh7fff);
-      negative: cover (value < 0 && shift_q == 5'd16);
-    end
-  end
-
-endmodule
-
-`default_nettype wire
+end

@@ -5,81 +5,51 @@
 // Packets may have any length. A packet passes from the clock after it was chosen to that in which its last byte
 // leaves.
 
-`default_nettype none
-
-module fv_packet_mux (
-  input logic       clk,
-  input logic       rst,
-  input logic       status_valid,
-  input logic [7:0] status_data,
-  input logic       status_last,
-  input logic       reply_valid,
-  input logic [7:0] reply_data,
-  input logic       reply_last,
-  input logic       record_valid,
-  input logic [7:0] record_data,
-  input logic       record_last,
-  input logic       depth_valid,
-  input logic [7:0] depth_data,
-  input logic       depth_last,
-  input logic       out_ready
+protocol_packet_mux u_protocol (
+  .*, .holds(allowed), .counts_out_data(), .counts_out_last(), .counts()
 );
 
-  logic status_ready, reply_ready, record_ready, depth_ready, out_valid, out_last;
-  logic [7:0] out_data;
-  packet_mux dut (.*);
+logic [3:0] valid, ready, turn, owner;  // a bit for each stream; whose packet begins, or passes
+logic passes, leaves, behind_record, stalled, stalled_last, whole;
+logic [7:0] stalled_data;
+assign valid = {depth_valid, record_valid, reply_valid, status_valid};
+assign ready = {depth_ready, record_ready, reply_ready, status_ready};
+assign leaves = out_valid & out_ready;
+assign turn[0] = valid[0];
+assign turn[1] = valid[1] & ~valid[0];
+assign turn[2] = valid[2] & valid[1:0] == '0 & ~(valid[3] & behind_record);
+assign turn[3] = valid[3] & valid[1:0] == '0 & (~valid[2] | behind_record);
 
-  logic allowed, started;
-  protocol_packet_mux u_protocol (
-    .*, .holds(allowed), .counts_out_data(), .counts_out_last(), .counts()
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-
-  logic [3:0] valid, ready, turn, owner;  // a bit for each stream; whose packet begins, or passes
-  logic passes, leaves, behind_record, stalled, stalled_last, whole;
-  logic [7:0] stalled_data;
-  assign valid = {depth_valid, record_valid, reply_valid, status_valid};
-  assign ready = {depth_ready, record_ready, reply_ready, status_ready};
-  assign leaves = out_valid & out_ready;
-  assign turn[0] = valid[0];
-  assign turn[1] = valid[1] & ~valid[0];
-  assign turn[2] = valid[2] & valid[1:0] == '0 & ~(valid[3] & behind_record);
-  assign turn[3] = valid[3] & valid[1:0] == '0 & (~valid[2] | behind_record);
-
-  always_ff @(posedge clk) begin
-    passes <= passes ? ~(leaves & out_last) : valid != '0;
-    if (!passes) owner <= turn;
-    if (!passes && turn[3:2] != '0) behind_record <= turn[2];
-    whole <= leaves ? out_last : whole;  // no packet has begun to leave
-    stalled <= out_valid & ~out_ready;
-    stalled_data <= out_data;
-    stalled_last <= out_last;
-    if (rst) begin
-      passes <= 1'b0;
-      behind_record <= 1'b0;
-      whole <= 1'b1;
-      stalled <= 1'b0;
-    end
+always_ff @(posedge clk) begin
+  passes <= passes ? ~(leaves & out_last) : valid != '0;
+  if (!passes) owner <= turn;
+  if (!passes && turn[3:2] != '0) behind_record <= turn[2];
+  whole <= leaves ? out_last : whole;  // no packet has begun to leave
+  stalled <= out_valid & ~out_ready;
+  stalled_data <= out_data;
+  stalled_last <= out_last;
+  if (rst) begin
+    passes <= 1'b0;
+    behind_record <= 1'b0;
+    whole <= 1'b1;
+    stalled <= 1'b0;
   end
+end
 
-  always_comb begin
-    if (started) begin
-      in_turn: assert (out_valid == (passes && (valid & owner) != '0));
-      taken_alone: assert (ready == (passes && out_ready ? owner : '0));
-      whole_packets: assert (whole || passes);
-      if (out_valid) begin
-        if (owner[0]) status_passes: assert (out_data == status_data && out_last == status_last);
-        if (owner[1]) reply_passes: assert (out_data == reply_data && out_last == reply_last);
-        if (owner[2]) record_passes: assert (out_data == record_data && out_last == record_last);
-        if (owner[3]) depth_passes: assert (out_data == depth_data && out_last == depth_last);
-        others_wait: cover (owner[3] && leaves && out_last && valid == '1 && !whole);
-        record_again: cover (owner[2] && leaves && out_last && behind_record && !whole);
-      end
-      if (stalled && !rst) stable: assert (out_valid && out_data == stalled_data && out_last == stalled_last);
-      depth_first: cover (!passes && valid == 4'b1100 && turn[3]);
+always_comb begin
+  if (started) begin
+    in_turn: assert (out_valid == (passes && (valid & owner) != '0));
+    taken_alone: assert (ready == (passes && out_ready ? owner : '0));
+    whole_packets: assert (whole || passes);
+    if (out_valid) begin
+      if (owner[0]) status_passes: assert (out_data == status_data && out_last == status_last);
+      if (owner[1]) reply_passes: assert (out_data == reply_data && out_last == reply_last);
+      if (owner[2]) record_passes: assert (out_data == record_data && out_last == record_last);
+      if (owner[3]) depth_passes: assert (out_data == depth_data && out_last == depth_last);
+      others_wait: cover (owner[3] && leaves && out_last && valid == '1 && !whole);
+      record_again: cover (owner[2] && leaves && out_last && behind_record && !whole);
     end
+    if (stalled && !rst) stable: assert (out_valid && out_data == stalled_data && out_last == stalled_last);
+    depth_first: cover (!passes && valid == 4'b1100 && turn[3]);
   end
-
-endmodule
-
-`default_nettype wire
+end

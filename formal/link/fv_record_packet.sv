@@ -5,76 +5,57 @@
 //
 // One bit of an arbitrary byte of each record is followed.
 
-`default_nettype none
+input logic [5:0] pick;
 
-module fv_record_packet (
-  input logic        clk,
-  input logic        rst,
-  input logic [31:0] s_event_tdata,
-  input logic        s_event_tvalid,
-  input logic        s_event_tlast,
-  input logic        record_ready,
-  input logic [5:0]  pick
+bind dut.u_records ram_check #(.Depth(Depth), .Covered(0)) u_check (.*);
+
+logic [3:0] word;
+protocol_record_packet u_protocol (
+  .clk, .rst, .s_event_tvalid, .s_event_tlast, .record_valid, .word, .holds(allowed)
 );
 
-  logic record_valid, record_last;
-  logic [7:0] record_data;
-  record_packet dut (.*);
-  bind fv_record_packet.dut.u_records ram_check #(.Depth(Depth), .Covered(0)) u_check (.*);
+logic [5:0] watched, place;  // place: bytes of the packet that were taken
+logic [1:0] silent;
+logic [7:0] stalled_data;
+logic came, came_next, waits, waits_bit, sent_bit, sending, leaves, ends, stalled, was_reset;
+assign leaves = record_valid & record_ready;
+assign ends = s_event_tvalid & s_event_tlast;
+assign sending = place != '0;
+assign came_next = s_event_tvalid && word == watched[5:2] ? s_event_tdata[{watched[1:0], 3'd0}] : came;
+always_comb assume (pick < 6'd48);
 
-  logic allowed, started;
-  logic [3:0] word;
-  protocol_record_packet u_protocol (
-    .clk, .rst, .s_event_tvalid, .s_event_tlast, .record_valid, .word, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-
-  logic [5:0] watched, place;  // place: bytes of the packet that were taken
-  logic [1:0] silent;
-  logic [7:0] stalled_data;
-  logic came, came_next, waits, waits_bit, sent_bit, sending, leaves, ends, stalled, was_reset;
-  assign leaves = record_valid & record_ready;
-  assign ends = s_event_tvalid & s_event_tlast;
-  assign sending = place != '0;
-  assign came_next = s_event_tvalid && word == watched[5:2] ? s_event_tdata[{watched[1:0], 3'd0}] : came;
-  always_comb assume (pick < 6'd48);
-
-  always_ff @(posedge clk) begin
-    was_reset <= rst;
-    if (!started) watched <= pick;
-    came <= came_next;
-    if (ends) waits_bit <= came_next;
-    if (leaves && !sending) sent_bit <= waits_bit;
-    if (leaves) place <= record_last ? '0 : place + 6'd1;
-    waits <= ends | (waits & ~(leaves & ~sending)
-        & ~(s_event_tvalid & word == '0 & sending & ~(leaves & record_last)));
-    silent <= record_valid | ~sending ? '0 : silent + 2'd1;
-    stalled <= record_valid & ~record_ready;
-    stalled_data <= record_data;
-    if (rst) begin
-      place <= '0;
-      waits <= 1'b0;
-      silent <= '0;
-      stalled <= 1'b0;
-    end
+always_ff @(posedge clk) begin
+  was_reset <= rst;
+  if (!started) watched <= pick;
+  came <= came_next;
+  if (ends) waits_bit <= came_next;
+  if (leaves && !sending) sent_bit <= waits_bit;
+  if (leaves) place <= record_last ? '0 : place + 6'd1;
+  waits <= ends | (waits & ~(leaves & ~sending)
+      & ~(s_event_tvalid & word == '0 & sending & ~(leaves & record_last)));
+  silent <= record_valid | ~sending ? '0 : silent + 2'd1;
+  stalled <= record_valid & ~record_ready;
+  stalled_data <= record_data;
+  if (rst) begin
+    place <= '0;
+    waits <= 1'b0;
+    silent <= '0;
+    stalled <= 1'b0;
   end
+end
 
-  always_comb begin
-    if (started && !rst) begin
-      if (was_reset) quiet: assert (!record_valid);
-      if (!sending) newest: assert (record_valid == waits);
-      if (stalled) stable: assert (record_valid && record_data == stalled_data);
-      if (record_valid) begin
-        last_of_packet: assert (record_last == (place == 6'd48));
-        if (!sending) kind: assert (record_data == 8'h99);
-        if (place == watched + 6'd1) as_it_was: assert (record_data[0] == sent_bit);
-      end
-      in_time: assert (silent <= 2'd2);
-      another: cover (record_valid && sending && waits);
-      second_word: cover (leaves && place == 6'd5);
+always_comb begin
+  if (started && !rst) begin
+    if (was_reset) quiet: assert (!record_valid);
+    if (!sending) newest: assert (record_valid == waits);
+    if (stalled) stable: assert (record_valid && record_data == stalled_data);
+    if (record_valid) begin
+      last_of_packet: assert (record_last == (place == 6'd48));
+      if (!sending) kind: assert (record_data == 8'h99);
+      if (place == watched + 6'd1) as_it_was: assert (record_data[0] == sent_bit);
     end
+    in_time: assert (silent <= 2'd2);
+    another: cover (record_valid && sending && waits);
+    second_word: cover (leaves && place == 6'd5);
   end
-
-endmodule
-
-`default_nettype wire
+end

@@ -6,158 +6,124 @@
 // What comes out of the memory is free, but that a word stays until the next is read: td_ram is proven by itself. Here
 // each value read goes to the word of its access, and each word leaves from there.
 
-`default_nettype none
+parameter int AddressWidth = 4;
+parameter int Accesses = 2;
 
-module fv_register_access #(
-  parameter int AddressWidth = 4,
-  parameter int Accesses     = 2
-) (
-  input logic        clk,
-  input logic        rst,
-  input logic        forget,
-  input logic        request_valid,
-  input logic [7:0]  request_data,
-  input logic        request_last,
-  input logic        request_write,
-  input logic        m_axil_awready,
-  input logic        m_axil_wready,
-  input logic [1:0]  m_axil_bresp,
-  input logic        m_axil_bvalid,
-  input logic        m_axil_arready,
-  input logic [31:0] m_axil_rdata,
-  input logic [1:0]  m_axil_rresp,
-  input logic        m_axil_rvalid,
-  input logic        reply_ready
+protocol_register_access #(.Accesses(Accesses)) u_protocol (
+  .*, .holds(allowed), .counts_m_axil_awaddr(), .counts_m_axil_wdata(), .counts_m_axil_araddr(),
+  .counts_m_axil_bready(), .counts_m_axil_rready(), .counts_reply_data(), .counts_reply_last(), .counts()
 );
 
-  logic request_ready, m_axil_awvalid, m_axil_wvalid, m_axil_bready, m_axil_arvalid, m_axil_rready;
-  logic reply_valid, reply_last;
-  logic [AddressWidth-1:0] m_axil_awaddr, m_axil_araddr;
-  logic [31:0] m_axil_wdata;
-  logic [7:0] reply_data;
-  register_access #(.AddressWidth(AddressWidth), .Accesses(Accesses)) dut (.*);
+// A request as it comes.
+logic takes, begun, write, known, idle_request, same, closed;
+logic [7:0] number;
+logic [2:0] place;
+logic [15:0] address;
+logic [31:0] value;
+// due: an access has come whole. open: it is offered, or waits for its answer.
+logic due, open, address_left, data_left, read_left, beyond, answered, refused;
+logic [7:0] done;
+logic [9:0] sent, size;
+assign takes = request_valid & request_ready;
+assign same = known & request_write == write & request_data == number;
+assign beyond = address >= 16'(1 << AddressWidth);
+assign answered = (m_axil_bvalid & m_axil_bready) | (m_axil_rvalid & m_axil_rready);
+assign refused = write ? m_axil_bresp != '0 : m_axil_rresp != '0;
+assign size = write ? 10'd3 : 10'd3 + 10'(done) * 10'd4;
 
-  logic allowed, started;
-  protocol_register_access #(.Accesses(Accesses)) u_protocol (
-    .*, .holds(allowed), .counts_m_axil_awaddr(), .counts_m_axil_wdata(), .counts_m_axil_araddr(),
-    .counts_m_axil_bready(), .counts_m_axil_rready(), .counts_reply_data(), .counts_reply_last(), .counts()
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
+logic stalled, stalled_last, replies, was_read;
+logic [7:0] stalled_data, word_read;
+logic [9:0] value_byte;  // place of the next byte among the values
+logic [31:0] word_before;
+assign replies = closed & ~due & ~open;
+assign value_byte = sent - 10'd3;
 
-  // A request as it comes.
-  logic takes, begun, write, known, idle_request, same, closed;
-  logic [7:0] number;
-  logic [2:0] place;
-  logic [15:0] address;
-  logic [31:0] value;
-  // due: an access has come whole. open: it is offered, or waits for its answer.
-  logic due, open, address_left, data_left, read_left, beyond, answered, refused;
-  logic [7:0] done;
-  logic [9:0] sent, size;
-  assign takes = request_valid & request_ready;
-  assign same = known & request_write == write & request_data == number;
-  assign beyond = address >= 16'(1 << AddressWidth);
-  assign answered = (m_axil_bvalid & m_axil_bready) | (m_axil_rvalid & m_axil_rready);
-  assign refused = write ? m_axil_bresp != '0 : m_axil_rresp != '0;
-  assign size = write ? 10'd3 : 10'd3 + 10'(done) * 10'd4;
-
-  logic stalled, stalled_last, replies, was_read;
-  logic [7:0] stalled_data, word_read;
-  logic [9:0] value_byte;  // place of the next byte among the values
-  logic [31:0] word_before;
-  assign replies = closed & ~due & ~open;
-  assign value_byte = sent - 10'd3;
-
-  always_ff @(posedge clk) begin
-    due <= 1'b0;
-    if (takes) begin
-      begun <= ~request_last;
-      closed <= request_last;
-      if (!begun) begin
+always_ff @(posedge clk) begin
+  due <= 1'b0;
+  if (takes) begin
+    begun <= ~request_last;
+    closed <= request_last;
+    if (!begun) begin
+      place <= '0;
+      known <= 1'b1;
+      write <= request_write;
+      number <= request_data;
+      idle_request <= same;
+      if (!same) done <= '0;
+    end else begin
+      if (place == 3'd0) address[7:0] <= request_data;
+      if (place == 3'd1) address[15:8] <= request_data;
+      for (int n = 0; n < 4; n++) if (32'(place) == n + 2) value[8*n+:8] <= request_data;
+      place <= place + 3'd1;
+      if (place == (write ? 3'd5 : 3'd1)) begin
         place <= '0;
-        known <= 1'b1;
-        write <= request_write;
-        number <= request_data;
-        idle_request <= same;
-        if (!same) done <= '0;
-      end else begin
-        if (place == 3'd0) address[7:0] <= request_data;
-        if (place == 3'd1) address[15:8] <= request_data;
-        for (int n = 0; n < 4; n++) if (32'(place) == n + 2) value[8*n+:8] <= request_data;
-        place <= place + 3'd1;
-        if (place == (write ? 3'd5 : 3'd1)) begin
-          place <= '0;
-          due <= ~idle_request;
-        end
+        due <= ~idle_request;
       end
     end
-    if (due) begin
-      if (beyond) idle_request <= 1'b1;
-      open <= ~beyond;
-    end
-    if (m_axil_awready) address_left <= 1'b0;
-    if (m_axil_wready) data_left <= 1'b0;
-    if (m_axil_arready) read_left <= 1'b0;
-    if (due) {address_left, data_left, read_left} <= beyond ? '0 : {write, write, !write};
-    if (answered) begin
-      open <= 1'b0;
-      if (refused) idle_request <= 1'b1;
-      else done <= done + 8'd1;
-    end
-    if (reply_valid && reply_ready) begin
-      sent <= sent + 10'd1;
-      if (reply_last) begin
-        sent <= '0;
-        closed <= 1'b0;
-      end
-    end
-    was_read <= dut.u_values.read_en;
-    word_before <= dut.word;
-    if (dut.u_values.read_en) word_read <= 8'(dut.u_values.read_address);
-    stalled <= reply_valid & ~reply_ready;
-    {stalled_data, stalled_last} <= {reply_data, reply_last};
-    if (forget) known <= 1'b0;
-    if (rst) begin
-      {begun, known, closed, due, open, address_left, data_left, read_left, stalled} <= '0;
+  end
+  if (due) begin
+    if (beyond) idle_request <= 1'b1;
+    open <= ~beyond;
+  end
+  if (m_axil_awready) address_left <= 1'b0;
+  if (m_axil_wready) data_left <= 1'b0;
+  if (m_axil_arready) read_left <= 1'b0;
+  if (due) {address_left, data_left, read_left} <= beyond ? '0 : {write, write, !write};
+  if (answered) begin
+    open <= 1'b0;
+    if (refused) idle_request <= 1'b1;
+    else done <= done + 8'd1;
+  end
+  if (reply_valid && reply_ready) begin
+    sent <= sent + 10'd1;
+    if (reply_last) begin
       sent <= '0;
+      closed <= 1'b0;
     end
   end
-  always_comb if (!was_read) assume (dut.word == word_before);
-
-  always_comb begin
-    if (started) begin
-      waits_for_its_end: assert (request_ready == (!due && !open && !closed));
-      offered_in_its_clock: assert ({m_axil_awvalid, m_axil_wvalid, m_axil_arvalid}
-          == {address_left, data_left, read_left});
-      answer_taken: assert ({m_axil_bready, m_axil_rready} == {open && write, open && !write});
-      if (m_axil_awvalid) its_own_write: assert (16'(m_axil_awaddr) == address);
-      if (m_axil_wvalid) its_own_value: assert (m_axil_wdata == value);
-      if (m_axil_arvalid) its_own_read: assert (16'(m_axil_araddr) == address);
-      reply_in_its_clock: assert (reply_valid == replies);
-      if (reply_valid) begin
-        as_long_as_its_values: assert (reply_last == (sent == size - 10'd1));
-        if (sent == 10'd0) its_kind: assert (reply_data == (write ? 8'h84 : 8'h83));
-        if (sent == 10'd1) its_number: assert (reply_data == number);
-        if (sent == 10'd2) accesses_done: assert (reply_data == done);
-        if (sent > 10'd2) begin
-          value_of_its_access: assert (word_read == value_byte[9:2]);
-          byte_of_its_value: assert (reply_data == 8'(dut.word >> {value_byte[1:0], 3'd0}));
-        end
-      end
-      values_kept: assert (dut.u_values.write_en == (m_axil_rvalid && m_axil_rready));
-      if (dut.u_values.write_en) begin
-        word_of_its_access: assert (8'(dut.u_values.write_address) == done && dut.u_values.write_data == m_axil_rdata);
-      end
-      if (stalled) stable: assert (reply_valid && reply_data == stalled_data && reply_last == stalled_last);
-
-      some_refused: cover (reply_last && reply_valid && idle_request && done == 8'd1 && write);
-      longest: cover (reply_last && reply_valid && done == 8'(Accesses) && !write);
-      repeated: cover (takes && !begun && same && done == 8'd1);
-    end
+  was_read <= dut.u_values.read_en;
+  word_before <= dut.word;
+  if (dut.u_values.read_en) word_read <= 8'(dut.u_values.read_address);
+  stalled <= reply_valid & ~reply_ready;
+  {stalled_data, stalled_last} <= {reply_data, reply_last};
+  if (forget) known <= 1'b0;
+  if (rst) begin
+    {begun, known, closed, due, open, address_left, data_left, read_left, stalled} <= '0;
+    sent <= '0;
   end
+end
+always_comb if (!was_read) assume (dut.word == word_before);
 
-  bind fv_register_access.dut.u_values ram_check #(.Depth(Depth)) u_check (.*);
+always_comb begin
+  if (started) begin
+    waits_for_its_end: assert (request_ready == (!due && !open && !closed));
+    offered_in_its_clock: assert ({m_axil_awvalid, m_axil_wvalid, m_axil_arvalid}
+        == {address_left, data_left, read_left});
+    answer_taken: assert ({m_axil_bready, m_axil_rready} == {open && write, open && !write});
+    if (m_axil_awvalid) its_own_write: assert (16'(m_axil_awaddr) == address);
+    if (m_axil_wvalid) its_own_value: assert (m_axil_wdata == value);
+    if (m_axil_arvalid) its_own_read: assert (16'(m_axil_araddr) == address);
+    reply_in_its_clock: assert (reply_valid == replies);
+    if (reply_valid) begin
+      as_long_as_its_values: assert (reply_last == (sent == size - 10'd1));
+      if (sent == 10'd0) its_kind: assert (reply_data == (write ? 8'h84 : 8'h83));
+      if (sent == 10'd1) its_number: assert (reply_data == number);
+      if (sent == 10'd2) accesses_done: assert (reply_data == done);
+      if (sent > 10'd2) begin
+        value_of_its_access: assert (word_read == value_byte[9:2]);
+        byte_of_its_value: assert (reply_data == 8'(dut.word >> {value_byte[1:0], 3'd0}));
+      end
+    end
+    values_kept: assert (dut.u_values.write_en == (m_axil_rvalid && m_axil_rready));
+    if (dut.u_values.write_en) begin
+      word_of_its_access: assert (8'(dut.u_values.write_address) == done && dut.u_values.write_data == m_axil_rdata);
+    end
+    if (stalled) stable: assert (reply_valid && reply_data == stalled_data && reply_last == stalled_last);
 
-endmodule
+    some_refused: cover (reply_last && reply_valid && idle_request && done == 8'd1 && write);
+    longest: cover (reply_last && reply_valid && done == 8'(Accesses) && !write);
+    repeated: cover (takes && !begun && same && done == 8'd1);
+  end
+end
 
-`default_nettype wire
+bind dut.u_values ram_check #(.Depth(Depth)) u_check (.*);

@@ -2,57 +2,36 @@
 // fv_status_packet: a packet after each reset, and one for the requests since the last one began, without a hole; its
 // fields are those of the clock in which its first byte is taken. Stable under stall.
 
-`default_nettype none
+parameter int FieldBytes = 3;
 
-module fv_status_packet #(
-  parameter int FieldBytes = 3
-) (
-  input logic                    clk,
-  input logic                    rst,
-  input logic                    request,
-  input logic [8*FieldBytes-1:0] fields,
-  input logic                    status_ready
-);
-
-  logic status_valid, status_last;
-  logic [7:0] status_data;
-  status_packet #(.FieldBytes(FieldBytes)) dut (.*);
-
-  logic started;
-  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
-
-  logic asked, was_reset, sending, leaves, stalled;
-  logic [4:0] sent;  // bytes of the packet
-  logic [8*FieldBytes-1:0] taken;
-  assign leaves = status_valid & status_ready;
-  always_ff @(posedge clk) begin
-    was_reset <= rst;
-    stalled <= status_valid & ~status_ready;
-    if (leaves) begin
-      sending <= 1'b1;
-      sent <= sent + 5'd1;
-      if (!sending) {asked, taken} <= {1'b0, fields};
-      if (sent == 5'(FieldBytes + 1)) {sending, sent} <= '0;
-    end
-    if (request || was_reset) asked <= 1'b1;
-    if (rst) {asked, sending, sent, stalled} <= '0;
+logic asked, was_reset, sending, leaves, stalled;
+logic [4:0] sent;  // bytes of the packet
+logic [8*FieldBytes-1:0] taken;
+assign leaves = status_valid & status_ready;
+always_ff @(posedge clk) begin
+  was_reset <= rst;
+  stalled <= status_valid & ~status_ready;
+  if (leaves) begin
+    sending <= 1'b1;
+    sent <= sent + 5'd1;
+    if (!sending) {asked, taken} <= {1'b0, fields};
+    if (sent == 5'(FieldBytes + 1)) {sending, sent} <= '0;
   end
+  if (request || was_reset) asked <= 1'b1;
+  if (rst) {asked, sending, sent, stalled} <= '0;
+end
 
-  always_comb begin
-    if (started) begin
-      one_for_each: assert (status_valid == (asked || sending));
-      if (stalled) stays: assert (status_valid);
-      if (status_valid) begin
-        whole: assert (status_last == (sent == 5'(FieldBytes + 1)));
-        if (sent == 5'd0) its_kind: assert (status_data == 8'h81);
-        if (sent == 5'd1) the_version: assert (status_data == 8'd1);
-        if (sent > 5'd1) fields_as_taken: assert (status_data == 8'(taken >> {sent - 5'd2, 3'd0}));
-      end
-      after_reset: cover (status_valid && status_last && stalled && asked);
-      asked_as_it_begins: cover (leaves && !sending && request);
+always_comb begin
+  if (started) begin
+    one_for_each: assert (status_valid == (asked || sending));
+    if (stalled) stays: assert (status_valid);
+    if (status_valid) begin
+      whole: assert (status_last == (sent == 5'(FieldBytes + 1)));
+      if (sent == 5'd0) its_kind: assert (status_data == 8'h81);
+      if (sent == 5'd1) the_version: assert (status_data == 8'd1);
+      if (sent > 5'd1) fields_as_taken: assert (status_data == 8'(taken >> {sent - 5'd2, 3'd0}));
     end
+    after_reset: cover (status_valid && status_last && stalled && asked);
+    asked_as_it_begins: cover (leaves && !sending && request);
   end
-
-endmodule
-
-`default_nettype wire
+end

@@ -5,68 +5,49 @@
 //
 // The specification counts the clocks since the line fell. It looks at the line 3 clocks later, as the core does.
 
-`default_nettype none
+parameter int Divider = 4;
 
-module fv_uart_receive #(
-  parameter int Divider = 4
-) (
-  input logic clk,
-  input logic rst,
-  input logic line
-);
+localparam int Half = Divider / 2;
+localparam int Stop = Half + 9 * Divider;  // clocks from the fall to the middle of the stop bit
 
-  localparam int Half = Divider / 2;
-  localparam int Stop = Half + 9 * Divider;  // clocks from the fall to the middle of the stop bit
-
-  logic out_valid, broken;
-  logic [7:0] out_data;
-  uart_receive #(.Divider(Divider)) dut (.*);
-
-  logic started;
-  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
-
-  logic [2:0] past;     // levels of the last clocks
-  logic [1:0] seen = '0;
-  logic level, may_begin, coming, middle, byte_due, broken_due;
-  logic [7:0] age;      // clocks since the line fell
-  logic [8:0] levels;   // of the bits so far, the newest highest
-  logic [7:0] byte_then;
-  assign level = dut.level;
-  assign middle = coming && age % 8'(Divider) == 8'(Half);
-  always_ff @(posedge clk) begin
-    past <= {past[1:0], line};
-    if (seen != 2'd3) seen <= seen + 2'd1;
-    {byte_due, broken_due} <= '0;
-    age <= age + 8'd1;
-    if (!coming) begin
-      coming <= may_begin & ~level;
-      age <= 8'd1;
-      may_begin <= may_begin | level;
-    end
-    if (middle) begin
-      levels <= {level, levels[8:1]};
-      if (age == 8'(Half) && level) coming <= 1'b0;
-      if (age == 8'(Stop)) begin
-        coming <= 1'b0;
-        may_begin <= level;
-        {byte_due, broken_due} <= {level, !level};
-        byte_then <= levels[8:1];
-      end
-    end
-    if (rst) {coming, may_begin, byte_due, broken_due} <= '0;
+logic [2:0] past;     // levels of the last clocks
+logic [1:0] seen = '0;
+logic level, may_begin, coming, middle, byte_due, broken_due;
+logic [7:0] age;      // clocks since the line fell
+logic [8:0] levels;   // of the bits so far, the newest highest
+logic [7:0] byte_then;
+assign level = dut.level;
+assign middle = coming && age % 8'(Divider) == 8'(Half);
+always_ff @(posedge clk) begin
+  past <= {past[1:0], line};
+  if (seen != 2'd3) seen <= seen + 2'd1;
+  {byte_due, broken_due} <= '0;
+  age <= age + 8'd1;
+  if (!coming) begin
+    coming <= may_begin & ~level;
+    age <= 8'd1;
+    may_begin <= may_begin | level;
   end
-
-  always_comb begin
-    if (seen == 2'd3) line_of_3_clocks_before: assert (level == past[2]);
-    if (started) begin
-      byte_in_its_clock: assert (out_valid == byte_due);
-      broken_in_its_clock: assert (broken == broken_due);
-      if (out_valid) its_levels: assert (out_data == byte_then);
-      any_byte: cover (out_valid && out_data == 8'hA5);
-      long_break: cover (broken && !level);
+  if (middle) begin
+    levels <= {level, levels[8:1]};
+    if (age == 8'(Half) && level) coming <= 1'b0;
+    if (age == 8'(Stop)) begin
+      coming <= 1'b0;
+      may_begin <= level;
+      {byte_due, broken_due} <= {level, !level};
+      byte_then <= levels[8:1];
     end
   end
+  if (rst) {coming, may_begin, byte_due, broken_due} <= '0;
+end
 
-endmodule
-
-`default_nettype wire
+always_comb begin
+  if (seen == 2'd3) line_of_3_clocks_before: assert (level == past[2]);
+  if (started) begin
+    byte_in_its_clock: assert (out_valid == byte_due);
+    broken_in_its_clock: assert (broken == broken_due);
+    if (out_valid) its_levels: assert (out_data == byte_then);
+    any_byte: cover (out_valid && out_data == 8'hA5);
+    long_break: cover (broken && !level);
+  end
+end

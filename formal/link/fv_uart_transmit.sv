@@ -4,46 +4,28 @@
 //
 // The specification counts the clocks since the byte was taken.
 
-`default_nettype none
+parameter int Divider = 4;
 
-module fv_uart_transmit #(
-  parameter int Divider = 4
-) (
-  input logic       clk,
-  input logic       rst,
-  input logic       in_valid,
-  input logic [7:0] in_data
-);
+protocol_uart_transmit u_protocol (.*, .holds(allowed), .counts());
 
-  logic in_ready, line;
-  uart_transmit #(.Divider(Divider)) dut (.*);
-
-  logic allowed, started;
-  protocol_uart_transmit u_protocol (.*, .holds(allowed), .counts());
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-
-  logic sending;
-  logic [7:0] age;   // clocks
-  logic [9:0] bits;  // of the byte, the first lowest
-  always_ff @(posedge clk) begin
-    age <= age + 8'd1;
-    if (age == 8'(10 * Divider - 1)) sending <= 1'b0;
-    if (!sending) begin
-      sending <= in_valid;
-      age <= '0;
-      bits <= {1'b1, in_data, 1'b0};
-    end
-    if (rst) sending <= 1'b0;
+logic sending;
+logic [7:0] age;   // clocks
+logic [9:0] bits;  // of the byte, the first lowest
+always_ff @(posedge clk) begin
+  age <= age + 8'd1;
+  if (age == 8'(10 * Divider - 1)) sending <= 1'b0;
+  if (!sending) begin
+    sending <= in_valid;
+    age <= '0;
+    bits <= {1'b1, in_data, 1'b0};
   end
+  if (rst) sending <= 1'b0;
+end
 
-  always_comb begin
-    if (started) begin
-      taken_when_free: assert (in_ready == !sending);
-      bit_of_its_time: assert (line == (sending ? bits[4'(age / 8'(Divider))] : 1'b1));
-      at_once: cover (in_valid && in_ready && age == 8'(10 * Divider));
-    end
+always_comb begin
+  if (started) begin
+    taken_when_free: assert (in_ready == !sending);
+    bit_of_its_time: assert (line == (sending ? bits[4'(age / 8'(Divider))] : 1'b1));
+    at_once: cover (in_valid && in_ready && age == 8'(10 * Divider));
   end
-
-endmodule
-
-`default_nettype wire
+end

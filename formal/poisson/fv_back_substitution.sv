@@ -4,108 +4,87 @@
 // frame before, and none from power-up, enters: the specification has none, and the memory begins with any contents.
 // Rounding is proven of td_round_saturate.
 
-`default_nettype none
+parameter int Rows = 3;
+parameter int Columns = 8;
+parameter int Words = 16;
+localparam int PositionWidth = $clog2(Columns);
+localparam int InWidth = 2;
+localparam int Width = 3;
+localparam int CoeffWidth = 3;
+localparam int Drop = -1;
+localparam int SettledWidth = 2;
+localparam int TableWords = Words;
+input logic [PositionWidth-1:0] chosen;
 
-module fv_back_substitution #(
-  parameter int Rows    = 3,
-  parameter int Columns = 8,
-  parameter int Words   = 16,
-  localparam int PositionWidth = $clog2(Columns),
-  localparam int RowWidth = $clog2(Rows + 1)
-) (
-  input logic                     clk,
-  input logic                     rst,
-  input logic                     en,
-  input logic                     in_start,
-  input logic                     in_frame_start,
-  input logic signed [1:0]        in_data,
-  input logic [PositionWidth-1:0] chosen
+localparam int RowWidth = $clog2(Rows + 1);
+localparam int Latency = 8;
+localparam int LastShiftWidth = 1;
+localparam int Aligned = InWidth - Drop + CoeffWidth - 1;
+localparam int ExactWidth = (Aligned > Width + CoeffWidth ? Aligned : Width + CoeffWidth) + 1;
+
+logic active, last_row, present;  // present: the word of the column
+logic [PositionWidth-1:0] position, column;  // column: chosen in the first clock, then constant
+logic [RowWidth-1:0] row;
+protocol_bursts #(.Columns(Columns), .Rows(Rows)) u_protocol (
+  .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row, .holds(allowed)
+);
+assign present = active & (position == column);
+
+// The last row comes first; there the coefficient meets zero, so its shift does not matter.
+logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Columns];
+initial $readmemh("square.hex", square);
+
+// The recursion: a step in each clock in which the word followed is so old, as the multiplier takes it. Bursts are as
+// long as the way, so the next word of the column finds the last one done.
+logic [Latency-1:0] start_q, frame_start_q;
+logic [Latency-1:0] old;  // old[n]: a word of the column was present n + 1 enabled clocks ago
+logic signed [InWidth-1:0] d, d_q;
+logic signed [CoeffWidth-1:0] c, c_q;
+logic [LastShiftWidth-1:0] unused_shift;
+logic signed [Width-1:0] below, below_q, z;  // below: z of the row below
+logic signed [Width+CoeffWidth-1:0] product;
+logic signed [ExactWidth-1:0] exact;
+logic unused_clipped, of_last_row, of_first_row, of_first_row_q;
+td_round_saturate #(.InWidth(ExactWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_round (
+  .in(exact), .out(z), .clipped(unused_clipped)
 );
 
-  localparam int Latency = 8;
-  localparam int InWidth = 2;
-  localparam int Width = 3;
-  localparam int CoeffWidth = 3;
-  localparam int Drop = -1;
-  localparam int SettledWidth = 2;
-  localparam int LastShiftWidth = 1;
-  localparam int Aligned = InWidth - Drop + CoeffWidth - 1;
-  localparam int ExactWidth = (Aligned > Width + CoeffWidth ? Aligned : Width + CoeffWidth) + 1;
-
-  logic allowed, started, active, last_row, present;  // present: the word of the column
-  logic [PositionWidth-1:0] position, column;  // column: chosen in the first clock, then constant
-  logic [RowWidth-1:0] row;
-  logic out_start, out_frame_start, saturations;
-  logic signed [Width-1:0] out_data;
-  back_substitution #(
-    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .InWidth(InWidth), .Drop(Drop),
-    .TableWords(Words), .SettledWidth(SettledWidth)
-  ) dut (.*);
-  protocol_bursts #(.Columns(Columns), .Rows(Rows)) u_protocol (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-  assign present = active & (position == column);
-
-  // The last row comes first; there the coefficient meets zero, so its shift does not matter.
-  logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Columns];
-  initial $readmemh("square.hex", square);
-
-  // The recursion: a step in each clock in which the word followed is so old, as the multiplier takes it. Bursts are as
-  // long as the way, so the next word of the column finds the last one done.
-  logic [Latency-1:0] start_q, frame_start_q;
-  logic [Latency-1:0] old;  // old[n]: a word of the column was present n + 1 enabled clocks ago
-  logic signed [InWidth-1:0] d, d_q;
-  logic signed [CoeffWidth-1:0] c, c_q;
-  logic [LastShiftWidth-1:0] unused_shift;
-  logic signed [Width-1:0] below, below_q, z;  // below: z of the row below
-  logic signed [Width+CoeffWidth-1:0] product;
-  logic signed [ExactWidth-1:0] exact;
-  logic unused_clipped, of_last_row, of_first_row, of_first_row_q;
-  td_round_saturate #(.InWidth(ExactWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_round (
-    .in(exact), .out(z), .clipped(unused_clipped)
-  );
-
-  logic held;
-  kept #(.Width(Width + 2)) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_data}), .held);
-  always_ff @(posedge clk) begin
-    if (!started) column <= chosen;
-    if (en) begin
-      start_q <= Latency'({start_q, in_start});
-      frame_start_q <= Latency'({frame_start_q, in_frame_start});
-      old <= Latency'({old, present});
-      if (present) begin
-        d <= in_data;
-        {unused_shift, c} <= square[(Rows - 1 - 32'(row)) * Columns + 32'(column)];
-        of_last_row <= row == '0;
-        of_first_row <= row == RowWidth'(Rows - 1);
-      end
-      if (old[3]) begin
-        below_q <= of_last_row ? '0 : below;
-        {d_q, c_q, of_first_row_q} <= {d, c, of_first_row};
-      end
-      if (old[4]) product <= below_q * c_q;
-      if (old[5]) exact <= (ExactWidth'(d_q) <<< (CoeffWidth - 1 - Drop)) - ExactWidth'(product);
-      if (old[6]) below <= z;
+logic held;
+kept #(.Width(Width + 2)) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_data}), .held);
+always_ff @(posedge clk) begin
+  if (!started) column <= chosen;
+  if (en) begin
+    start_q <= Latency'({start_q, in_start});
+    frame_start_q <= Latency'({frame_start_q, in_frame_start});
+    old <= Latency'({old, present});
+    if (present) begin
+      d <= in_data;
+      {unused_shift, c} <= square[(Rows - 1 - 32'(row)) * Columns + 32'(column)];
+      of_last_row <= row == '0;
+      of_first_row <= row == RowWidth'(Rows - 1);
     end
-    if (rst) begin
-      start_q <= '0;
-      frame_start_q <= '0;
-      old <= '0;
+    if (old[3]) begin
+      below_q <= of_last_row ? '0 : below;
+      {d_q, c_q, of_first_row_q} <= {d, c, of_first_row};
     end
+    if (old[4]) product <= below_q * c_q;
+    if (old[5]) exact <= (ExactWidth'(d_q) <<< (CoeffWidth - 1 - Drop)) - ExactWidth'(product);
+    if (old[6]) below <= z;
   end
-
-  always_comb begin
-    if (started) begin
-      start_when_due: assert (out_start == start_q[Latency-1]);
-      frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
-      if (old[Latency-1]) substituted: assert (out_data == below);
-      last_out: cover (old[Latency-1] && of_first_row_q && below != '0 && held);
-    end
+  if (rst) begin
+    start_q <= '0;
+    frame_start_q <= '0;
+    old <= '0;
   end
+end
 
-  bind td_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
+always_comb begin
+  if (started) begin
+    start_when_due: assert (out_start == start_q[Latency-1]);
+    frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
+    if (old[Latency-1]) substituted: assert (out_data == below);
+    last_out: cover (old[Latency-1] && of_first_row_q && below != '0 && held);
+  end
+end
 
-endmodule
-
-`default_nettype wire
+bind td_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);

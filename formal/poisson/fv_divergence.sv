@@ -6,82 +6,60 @@
 // In the first row the line is read before it has been written; that what is read there changes nothing is shown by f
 // itself, with a memory of any contents.
 
-`default_nettype none
+parameter int Width = 2;
+parameter int Columns = 4;
+parameter int Neumann = 0;
+localparam int ColumnWidth = $clog2(Columns);
+input logic [ColumnWidth-1:0] chosen;
 
-module fv_divergence #(
-  parameter int Width   = 2,
-  parameter int Columns = 4,
-  parameter int Neumann = 0,
-  localparam int ColumnWidth = $clog2(Columns)
-) (
-  input logic                    clk,
-  input logic                    rst,
-  input logic                    en,
-  input logic                    in_valid,
-  input logic [3:0]              in_position,
-  input logic signed [Width-1:0] in_gx,
-  input logic signed [Width-1:0] in_gy,
-  input logic [ColumnWidth-1:0]  chosen
+logic [ColumnWidth-1:0] column, watched;  // watched: chosen in the first clock, then constant
+logic first_row, first_column, last_row, last_column;
+assign {last_column, last_row, first_column, first_row} = in_position;
+
+protocol_divergence #(.Columns(Columns)) u_protocol (
+  .clk, .rst, .en, .in_valid, .in_position, .out_valid, .column, .holds(allowed)
 );
 
-  localparam int OutWidth = Width + 2;
+int gx, gy, left, above;
+assign gx = Neumann != 0 && last_column ? 0 : 32'(in_gx);
+assign gy = Neumann != 0 && last_row ? 0 : 32'(in_gy);
+logic signed [Width-1:0] gx_before, gy_before;
+assign left = first_column ? 0 : 32'(gx_before);
+assign above = first_row ? 0 : 32'(gy_before);
+logic signed [OutWidth-1:0] f, f_q, f_q2;
+assign f = OutWidth'(gx - left + gy - above);
 
-  logic [ColumnWidth-1:0] column, watched;  // watched: chosen in the first clock, then constant
-  logic allowed, started, first_row, first_column, last_row, last_column;
-  assign {last_column, last_row, first_column, first_row} = in_position;
-
-  logic out_valid, out_frame_start;
-  logic signed [OutWidth-1:0] out_data;
-  divergence #(.Width(Width), .Columns(Columns), .Neumann(Neumann)) dut (.*);
-  protocol_divergence #(.Columns(Columns)) u_protocol (
-    .clk, .rst, .en, .in_valid, .in_position, .out_valid, .column, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-
-  int gx, gy, left, above;
-  assign gx = Neumann != 0 && last_column ? 0 : 32'(in_gx);
-  assign gy = Neumann != 0 && last_row ? 0 : 32'(in_gy);
-  logic signed [Width-1:0] gx_before, gy_before;
-  assign left = first_column ? 0 : 32'(gx_before);
-  assign above = first_row ? 0 : 32'(gy_before);
-  logic signed [OutWidth-1:0] f, f_q, f_q2;
-  assign f = OutWidth'(gx - left + gy - above);
-
-  logic [1:0] valid, frame_start, of_column;
-  logic held;
-  kept #(.Width(OutWidth + 2)) u_kept (.clk, .rst, .en, .out({out_valid, out_frame_start, out_data}), .held);
-  always_ff @(posedge clk) begin
-    if (!started) watched <= chosen;
-    if (en) begin
-      if (in_valid) begin
-        gx_before <= Width'(gx);
-        if (column == watched) gy_before <= Width'(gy);
-      end
-      valid <= {valid[0], in_valid};
-      frame_start <= {frame_start[0], in_valid & first_row & first_column};
-      of_column <= {of_column[0], in_valid & (column == watched)};
-      f_q <= f;
-      f_q2 <= f_q;
+logic [1:0] valid, frame_start, of_column;
+logic held;
+kept #(.Width(OutWidth + 2)) u_kept (.clk, .rst, .en, .out({out_valid, out_frame_start, out_data}), .held);
+always_ff @(posedge clk) begin
+  if (!started) watched <= chosen;
+  if (en) begin
+    if (in_valid) begin
+      gx_before <= Width'(gx);
+      if (column == watched) gy_before <= Width'(gy);
     end
-    if (rst) begin
-      valid <= '0;
-      frame_start <= '0;
-      of_column <= '0;
-    end
+    valid <= {valid[0], in_valid};
+    frame_start <= {frame_start[0], in_valid & first_row & first_column};
+    of_column <= {of_column[0], in_valid & (column == watched)};
+    f_q <= f;
+    f_q2 <= f_q;
   end
-
-  always_comb begin
-    if (started) begin
-      valid_when_due: assert (out_valid == valid[1]);
-      frame_start_when_due: assert (out_frame_start == frame_start[1]);
-      if (of_column[1]) difference: assert (out_data == f_q2);
-      largest: cover (of_column[1] && f_q2 == (Neumann != 0 ? OutWidth'(4) : OutWidth'(6)) && last_row);
-      first_of_second_frame: cover (of_column[1] && out_frame_start && held && first_row && watched == '0);
-    end
+  if (rst) begin
+    valid <= '0;
+    frame_start <= '0;
+    of_column <= '0;
   end
+end
 
-  bind fv_divergence.dut.u_line ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
+always_comb begin
+  if (started) begin
+    valid_when_due: assert (out_valid == valid[1]);
+    frame_start_when_due: assert (out_frame_start == frame_start[1]);
+    if (of_column[1]) difference: assert (out_data == f_q2);
+    largest: cover (of_column[1] && f_q2 == (Neumann != 0 ? OutWidth'(4) : OutWidth'(6)) && last_row);
+    first_of_second_frame: cover (of_column[1] && out_frame_start && held && first_row && watched == '0);
+  end
+end
 
-endmodule
-
-`default_nettype wire
+bind dut.u_line ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);

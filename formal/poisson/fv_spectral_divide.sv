@@ -3,55 +3,40 @@
 // enabled clocks later; start and frame_start likewise; p counts from the frame's start. The data are 1, so that what
 // leaves is M 2^S of the ROM word; square.hex says which, for every p and t. Rounding is proven of td_round_saturate.
 
-`default_nettype none
+parameter int Columns = 4;
+localparam int Width = 10;
+localparam int CoeffWidth = 8;
+localparam int ShiftWidth = 1;
+localparam int Drop = 0;
+input logic pick;
 
-module fv_spectral_divide #(
-  parameter int Columns = 4,
-  localparam int PositionWidth = $clog2(Columns),
-  localparam int RowWidth = $clog2(Columns + 1)
-) (
-  input logic clk,
-  input logic rst,
-  input logic en,
-  input logic in_start,
-  input logic in_frame_start,
-  input logic pick
+localparam int PositionWidth = $clog2(Columns);
+localparam int RowWidth = $clog2(Columns + 1);
+localparam int Latency = 6;
+
+assign in_data = Width'(1);
+logic started, active;
+logic [PositionWidth-1:0] position;
+logic [RowWidth-1:0] row;
+
+logic [Width-1:0] square[Columns*Columns];
+initial $readmemh("square.hex", square);
+
+logic due, held;
+logic [Width-1:0] expected;
+follow_delay #(.Width(Width), .Latency(Latency)) u_follow (
+  .clk, .rst, .en, .pick(pick & active), .in(square[{row[PositionWidth-1:0], position}]), .due, .word(expected)
 );
-
-  localparam int Latency = 6;
-  localparam int Width = 10;
-
-  logic started, active;
-  logic [PositionWidth-1:0] position;
-  logic [RowWidth-1:0] row;
-  logic out_start, out_frame_start, saturations;
-  logic signed [Width-1:0] out_data;
-  spectral_divide #(
-    .Width(Width), .CoeffWidth(8), .Columns(Columns), .ShiftWidth(1), .Drop(0)
-  ) dut (.*, .in_data(Width'(1)));
-
-  logic [Width-1:0] square[Columns*Columns];
-  initial $readmemh("square.hex", square);
-
-  logic due, held;
-  logic [Width-1:0] expected;
-  follow_delay #(.Width(Width), .Latency(Latency)) u_follow (
-    .clk, .rst, .en, .pick(pick & active), .in(square[{row[PositionWidth-1:0], position}]), .due, .word(expected)
-  );
-  kept #(.Width(Width + 2)) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_data}), .held);
-  burst_timing #(.Columns(Columns), .Rows(Columns), .Latency(Latency)) u_timing (.*);
-  always_comb begin
-    if (started) begin
-      if (due) own_reciprocal: assert (out_data == $signed(expected));
-      none_clipped: assert (!saturations);
-      other_burst: cover (due && expected == square[Columns+1] && held);
-      if (Columns <= 4) begin  // as far as a trace of a whole frame is quick to find
-        last_of_frame: cover (due && expected == square[Columns*Columns-1]);
-        second_frame: cover (due && out_frame_start && expected == square[0] && held);
-      end
+kept #(.Width(Width + 2)) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_data}), .held);
+burst_timing #(.Columns(Columns), .Rows(Columns), .Latency(Latency)) u_timing (.*);
+always_comb begin
+  if (started) begin
+    if (due) own_reciprocal: assert (out_data == $signed(expected));
+    none_clipped: assert (!saturations);
+    other_burst: cover (due && expected == square[Columns+1] && held);
+    if (Columns <= 4) begin  // as far as a trace of a whole frame is quick to find
+      last_of_frame: cover (due && expected == square[Columns*Columns-1]);
+      second_frame: cover (due && out_frame_start && expected == square[0] && held);
     end
   end
-
-endmodule
-
-`default_nettype wire
+end

@@ -3,53 +3,31 @@
 // which says for every row and position which word that is: base + min(row, settled), in the last row one of its own
 // with its shift.
 
-`default_nettype none
+parameter int Rows = 6;
+parameter int Columns = 4;
+parameter int Words = 12;
+parameter int CoeffWidth = 5;
+parameter int SettledWidth = 3;
+parameter int LastShiftWidth = 2;
+input logic pick;
 
-module fv_thomas_table #(
-  parameter int Rows           = 6,
-  parameter int Columns        = 4,
-  parameter int Words          = 12,
-  parameter int CoeffWidth     = 5,
-  parameter int SettledWidth   = 3,
-  parameter int LastShiftWidth = 2,
-  localparam int PositionWidth = $clog2(Columns),
-  localparam int RowWidth = $clog2(Rows)
-) (
-  input logic                     clk,
-  input logic                     en,
-  input logic [PositionWidth-1:0] position,
-  input logic [RowWidth-1:0]      row,
-  input logic                     pick
+localparam int Latency = 5;
+
+logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Columns];
+initial $readmemh("square.hex", square);
+
+localparam int Width = LastShiftWidth + CoeffWidth;
+logic allowed, due, held;
+logic [Width-1:0] expected;
+protocol_thomas_table #(.Rows(Rows)) u_protocol (.clk, .en, .row, .holds(allowed));
+always_comb assume (allowed);
+follow_delay #(.Width(Width), .Latency(Latency)) u_follow (
+  .clk, .rst(1'b0), .en, .pick, .in(square[32'(row) * Columns + 32'(position)]), .due, .word(expected)
 );
+kept #(.Width(Width)) u_kept (.clk, .rst(1'b0), .en, .out({shift, coefficient}), .held);
 
-  localparam int Latency = 5;
-
-  logic signed [CoeffWidth-1:0] coefficient;
-  logic [LastShiftWidth-1:0] shift;
-  thomas_table #(
-    .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Words(Words), .SettledWidth(SettledWidth),
-    .LastShiftWidth(LastShiftWidth)
-  ) dut (.*);
-
-  logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Columns];
-  initial $readmemh("square.hex", square);
-
-  localparam int Width = LastShiftWidth + CoeffWidth;
-  logic allowed, due, held;
-  logic [Width-1:0] expected;
-  protocol_thomas_table #(.Rows(Rows)) u_protocol (.clk, .en, .row, .holds(allowed));
-  always_comb assume (allowed);
-  follow_delay #(.Width(Width), .Latency(Latency)) u_follow (
-    .clk, .rst(1'b0), .en, .pick, .in(square[32'(row) * Columns + 32'(position)]), .due, .word(expected)
-  );
-  kept #(.Width(Width)) u_kept (.clk, .rst(1'b0), .en, .out({shift, coefficient}), .held);
-
-  always_comb begin
-    if (due) own_coefficient: assert ({shift, coefficient} == expected);
-    inner: cover (due && shift == '0 && held);
-    last: cover (due && shift != '0 && held);
-  end
-
-endmodule
-
-`default_nettype wire
+always_comb begin
+  if (due) own_coefficient: assert ({shift, coefficient} == expected);
+  inner: cover (due && shift == '0 && held);
+  last: cover (due && shift != '0 && held);
+end

@@ -5,131 +5,107 @@
 // not count. No word of the frame before, and none from power-up, enters: the specification has none. Rounding is
 // proven of td_round_saturate.
 
-`default_nettype none
+parameter int Rows = 3;
+parameter int Columns = 4;
+parameter int Words = 2;
+parameter int Word = 0;  // the one followed
+parameter int TableWords = 4;
+localparam int Beats = Columns / Words;
+localparam int PositionWidth = $clog2(2 * Beats);
+localparam int InWidth = 2;
+localparam int Width = 3;
+localparam int CoeffWidth = 3;
+localparam int Drop = -1;
+localparam int SettledWidth = 3;
+input logic [PositionWidth-1:0] chosen;
 
-module fv_wide_substitution #(
-  parameter int Rows       = 3,
-  parameter int Columns    = 4,
-  parameter int Words      = 2,
-  parameter int Word       = 0,  // the one followed
-  parameter int TableWords = 4,
-  localparam int InWidth = 2,
-  localparam int Beats = Columns / Words,
-  localparam int PositionWidth = $clog2(2 * Beats)
-) (
-  input logic                     clk,
-  input logic                     rst,
-  input logic                     en,
-  input logic                     in_start,
-  input logic                     in_frame_start,
-  input logic                     in_alone,
-  input logic [Words*InWidth-1:0] in_data,
-  input logic [PositionWidth-1:0] chosen
+localparam int ToStart = 6;
+localparam int ToWords = 8;  // from a start to the first words out
+localparam int Aligned = InWidth - Drop + CoeffWidth - 1;
+localparam int ExactWidth = (Aligned > Width + CoeffWidth ? Aligned : Width + CoeffWidth) + 1;
+localparam int PairWidth = $clog2((Rows + 1) / 2 + 1);
+localparam int CountWidth = $clog2(Words + 1);
+
+logic active, present;  // present: the beat followed
+logic [PositionWidth-1:0] position, column;  // column: chosen in the first clock, then constant
+logic [PairWidth-1:0] pair;
+protocol_wide_pairs #(.Columns(Columns), .Words(Words), .Rows(Rows)) u_protocol (
+  .clk, .rst, .en, .in_start, .in_frame_start, .in_alone, .out_start, .out_alone, .active, .position, .pair,
+  .holds(allowed)
+);
+assign present = active & (position == column);
+
+logic [Words*CoeffWidth:0] square[Rows*Beats];
+initial $readmemh("square.hex", square);
+
+// The recursion: a step in each clock in which the beat followed is so old, as the multiplier takes it. A pair is as
+// long as the loop or longer, so the next beat of the column finds the last one done.
+logic [ToStart-1:0] start_q, frame_start_q, alone_q;
+logic [ToWords-1:0] old, active_q;  // old[n]: the beat of the column was present n + 1 enabled clocks ago
+logic [ToWords-1:0][PairWidth-1:0] pair_q;
+logic [31:0] row;
+logic [Words*CoeffWidth:0] line;
+logic signed [InWidth-1:0] e;
+logic signed [CoeffWidth-1:0] c;
+logic signed [Width-1:0] below, z, rounded;  // z of the row followed, below: of the one 2 rows below
+logic signed [Width+CoeffWidth-1:0] product;
+logic signed [ExactWidth-1:0] exact;
+logic clipped;
+assign row = Rows - 1 - 2 * 32'(pair_q[4]) - 32'(column[PositionWidth-1]);
+assign line = square[row*Beats+32'(column)%Beats];
+assign c = line[Word*CoeffWidth+:CoeffWidth];
+assign e = in_data[Word*InWidth+:InWidth];
+td_round_saturate #(.InWidth(ExactWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_round (
+  .in(exact), .out(rounded), .clipped
 );
 
-  localparam int ToStart = 6;
-  localparam int ToWords = 8;  // from a start to the first words out
-  localparam int Width = 3;
-  localparam int CoeffWidth = 3;
-  localparam int Drop = -1;
-  localparam int SettledWidth = 3;
-  localparam int Aligned = InWidth - Drop + CoeffWidth - 1;
-  localparam int ExactWidth = (Aligned > Width + CoeffWidth ? Aligned : Width + CoeffWidth) + 1;
-  localparam int PairWidth = $clog2((Rows + 1) / 2 + 1);
-  localparam int CountWidth = $clog2(Words + 1);
-
-  logic allowed, started, active, present;  // present: the beat followed
-  logic [PositionWidth-1:0] position, column;  // column: chosen in the first clock, then constant
-  logic [PairWidth-1:0] pair;
-  logic out_start, out_frame_start, out_alone;
-  logic [Words*Width-1:0] out_data;
-  logic [CountWidth-1:0] saturations;
-  wide_substitution #(
-    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Words(Words), .InWidth(InWidth),
-    .Drop(Drop), .TableWords(TableWords), .SettledWidth(SettledWidth)
-  ) dut (.*);
-  protocol_wide_pairs #(.Columns(Columns), .Words(Words), .Rows(Rows)) u_protocol (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_alone, .out_start, .out_alone, .active, .position, .pair,
-    .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-  assign present = active & (position == column);
-
-  logic [Words*CoeffWidth:0] square[Rows*Beats];
-  initial $readmemh("square.hex", square);
-
-  // The recursion: a step in each clock in which the beat followed is so old, as the multiplier takes it. A pair is as
-  // long as the loop or longer, so the next beat of the column finds the last one done.
-  logic [ToStart-1:0] start_q, frame_start_q, alone_q;
-  logic [ToWords-1:0] old, active_q;  // old[n]: the beat of the column was present n + 1 enabled clocks ago
-  logic [ToWords-1:0][PairWidth-1:0] pair_q;
-  logic [31:0] row;
-  logic [Words*CoeffWidth:0] line;
-  logic signed [InWidth-1:0] e;
-  logic signed [CoeffWidth-1:0] c;
-  logic signed [Width-1:0] below, z, rounded;  // z of the row followed, below: of the one 2 rows below
-  logic signed [Width+CoeffWidth-1:0] product;
-  logic signed [ExactWidth-1:0] exact;
-  logic clipped;
-  assign row = Rows - 1 - 2 * 32'(pair_q[4]) - 32'(column[PositionWidth-1]);
-  assign line = square[row*Beats+32'(column)%Beats];
-  assign c = line[Word*CoeffWidth+:CoeffWidth];
-  assign e = in_data[Word*InWidth+:InWidth];
-  td_round_saturate #(.InWidth(ExactWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_round (
-    .in(exact), .out(rounded), .clipped
-  );
-
-  logic held, followed, clip_due, counted;  // followed: the clip of the beat was decided in the clock before
-  logic [CountWidth-1:0] sum, sum_q;
-  logic none;  // no beat was in the rounding
-  kept #(.Width(Words * Width + 3)) u_kept (
-    .clk, .rst, .en, .out({out_start, out_frame_start, out_alone & out_start, out_data}), .held
-  );
-  always_comb begin
-    sum = '0;
-    for (int word = 0; word < Words; word++) sum = sum + CountWidth'(dut.clipped_q[word]);
+logic held, followed, clip_due, counted;  // followed: the clip of the beat was decided in the clock before
+logic [CountWidth-1:0] sum, sum_q;
+logic none;  // no beat was in the rounding
+kept #(.Width(Words * Width + 3)) u_kept (
+  .clk, .rst, .en, .out({out_start, out_frame_start, out_alone & out_start, out_data}), .held
+);
+always_comb begin
+  sum = '0;
+  for (int word = 0; word < Words; word++) sum = sum + CountWidth'(dut.clipped_q[word]);
+end
+always_ff @(posedge clk) begin
+  if (!started) column <= chosen;
+  if (en) begin
+    start_q <= {start_q[ToStart-2:0], in_start};
+    frame_start_q <= {frame_start_q[ToStart-2:0], in_frame_start};
+    alone_q <= {alone_q[ToStart-2:0], in_alone};
+    old <= {old[ToWords-2:0], present};
+    active_q <= {active_q[ToWords-2:0], active};
+    pair_q <= {pair_q[ToWords-2:0], pair};
+    if (old[3]) below <= pair_q[3] == '0 ? '0 : z;
+    if (old[4]) product <= below * c;
+    if (old[5]) exact <= (ExactWidth'(e) <<< (CoeffWidth - 1 - Drop)) - ExactWidth'(product);
+    if (old[6]) z <= rounded;
   end
-  always_ff @(posedge clk) begin
-    if (!started) column <= chosen;
-    if (en) begin
-      start_q <= {start_q[ToStart-2:0], in_start};
-      frame_start_q <= {frame_start_q[ToStart-2:0], in_frame_start};
-      alone_q <= {alone_q[ToStart-2:0], in_alone};
-      old <= {old[ToWords-2:0], present};
-      active_q <= {active_q[ToWords-2:0], active};
-      pair_q <= {pair_q[ToWords-2:0], pair};
-      if (old[3]) below <= pair_q[3] == '0 ? '0 : z;
-      if (old[4]) product <= below * c;
-      if (old[5]) exact <= (ExactWidth'(e) <<< (CoeffWidth - 1 - Drop)) - ExactWidth'(product);
-      if (old[6]) z <= rounded;
-    end
-    followed <= en & old[6] & ~rst;
-    clip_due <= clipped;
-    none <= ~(en & active_q[6]) | rst;
-    sum_q <= rst ? '0 : sum;
-    if (rst) begin
-      start_q <= '0;
-      frame_start_q <= '0;
-      old <= '0;
-      active_q <= '0;
-    end
+  followed <= en & old[6] & ~rst;
+  clip_due <= clipped;
+  none <= ~(en & active_q[6]) | rst;
+  sum_q <= rst ? '0 : sum;
+  if (rst) begin
+    start_q <= '0;
+    frame_start_q <= '0;
+    old <= '0;
+    active_q <= '0;
   end
-  assign counted = dut.clipped_q[Word];
+end
+assign counted = dut.clipped_q[Word];
 
-  always_comb begin
-    if (started) begin
-      start_when_due: assert (out_start == start_q[ToStart-1]);
-      frame_start_when_due: assert (out_frame_start == frame_start_q[ToStart-1]);
-      if (out_start) alone_when_due: assert (out_alone == alone_q[ToStart-1]);
-      if (old[ToWords-1]) substituted: assert (out_data[Word*Width+:Width] == z);
-      if (followed) clip_counted: assert (counted == clip_due);
-      if (none) no_clip: assert (!counted);
-      count_is_sum: assert (saturations == sum_q);
-      last_out: cover (old[ToWords-1] && pair_q[ToWords-1] == PairWidth'((Rows + 1) / 2 - 1) && z != '0 && held);
-      clip_in_last: cover (followed && counted && pair_q[ToWords-1] == PairWidth'((Rows + 1) / 2 - 1));
-    end
+always_comb begin
+  if (started) begin
+    start_when_due: assert (out_start == start_q[ToStart-1]);
+    frame_start_when_due: assert (out_frame_start == frame_start_q[ToStart-1]);
+    if (out_start) alone_when_due: assert (out_alone == alone_q[ToStart-1]);
+    if (old[ToWords-1]) substituted: assert (out_data[Word*Width+:Width] == z);
+    if (followed) clip_counted: assert (counted == clip_due);
+    if (none) no_clip: assert (!counted);
+    count_is_sum: assert (saturations == sum_q);
+    last_out: cover (old[ToWords-1] && pair_q[ToWords-1] == PairWidth'((Rows + 1) / 2 - 1) && z != '0 && held);
+    clip_in_last: cover (followed && counted && pair_q[ToWords-1] == PairWidth'((Rows + 1) / 2 - 1));
   end
-
-endmodule
-
-`default_nettype wire
+end

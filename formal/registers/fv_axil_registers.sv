@@ -6,442 +6,384 @@
 // alone. The registers of the specification change by
 // what was seen on the ports alone.
 
-`default_nettype none
+parameter int Polynomial = 0;
+parameter int Corrections = 0;
+parameter int Camera = 0;
+parameter int DepthMantissa = 24'hABCDEF;
+parameter int DepthExponent = -41;
+parameter int SlopeMantissa = 24'h812345;
+parameter int SlopeExponent = 3;
+parameter int PitchNm = 63400;
+localparam logic [ConfigBits-1:0] Config = configuration();
 
-module fv_axil_registers
-  import td_config_pkg::*;
-  import td_register_map_pkg::*;
-  import td_types_pkg::*;
-#(
-  parameter int Polynomial       = 0,
-  parameter int Corrections      = 0,
-  parameter int Camera           = 0,
-  parameter int DepthMantissa    = 24'hABCDEF,
-  parameter int DepthExponent    = -41,
-  parameter int SlopeMantissa    = 24'h812345,
-  parameter int SlopeExponent    = 3,
-  parameter int PitchNm          = 63400,
-  localparam int Rows             = 8,
-  localparam int Columns          = 16,
-  localparam int DataWidth        = 24,
-  localparam int GradientWidth    = 21,
-  localparam int GradientFraction = 20,
-  localparam int BitsPerChannel   = 4,
-  localparam int GradientWords    = Polynomial != 0 && Corrections == 0 ? 0 : 1 << 3 * BitsPerChannel,
-  localparam int CoefficientWords = Polynomial != 0 ? PolynomialWords : 0,
-  localparam int ZeroWords       = 4 * 8,
-  localparam int ReferenceWords   = 4 * ZeroWords,
-  localparam int Tables = TableSelectSelectCount,
-  localparam int IndexWidth = $clog2(GradientWords > ReferenceWords ? GradientWords : ReferenceWords)
-) (
-  input logic                    clk,
-  input logic                    rst,
-  input logic                    cold_rst,
-  input logic [AddressWidth-1:0] s_axil_awaddr,
-  input logic [2:0]              s_axil_awprot,
-  input logic                    s_axil_awvalid,
-  input logic [31:0]             s_axil_wdata,
-  input logic [3:0]              s_axil_wstrb,
-  input logic                    s_axil_wvalid,
-  input logic                    s_axil_bready,
-  input logic [AddressWidth-1:0] s_axil_araddr,
-  input logic [2:0]              s_axil_arprot,
-  input logic                    s_axil_arvalid,
-  input logic                    s_axil_rready,
-  input events_t                 events,
-  input levels_t                 levels,
-  input logic [31:0]             first_depth_latency,
-  input logic                    first_depth_latency_valid,
-  input logic [32*RecordWords-1:0] record,
-  input logic [2:0][LightGainWidth-1:0] light_gains,
-  input logic                    frame_start,
-  input table_answer_t           table_answer,
-  input logic [Tables-1:0]       table_in_use,
-  input capture_status_t         reference_status,
-  input capture_status_t         zero_status,
-  input register_answer_t        register_answer
-);
+localparam int GradientWords = Polynomial != 0 && Corrections == 0 ? 0 : 1 << 3 * BitsPerChannel;
+localparam int CoefficientWords = Polynomial != 0 ? PolynomialWords : 0;
+localparam int ZeroWords = 4 * 8;
+localparam int ReferenceWords = 4 * ZeroWords;
+localparam int Tables = TableSelectSelectCount;
+localparam int IndexWidth = $clog2(GradientWords > ReferenceWords ? GradientWords : ReferenceWords);
+localparam logic [1:0] Okay = 2'b00;
+localparam logic [1:0] SlaveError = 2'b10;
 
-  localparam logic [1:0] Okay = 2'b00;
-  localparam logic [1:0] SlaveError = 2'b10;
+function automatic logic [ConfigBits-1:0] configuration();
+  configuration = DefaultConfig;
+  configuration[32*TridiagonalField+:32] = 1;
+  configuration[32*NeumannField+:32] = 1;
+  configuration[32*RowsField+:32] = 8;
+  configuration[32*ColumnsField+:32] = 16;
+  configuration[32*DataWidthField+:32] = 24;
+  configuration[32*GradientWidthField+:32] = 21;
+  configuration[32*GradientFractionField+:32] = 20;
+  configuration[32*BitsPerChannelField+:32] = 4;
+  configuration[32*FlatFieldField+:32] = 1;
+  configuration[32*PolynomialField+:32] = Polynomial;
+  configuration[32*CorrectionsField+:32] = Corrections;
+  configuration[32*LightGainsField+:32] = Polynomial;
+  configuration[32*ZeroOffsetField+:32] = 1;
+  configuration[32*BlockLog2Field+:32] = 1;
+  configuration[32*DepthMantissaField+:32] = DepthMantissa;
+  configuration[32*DepthExponentField+:32] = DepthExponent;
+  configuration[32*SlopeMantissaField+:32] = SlopeMantissa;
+  configuration[32*SlopeExponentField+:32] = SlopeExponent;
+  configuration[32*PitchNmField+:32] = PitchNm;
+  configuration[32*CameraField+:32] = Camera;
+endfunction
 
-  logic s_axil_awready, s_axil_wready, s_axil_bvalid, s_axil_arready, s_axil_rvalid, irq;
-  logic [1:0] s_axil_bresp, s_axil_rresp;
-  logic [31:0] s_axil_rdata, timeout;
-  logic [7:0] dark_level;
-  logic [Tables-1:0] table_bank;
-  contact_settings_t contact_settings;
-  table_command_t table_command;
-  light_command_t light_command;
-  capture_command_t reference_command, zero_command;
-  register_command_t register_command;
-  function automatic logic [ConfigBits-1:0] configuration();
-    configuration = DefaultConfig;
-    configuration[32*TridiagonalField+:32] = 1;
-    configuration[32*NeumannField+:32] = 1;
-    configuration[32*RowsField+:32] = Rows;
-    configuration[32*ColumnsField+:32] = Columns;
-    configuration[32*DataWidthField+:32] = DataWidth;
-    configuration[32*GradientWidthField+:32] = GradientWidth;
-    configuration[32*GradientFractionField+:32] = GradientFraction;
-    configuration[32*BitsPerChannelField+:32] = BitsPerChannel;
-    configuration[32*FlatFieldField+:32] = 1;
-    configuration[32*PolynomialField+:32] = Polynomial;
-    configuration[32*CorrectionsField+:32] = Corrections;
-    configuration[32*LightGainsField+:32] = Polynomial;
-    configuration[32*ZeroOffsetField+:32] = 1;
-    configuration[32*BlockLog2Field+:32] = 1;
-    configuration[32*DepthMantissaField+:32] = DepthMantissa;
-    configuration[32*DepthExponentField+:32] = DepthExponent;
-    configuration[32*SlopeMantissaField+:32] = SlopeMantissa;
-    configuration[32*SlopeExponentField+:32] = SlopeExponent;
-    configuration[32*PitchNmField+:32] = PitchNm;
-    configuration[32*CameraField+:32] = Camera;
-  endfunction
-  axil_registers #(.Config(configuration())) dut (.*);
+// What the bus carried.
+logic aw, w, b, ar, r;
+assign aw = s_axil_awvalid & s_axil_awready;
+assign w = s_axil_wvalid & s_axil_wready;
+assign b = s_axil_bvalid & s_axil_bready;
+assign ar = s_axil_arvalid & s_axil_arready;
+assign r = s_axil_rvalid & s_axil_rready;
+logic has_address, has_data, answered, asked;  // of the write, of the read in flight
+logic [AddressWidth-1:0] address;
+logic [31:0] data;
+logic [3:0] strobes;
 
-  logic started;
-  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
+// Tables: the clocks since one was asked, for which word, whether it has such an entry; change-overs requested.
+logic [2:0] since;
+logic upper, has_entry;
+int size;
+logic [1:0] select;
+logic [Tables-1:0] requested, has;
+logic [Tables-1:0] bank = '0;
+logic [3:0] waits, closed;  // to the bus: while waiting, reference and zero offset while they are captured too
+logic [31:0] next_index;
+logic [31:0] index;
+always_comb begin
+  size = select == TableSelectGradient ? GradientWords : select == TableSelectCoefficients ? CoefficientWords
+      : select == TableSelectReference ? ReferenceWords : ZeroWords;
+  has = '0;
+  has[TableCommitGradientBit] = GradientWords != 0;
+  has[TableCommitCoefficientsBit] = CoefficientWords != 0;
+  has[TableCommitReferenceBit] = ReferenceWords != 0;
+  has[TableCommitZeroBit] = ZeroWords != 0;
+  waits = 4'(requested | ((bank ^ table_in_use) & has));
+  closed = waits;
+  if (reference_status.busy) closed[TableCommitReferenceBit] = 1'b1;
+  if (zero_status.busy) closed[TableCommitZeroBit] = 1'b1;
+  next_index = index + 32'd1 == size ? '0 : 32'(IndexWidth'(index + 32'd1));
+end
 
-  // What the bus carried.
-  logic aw, w, b, ar, r;
-  assign aw = s_axil_awvalid & s_axil_awready;
-  assign w = s_axil_wvalid & s_axil_wready;
-  assign b = s_axil_bvalid & s_axil_bready;
-  assign ar = s_axil_arvalid & s_axil_arready;
-  assign r = s_axil_rvalid & s_axil_rready;
-  logic has_address, has_data, answered, asked;  // of the write, of the read in flight
-  logic [AddressWidth-1:0] address;
-  logic [31:0] data;
-  logic [3:0] strobes;
+// Effect of a write, in the clock before its answer.
+logic effective, refused, camera_writes, camera_reads;
+int offset;
+logic [31:0] mask;
+assign effective = has_address & has_data & ~answered & (since == 3'd0);
+assign offset = 32'(address) / 4 * 4;
+always_comb begin
+  for (int bit_number = 0; bit_number < 32; bit_number++) mask[bit_number] = strobes[bit_number/8];
+  refused = !(camera_writes || offset == ControlOffset || offset == StatusOffset || offset == ThresholdOffset
+      || offset == TimeoutOffset || offset == TableSelectOffset || offset == TableIndexOffset
+      || offset == TableHighOffset || offset == TableCommitOffset || offset == DarkLevelOffset
+      || offset == InterruptStatusOffset || offset == InterruptMaskOffset || offset == PitchOffset
+      || offset == OffThresholdOffset || offset == AreaThresholdOffset || offset == MinimumAreaOffset
+      || offset == DebounceOffset
+      || offset == LightOffset || offset == LightGainRedOffset || offset == LightGainGreenOffset
+      || offset == LightGainBlueOffset
+      || (offset == ReferenceCaptureOffset && (ReferenceWords != 0 || !(data[ReferenceCaptureStartBit] && strobes[ReferenceCaptureStartBit/8])))
+      || (offset == ZeroCaptureOffset
+          && (ZeroWords != 0 && !waits[TableCommitZeroBit] && !zero_status.done
+              || !(data[ZeroCaptureStartBit] && strobes[ZeroCaptureStartBit/8])))
+      || (offset == TableLowOffset && index < size && !closed[select] && strobes == 4'b1111));
+end
+function automatic logic writes(input int register_offset);
+  return effective & (offset == register_offset);
+endfunction
+logic writes_low, writes_capture, writes_zero;
+assign writes_low = writes(TableLowOffset) & ~refused;
+assign writes_capture = writes(ReferenceCaptureOffset) & ~refused;
+assign writes_zero = writes(ZeroCaptureOffset) & ~refused;
 
-  // Tables: the clocks since one was asked, for which word, whether it has such an entry; change-overs requested.
-  logic [2:0] since;
-  logic upper, has_entry;
-  int size;
-  logic [1:0] select;
-  logic [Tables-1:0] requested, has;
-  logic [Tables-1:0] bank = '0;
-  logic [3:0] waits, closed;  // to the bus: while waiting, reference and zero offset while they are captured too
-  logic [31:0] next_index;
-  logic [31:0] index;
-  always_comb begin
-    size = select == TableSelectGradient ? GradientWords : select == TableSelectCoefficients ? CoefficientWords
-        : select == TableSelectReference ? ReferenceWords : ZeroWords;
-    has = '0;
-    has[TableCommitGradientBit] = GradientWords != 0;
-    has[TableCommitCoefficientsBit] = CoefficientWords != 0;
-    has[TableCommitReferenceBit] = ReferenceWords != 0;
-    has[TableCommitZeroBit] = ZeroWords != 0;
-    waits = 4'(requested | ((bank ^ table_in_use) & has));
-    closed = waits;
-    if (reference_status.busy) closed[TableCommitReferenceBit] = 1'b1;
-    if (zero_status.busy) closed[TableCommitZeroBit] = 1'b1;
-    next_index = index + 32'd1 == size ? '0 : 32'(IndexWidth'(index + 32'd1));
+function automatic logic [31:0] written(input logic [31:0] word);
+  return (data & mask) | (word & ~mask);
+endfunction
+function automatic logic [31:0] counted(input logic [31:0] count, input int more);
+  logic [33:0] sum;
+  sum = 34'(count) + 34'(more);
+  return sum > 34'hffffffff ? 32'hffffffff : 32'(sum);
+endfunction
+
+logic hold, drop;
+logic [31:0] light;
+logic [2:0] writes_gain;
+assign writes_gain = {writes(LightGainBlueOffset), writes(LightGainGreenOffset), writes(LightGainRedOffset)};
+logic [LightGainWidth-1:0] gain_before;
+assign gain_before = writes_gain[0] ? light_gains[0] : writes_gain[1] ? light_gains[1] : light_gains[2];
+logic [31:0] dim, averaged, zero_averaged, off, level, area, frames_needed, dark, given_up, lost;
+logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, latency;
+logic clears;
+assign clears = writes(ControlOffset) & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
+// Events reach status and counters a clock later; those of a clock in reset do not.
+events_t seen;
+logic seen_frame_dropped;
+always_ff @(posedge clk) seen <= rst ? '0 : events;
+assign seen_frame_dropped = seen.faults != '0;
+logic [31:0] sticky, happened, interrupts, interrupts_happened, unmasked, width_nm;
+logic raised;
+always_comb begin
+  happened = '0;
+  happened[StatusRowShortBit] = seen.faults.row_short;
+  happened[StatusRowLongBit] = seen.faults.row_long;
+  happened[StatusStartMissingBit] = seen.faults.start_missing;
+  happened[StatusStartEarlyBit] = seen.faults.start_early;
+  happened[StatusTimeoutBit] = seen.faults.timed_out;
+  happened[StatusOutOfStepBit] = seen.out_of_step;
+  happened[StatusSaturationBit] = seen.saturations != 0;
+  happened[StatusDarkBit] = seen.dark;
+  happened[StatusDepthDroppedBit] = seen.depth_dropped;
+  interrupts_happened = '0;
+  interrupts_happened[InterruptStatusRecordBit] = seen.record_valid;
+  interrupts_happened[InterruptStatusFrameDroppedBit] = seen_frame_dropped;
+end
+
+// What a read of this clock shall return.
+logic [31:0] word, word_q, now;
+logic known, known_q;
+int read_offset;
+assign read_offset = 32'(s_axil_araddr) / 4 * 4;
+always_comb begin
+  now = sticky;
+  now[StatusBusyBit] = levels.busy;
+  now[StatusContactBit] = levels.contact;
+  now[StatusTouchingBit] = levels.touching;
+  known = 1'b1;
+  word = '0;
+  if (read_offset == IdOffset) word = IdReset;
+  else if (read_offset == GridOffset) word = 32'(Columns * 65536 + Rows);
+  else if (read_offset == FormatOffset) begin
+    word = 32'((((GradientWords != 0 ? BitsPerChannel : 0) * 256 + GradientFraction) * 256 + GradientWidth) * 256 + DataWidth);
   end
-
-  // Effect of a write, in the clock before its answer.
-  logic effective, refused, camera_writes, camera_reads;
-  int offset;
-  logic [31:0] mask;
-  assign effective = has_address & has_data & ~answered & (since == 3'd0);
-  assign offset = 32'(address) / 4 * 4;
-  always_comb begin
-    for (int bit_number = 0; bit_number < 32; bit_number++) mask[bit_number] = strobes[bit_number/8];
-    refused = !(camera_writes || offset == ControlOffset || offset == StatusOffset || offset == ThresholdOffset
-        || offset == TimeoutOffset || offset == TableSelectOffset || offset == TableIndexOffset
-        || offset == TableHighOffset || offset == TableCommitOffset || offset == DarkLevelOffset
-        || offset == InterruptStatusOffset || offset == InterruptMaskOffset || offset == PitchOffset
-        || offset == OffThresholdOffset || offset == AreaThresholdOffset || offset == MinimumAreaOffset
-        || offset == DebounceOffset
-        || offset == LightOffset || offset == LightGainRedOffset || offset == LightGainGreenOffset
-        || offset == LightGainBlueOffset
-        || (offset == ReferenceCaptureOffset && (ReferenceWords != 0 || !(data[ReferenceCaptureStartBit] && strobes[ReferenceCaptureStartBit/8])))
-        || (offset == ZeroCaptureOffset
-            && (ZeroWords != 0 && !waits[TableCommitZeroBit] && !zero_status.done
-                || !(data[ZeroCaptureStartBit] && strobes[ZeroCaptureStartBit/8])))
-        || (offset == TableLowOffset && index < size && !closed[select] && strobes == 4'b1111));
+  else if (read_offset == ControlOffset) begin
+    word[ControlHoldContactBit] = hold;
+    word[ControlDropFramesBit] = drop;
   end
-  function automatic logic writes(input int register_offset);
-    return effective & (offset == register_offset);
-  endfunction
-  logic writes_low, writes_capture, writes_zero;
-  assign writes_low = writes(TableLowOffset) & ~refused;
-  assign writes_capture = writes(ReferenceCaptureOffset) & ~refused;
-  assign writes_zero = writes(ZeroCaptureOffset) & ~refused;
-
-  function automatic logic [31:0] written(input logic [31:0] word);
-    return (data & mask) | (word & ~mask);
-  endfunction
-  function automatic logic [31:0] counted(input logic [31:0] count, input int more);
-    logic [33:0] sum;
-    sum = 34'(count) + 34'(more);
-    return sum > 34'hffffffff ? 32'hffffffff : 32'(sum);
-  endfunction
-
-  logic hold, drop;
-  logic [31:0] light;
-  logic [2:0] writes_gain;
-  assign writes_gain = {writes(LightGainBlueOffset), writes(LightGainGreenOffset), writes(LightGainRedOffset)};
-  logic [LightGainWidth-1:0] gain_before;
-  assign gain_before = writes_gain[0] ? light_gains[0] : writes_gain[1] ? light_gains[1] : light_gains[2];
-  logic [31:0] dim, averaged, zero_averaged, off, level, area, frames_needed, dark, given_up, lost;
-  logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, latency;
-  logic clears;
-  assign clears = writes(ControlOffset) & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
-  // Events reach status and counters a clock later; those of a clock in reset do not.
-  events_t seen;
-  logic seen_frame_dropped;
-  always_ff @(posedge clk) seen <= rst ? '0 : events;
-  assign seen_frame_dropped = seen.faults != '0;
-  logic [31:0] sticky, happened, interrupts, interrupts_happened, unmasked, width_nm;
-  logic raised;
-  always_comb begin
-    happened = '0;
-    happened[StatusRowShortBit] = seen.faults.row_short;
-    happened[StatusRowLongBit] = seen.faults.row_long;
-    happened[StatusStartMissingBit] = seen.faults.start_missing;
-    happened[StatusStartEarlyBit] = seen.faults.start_early;
-    happened[StatusTimeoutBit] = seen.faults.timed_out;
-    happened[StatusOutOfStepBit] = seen.out_of_step;
-    happened[StatusSaturationBit] = seen.saturations != 0;
-    happened[StatusDarkBit] = seen.dark;
-    happened[StatusDepthDroppedBit] = seen.depth_dropped;
-    interrupts_happened = '0;
-    interrupts_happened[InterruptStatusRecordBit] = seen.record_valid;
-    interrupts_happened[InterruptStatusFrameDroppedBit] = seen_frame_dropped;
+  else if (read_offset == StatusOffset) word = now;
+  else if (read_offset == ThresholdOffset) word = limit;
+  else if (read_offset == TimeoutOffset) word = silence;
+  else if (read_offset == FramesInOffset) word = frames_in;
+  else if (read_offset == FramesOutOffset) word = frames_out;
+  else if (read_offset == FramesDroppedOffset) word = frames_dropped;
+  else if (read_offset == SaturationsOffset) word = clipped;
+  else if (read_offset == FirstDepthLatencyOffset) word = latency;
+  else if (read_offset == TableIndexOffset) word = index;
+  else if (read_offset == TableSelectOffset) word = 32'(select);
+  else if (read_offset == TableCommitOffset) word = 32'(waits);
+  else if (read_offset == TableSizeOffset) word = size;
+  else if (read_offset == DarkLevelOffset) word = dim;
+  else if (read_offset == ReferenceCaptureOffset) begin
+    word = averaged;
+    word[ReferenceCaptureBusyBit] = reference_status.busy;
   end
-
-  // What a read of this clock shall return.
-  logic [31:0] word, word_q, now;
-  logic known, known_q;
-  int read_offset;
-  assign read_offset = 32'(s_axil_araddr) / 4 * 4;
-  always_comb begin
-    now = sticky;
-    now[StatusBusyBit] = levels.busy;
-    now[StatusContactBit] = levels.contact;
-    now[StatusTouchingBit] = levels.touching;
-    known = 1'b1;
-    word = '0;
-    if (read_offset == IdOffset) word = IdReset;
-    else if (read_offset == GridOffset) word = 32'(Columns * 65536 + Rows);
-    else if (read_offset == FormatOffset) begin
-      word = 32'((((GradientWords != 0 ? BitsPerChannel : 0) * 256 + GradientFraction) * 256 + GradientWidth) * 256 + DataWidth);
-    end
-    else if (read_offset == ControlOffset) begin
-      word[ControlHoldContactBit] = hold;
-      word[ControlDropFramesBit] = drop;
-    end
-    else if (read_offset == StatusOffset) word = now;
-    else if (read_offset == ThresholdOffset) word = limit;
-    else if (read_offset == TimeoutOffset) word = silence;
-    else if (read_offset == FramesInOffset) word = frames_in;
-    else if (read_offset == FramesOutOffset) word = frames_out;
-    else if (read_offset == FramesDroppedOffset) word = frames_dropped;
-    else if (read_offset == SaturationsOffset) word = clipped;
-    else if (read_offset == FirstDepthLatencyOffset) word = latency;
-    else if (read_offset == TableIndexOffset) word = index;
-    else if (read_offset == TableSelectOffset) word = 32'(select);
-    else if (read_offset == TableCommitOffset) word = 32'(waits);
-    else if (read_offset == TableSizeOffset) word = size;
-    else if (read_offset == DarkLevelOffset) word = dim;
-    else if (read_offset == ReferenceCaptureOffset) begin
-      word = averaged;
-      word[ReferenceCaptureBusyBit] = reference_status.busy;
-    end
-    else if (read_offset == ZeroCaptureOffset) begin
-      word = zero_averaged;
-      word[ZeroCaptureBusyBit] = zero_status.busy;
-    end
-    else if (read_offset == DarkPixelsOffset) word = dark;
-    else if (read_offset == DepthDroppedOffset) word = given_up;
-    else if (read_offset == RecordsLostOffset) word = lost;
-    else if (read_offset == OffThresholdOffset) word = off;
-    else if (read_offset == AreaThresholdOffset) word = level;
-    else if (read_offset == MinimumAreaOffset) word = area;
-    else if (read_offset == DebounceOffset) word = frames_needed;
-    else if (read_offset == InterruptStatusOffset) word = interrupts;
-    else if (read_offset == InterruptMaskOffset) word = unmasked;
-    else if (read_offset == DeviceOffset) word = 32'h0000011b | 32'(Polynomial * 36) | (value(DefaultConfig, GainWidthField) << DeviceGainWidthLsb);
-    else if (read_offset == DepthUnitOffset) word = {8'(DepthExponent), 24'(DepthMantissa)};
-    else if (read_offset == SlopeUnitOffset) word = {8'(SlopeExponent), 24'(SlopeMantissa)};
-    else if (read_offset == PitchOffset) word = width_nm;
-    else if (read_offset == LightOffset) word = light;
-    else if (read_offset == LightGainRedOffset) word = Polynomial != 0 ? 32'(light_gains[0]) : '0;
-    else if (read_offset == LightGainGreenOffset) word = Polynomial != 0 ? 32'(light_gains[1]) : '0;
-    else if (read_offset == LightGainBlueOffset) word = Polynomial != 0 ? 32'(light_gains[2]) : '0;
-    else if (read_offset >= RecordEventOffset && read_offset <= RecordCentroidOffset) begin
-      word = 32'(record >> 8 * (read_offset - RecordEventOffset));
-    end
-    else begin
-      known = camera_reads;
-      word = camera_reads ? register_answer.data : '0;
-    end
+  else if (read_offset == ZeroCaptureOffset) begin
+    word = zero_averaged;
+    word[ZeroCaptureBusyBit] = zero_status.busy;
   end
-  assign camera_writes = Camera != 0 && register_answer.writable;
-  assign camera_reads = Camera != 0 && register_answer.readable;
-  always_comb begin
-    if (register_answer.writable) assume (register_command.write_offset >> 6 == 32'd4);
-    if (register_answer.readable) assume (register_command.read_offset >> 6 == 32'd4);
-    else assume (register_answer.data == '0);
+  else if (read_offset == DarkPixelsOffset) word = dark;
+  else if (read_offset == DepthDroppedOffset) word = given_up;
+  else if (read_offset == RecordsLostOffset) word = lost;
+  else if (read_offset == OffThresholdOffset) word = off;
+  else if (read_offset == AreaThresholdOffset) word = level;
+  else if (read_offset == MinimumAreaOffset) word = area;
+  else if (read_offset == DebounceOffset) word = frames_needed;
+  else if (read_offset == InterruptStatusOffset) word = interrupts;
+  else if (read_offset == InterruptMaskOffset) word = unmasked;
+  else if (read_offset == DeviceOffset) word = 32'h0000011b | 32'(Polynomial * 36) | (value(DefaultConfig, GainWidthField) << DeviceGainWidthLsb);
+  else if (read_offset == DepthUnitOffset) word = {8'(DepthExponent), 24'(DepthMantissa)};
+  else if (read_offset == SlopeUnitOffset) word = {8'(SlopeExponent), 24'(SlopeMantissa)};
+  else if (read_offset == PitchOffset) word = width_nm;
+  else if (read_offset == LightOffset) word = light;
+  else if (read_offset == LightGainRedOffset) word = Polynomial != 0 ? 32'(light_gains[0]) : '0;
+  else if (read_offset == LightGainGreenOffset) word = Polynomial != 0 ? 32'(light_gains[1]) : '0;
+  else if (read_offset == LightGainBlueOffset) word = Polynomial != 0 ? 32'(light_gains[2]) : '0;
+  else if (read_offset >= RecordEventOffset && read_offset <= RecordCentroidOffset) begin
+    word = 32'(record >> 8 * (read_offset - RecordEventOffset));
   end
-
-  logic b_stalled, r_stalled, refused_q, write_due, read_due;
-  logic [1:0] bresp_q, rresp_q;
-  logic [31:0] rdata_q;
-  logic asks;  // a table
-  assign asks = ar & (read_offset == TableHighOffset || read_offset == TableLowOffset);
-  logic [31:0] index_written, select_written;
-  assign index_written = written(index);
-  assign select_written = written(32'(select));
-  always_ff @(posedge clk) begin
-    if (aw) address <= s_axil_awaddr;
-    if (w) {data, strobes} <= {s_axil_wdata, s_axil_wstrb};
-    has_address <= aw | (has_address & ~b);
-    has_data <= w | (has_data & ~b);
-    answered <= effective | (answered & ~b);
-    asked <= ar | (asked & ~r);
-    write_due <= effective;
-    refused_q <= refused;
-    read_due <= (ar & ~asks) | (since == 3'd4);
-    word_q <= since == 3'd0 ? word : !has_entry ? '0 : upper ? table_answer.high : table_answer.low;
-    known_q <= since == 3'd0 ? known : has_entry;
-    if (asks) begin
-      since <= 3'd1;
-      upper <= read_offset == TableHighOffset;
-    end else if (since != 3'd0) begin
-      since <= since == 3'd4 ? 3'd0 : since + 3'd1;
-    end
-    if (since == 3'd1) has_entry <= index < size;
-    b_stalled <= s_axil_bvalid & ~s_axil_bready;
-    r_stalled <= s_axil_rvalid & ~s_axil_rready;
-    bresp_q <= s_axil_bresp;
-    rresp_q <= s_axil_rresp;
-    rdata_q <= s_axil_rdata;
-
-    if (writes(ControlOffset) && mask[ControlHoldContactBit]) hold <= data[ControlHoldContactBit];
-    if (writes(ControlOffset) && mask[ControlDropFramesBit]) drop <= data[ControlDropFramesBit];
-    if (writes(DarkLevelOffset)) dim <= written(dim) & 32'hff;
-    if (writes_capture) averaged <= written(averaged) & 32'hf;
-    if (writes_zero) zero_averaged <= written(zero_averaged) & 32'hf;
-    if (writes(OffThresholdOffset)) off <= written(off);
-    if (writes(AreaThresholdOffset)) level <= written(level);
-    if (writes(MinimumAreaOffset)) area <= written(area);
-    if (writes(DebounceOffset)) frames_needed <= written(frames_needed) & 32'hff;
-    if (writes(ThresholdOffset)) limit <= written(limit);
-    if (writes(TimeoutOffset)) silence <= written(silence);
-    if (writes(TableIndexOffset)) index <= 32'(index_written[IndexWidth-1:0]);
-    if (writes_low || (since == 3'd1 && !upper && index < size)) index <= next_index;
-    if (writes(TableSelectOffset)) select <= select_written[1:0];
-    if (writes(TableHighOffset)) high <= written(high);
-    for (int table_number = 0; table_number < Tables; table_number++) begin
-      if (frame_start && requested[table_number] && !rst) bank[table_number] <= !bank[table_number];
-      if (frame_start && requested[table_number]) requested[table_number] <= 1'b0;
-      else if (writes(TableCommitOffset) && data[table_number] && mask[table_number] && has[table_number]
-          && !closed[table_number])
-        requested[table_number] <= 1'b1;
-      if (reference_status.done && table_number == TableSelectReference && has[table_number]) requested[table_number] <= 1'b1;
-      if (zero_status.done && table_number == TableSelectZero && has[table_number]) requested[table_number] <= 1'b1;
-    end
-    interrupts <= (interrupts & ~(writes(InterruptStatusOffset) ? data & mask : '0)) | interrupts_happened;
-    if (writes(InterruptMaskOffset)) unmasked <= written(unmasked) & 32'h3;
-    if (writes(PitchOffset)) width_nm <= written(width_nm);
-    if (writes(LightOffset)) light <= written(light) & 32'h71;
-    raised <= |(interrupts & unmasked);
-    sticky <= (sticky & ~(writes(StatusOffset) ? data & mask : '0)) | happened;
-    frames_in <= counted(clears ? '0 : frames_in, 32'(seen.frame_in));
-    frames_out <= counted(clears ? '0 : frames_out, 32'(seen.frame_out));
-    frames_dropped <= counted(clears ? '0 : frames_dropped, 32'(seen_frame_dropped));
-    clipped <= counted(clears ? '0 : clipped, 32'(seen.saturations));
-    dark <= counted(clears ? '0 : dark, 32'(seen.dark));
-    given_up <= counted(clears ? '0 : given_up, 32'(seen.depth_dropped));
-    lost <= counted(clears ? '0 : lost, 32'(seen.record_lost));
-    if (first_depth_latency_valid) latency <= first_depth_latency;
-
-    if (rst) begin
-      {has_address, has_data, answered, asked, since, write_due, read_due, b_stalled, r_stalled, hold} <= '0;
-      limit <= 32'h7fffffff;
-      off <= 32'h7fffffff;
-      level <= '0;
-      area <= 32'd1;
-      frames_needed <= 32'd1;
-      {drop, dim, averaged, zero_averaged, dark, given_up, lost} <= '0;
-      requested <= '0;
-      {interrupts, unmasked, raised} <= '0;
-      width_nm <= PitchNm;
-      light <= 32'd1;
-      {silence, index, select, high, sticky, frames_in, frames_out, frames_dropped, clipped, latency} <= '0;
-    end
-    if (cold_rst) bank <= '0;
+  else begin
+    known = camera_reads;
+    word = camera_reads ? register_answer.data : '0;
   end
+end
+assign camera_writes = Camera != 0 && register_answer.writable;
+assign camera_reads = Camera != 0 && register_answer.readable;
+always_comb begin
+  if (register_answer.writable) assume (register_command.write_offset >> 6 == 32'd4);
+  if (register_answer.readable) assume (register_command.read_offset >> 6 == 32'd4);
+  else assume (register_answer.data == '0);
+end
 
-  always_comb begin
-    never_in_reset: assert (!((table_command.write || table_command.read || reference_command.request
-        || zero_command.request) && rst));
-    if (started) begin
-      // The bus.
-      one_write_in_flight: assert (s_axil_awready == (!has_address && !rst) && s_axil_wready == (!has_data && !rst));
-      one_read_in_flight: assert (s_axil_arready == (!asked && !rst));
-      // Once each, never without a request.
-      answered_when_due: assert (s_axil_bvalid == answered && s_axil_rvalid == (asked && since == 3'd0));
-      if (write_due) write_response: assert (s_axil_bvalid && s_axil_bresp == (refused_q ? SlaveError : Okay));
-      if (b_stalled) write_response_stable: assert (s_axil_bvalid && s_axil_bresp == bresp_q);
-      if (read_due) begin
-        read_response: assert (s_axil_rvalid && s_axil_rdata == word_q
-            && s_axil_rresp == (known_q ? Okay : SlaveError));
-      end
-      if (r_stalled) read_stable: assert (s_axil_rvalid && s_axil_rdata == rdata_q && s_axil_rresp == rresp_q);
-      // What leaves for the camera.
-      camera_write: assert (register_command.write == (effective && !rst) && (!effective
-          || register_command.write_offset == offset && register_command.write_mask == mask
-          && register_command.write_ones == (data & mask)));
-      camera_read: assert (register_command.read_offset == read_offset);
-      // What leaves for the pipeline.
-      outputs: assert (contact_settings.threshold == limit && timeout == silence
-          && contact_settings.hold_contact == hold);
-      contact_words: assert (contact_settings.off_threshold == off && contact_settings.area_threshold == level
-          && contact_settings.minimum_area == area && 32'(contact_settings.debounce) == frames_needed);
-      stream_settings: assert (contact_settings.drop_frames == drop && 32'(dark_level) == dim
-          && 32'(reference_command.log2_frames) == averaged && 32'(zero_command.log2_frames) == zero_averaged);
-      interrupt: assert (irq == raised);
-      light_setting: assert (light_command.follow == light[0] && light_command.rate == light[6:4]);
-      light_written: assert (light_command.write == (rst ? '0 : writes_gain)
-          && (light_command.write == '0 || light_command.gain == 16'(written(32'(gain_before)))));
-      captures: assert (reference_command.request
-          == (writes_capture && data[ReferenceCaptureStartBit] && mask[ReferenceCaptureStartBit] && !rst));
-      zero_captures: assert (zero_command.request
-          == (writes_zero && data[ZeroCaptureStartBit] && mask[ZeroCaptureStartBit] && !rst));
-      // Tables.
-      table_written: assert (table_command.write == (writes_low && !rst));
-      table_asked: assert (table_command.read == (since == 3'd1 && index < size && !rst));
-      table_word: assert (table_command.select == select && 32'(table_command.index) == index
-          && table_command.high == high);
-      if (table_command.write) table_data: assert (table_command.low == data && index < size);
-      never_both: assert (!(table_command.write && since != 3'd0));
-      banks: assert (table_bank == ((frame_start && !rst) ? bank ^ requested : bank));
-      if (table_command.write) only_settled: assert (table_bank[select] == table_in_use[select]);
-      if (table_command.write) not_captured: assert (!(reference_status.busy && select == TableSelectReference)
-          && !(zero_status.busy && select == TableSelectZero));
-      absent: assert ((table_bank & ~has) == '0);
-
-      read_back: cover (read_due && read_offset == ThresholdOffset && word_q == 32'h12345678 && known_q);
-      interrupted: cover (irq && interrupts == 32'h2);
-      set_wins: cover (writes(StatusOffset) && data[StatusRowLongBit] && mask[StatusRowLongBit] && seen.faults.row_long
-          && sticky[StatusRowLongBit]);
-      refused_while_pending: cover (effective && offset == TableLowOffset && strobes == 4'b1111 && requested[TableCommitZeroBit]);
-      if (Camera != 0) camera_answer: cover (read_due && known_q && word_q == 32'h12345678 && rdata_q == '0 && write_due && !refused_q && offset == 32'h104);
-      refused_outside: cover (effective && offset == TableLowOffset && index == size && size == ZeroWords && refused);
-      captured: cover (frame_start && requested == 4'b1100 && reference_status.busy && !zero_status.busy);
-      reads_centroid: cover (read_due && read_offset == RecordCentroidOffset && word_q == 32'h12345678 && known_q);
-      changes_over: cover (frame_start && requested == has);
-      last_entry: cover (table_command.read && !upper && index == 31 && size == ZeroWords);
-      second_bin: cover (table_command.write && table_command.index == 24'd1);
-      data_first: cover (has_data && !has_address && aw);
-      cleared: cover (clears && frames_in != 0 && seen.frame_in);
-    end
+logic b_stalled, r_stalled, refused_q, write_due, read_due;
+logic [1:0] bresp_q, rresp_q;
+logic [31:0] rdata_q;
+logic asks;  // a table
+assign asks = ar & (read_offset == TableHighOffset || read_offset == TableLowOffset);
+logic [31:0] index_written, select_written;
+assign index_written = written(index);
+assign select_written = written(32'(select));
+always_ff @(posedge clk) begin
+  if (aw) address <= s_axil_awaddr;
+  if (w) {data, strobes} <= {s_axil_wdata, s_axil_wstrb};
+  has_address <= aw | (has_address & ~b);
+  has_data <= w | (has_data & ~b);
+  answered <= effective | (answered & ~b);
+  asked <= ar | (asked & ~r);
+  write_due <= effective;
+  refused_q <= refused;
+  read_due <= (ar & ~asks) | (since == 3'd4);
+  word_q <= since == 3'd0 ? word : !has_entry ? '0 : upper ? table_answer.high : table_answer.low;
+  known_q <= since == 3'd0 ? known : has_entry;
+  if (asks) begin
+    since <= 3'd1;
+    upper <= read_offset == TableHighOffset;
+  end else if (since != 3'd0) begin
+    since <= since == 3'd4 ? 3'd0 : since + 3'd1;
   end
+  if (since == 3'd1) has_entry <= index < size;
+  b_stalled <= s_axil_bvalid & ~s_axil_bready;
+  r_stalled <= s_axil_rvalid & ~s_axil_rready;
+  bresp_q <= s_axil_bresp;
+  rresp_q <= s_axil_rresp;
+  rdata_q <= s_axil_rdata;
 
-endmodule
+  if (writes(ControlOffset) && mask[ControlHoldContactBit]) hold <= data[ControlHoldContactBit];
+  if (writes(ControlOffset) && mask[ControlDropFramesBit]) drop <= data[ControlDropFramesBit];
+  if (writes(DarkLevelOffset)) dim <= written(dim) & 32'hff;
+  if (writes_capture) averaged <= written(averaged) & 32'hf;
+  if (writes_zero) zero_averaged <= written(zero_averaged) & 32'hf;
+  if (writes(OffThresholdOffset)) off <= written(off);
+  if (writes(AreaThresholdOffset)) level <= written(level);
+  if (writes(MinimumAreaOffset)) area <= written(area);
+  if (writes(DebounceOffset)) frames_needed <= written(frames_needed) & 32'hff;
+  if (writes(ThresholdOffset)) limit <= written(limit);
+  if (writes(TimeoutOffset)) silence <= written(silence);
+  if (writes(TableIndexOffset)) index <= 32'(index_written[IndexWidth-1:0]);
+  if (writes_low || (since == 3'd1 && !upper && index < size)) index <= next_index;
+  if (writes(TableSelectOffset)) select <= select_written[1:0];
+  if (writes(TableHighOffset)) high <= written(high);
+  for (int table_number = 0; table_number < Tables; table_number++) begin
+    if (frame_start && requested[table_number] && !rst) bank[table_number] <= !bank[table_number];
+    if (frame_start && requested[table_number]) requested[table_number] <= 1'b0;
+    else if (writes(TableCommitOffset) && data[table_number] && mask[table_number] && has[table_number]
+        && !closed[table_number])
+      requested[table_number] <= 1'b1;
+    if (reference_status.done && table_number == TableSelectReference && has[table_number]) requested[table_number] <= 1'b1;
+    if (zero_status.done && table_number == TableSelectZero && has[table_number]) requested[table_number] <= 1'b1;
+  end
+  interrupts <= (interrupts & ~(writes(InterruptStatusOffset) ? data & mask : '0)) | interrupts_happened;
+  if (writes(InterruptMaskOffset)) unmasked <= written(unmasked) & 32'h3;
+  if (writes(PitchOffset)) width_nm <= written(width_nm);
+  if (writes(LightOffset)) light <= written(light) & 32'h71;
+  raised <= |(interrupts & unmasked);
+  sticky <= (sticky & ~(writes(StatusOffset) ? data & mask : '0)) | happened;
+  frames_in <= counted(clears ? '0 : frames_in, 32'(seen.frame_in));
+  frames_out <= counted(clears ? '0 : frames_out, 32'(seen.frame_out));
+  frames_dropped <= counted(clears ? '0 : frames_dropped, 32'(seen_frame_dropped));
+  clipped <= counted(clears ? '0 : clipped, 32'(seen.saturations));
+  dark <= counted(clears ? '0 : dark, 32'(seen.dark));
+  given_up <= counted(clears ? '0 : given_up, 32'(seen.depth_dropped));
+  lost <= counted(clears ? '0 : lost, 32'(seen.record_lost));
+  if (first_depth_latency_valid) latency <= first_depth_latency;
 
-`default_nettype wire
+  if (rst) begin
+    {has_address, has_data, answered, asked, since, write_due, read_due, b_stalled, r_stalled, hold} <= '0;
+    limit <= 32'h7fffffff;
+    off <= 32'h7fffffff;
+    level <= '0;
+    area <= 32'd1;
+    frames_needed <= 32'd1;
+    {drop, dim, averaged, zero_averaged, dark, given_up, lost} <= '0;
+    requested <= '0;
+    {interrupts, unmasked, raised} <= '0;
+    width_nm <= PitchNm;
+    light <= 32'd1;
+    {silence, index, select, high, sticky, frames_in, frames_out, frames_dropped, clipped, latency} <= '0;
+  end
+  if (cold_rst) bank <= '0;
+end
+
+always_comb begin
+  never_in_reset: assert (!((table_command.write || table_command.read || reference_command.request
+      || zero_command.request) && rst));
+  if (started) begin
+    // The bus.
+    one_write_in_flight: assert (s_axil_awready == (!has_address && !rst) && s_axil_wready == (!has_data && !rst));
+    one_read_in_flight: assert (s_axil_arready == (!asked && !rst));
+    // Once each, never without a request.
+    answered_when_due: assert (s_axil_bvalid == answered && s_axil_rvalid == (asked && since == 3'd0));
+    if (write_due) write_response: assert (s_axil_bvalid && s_axil_bresp == (refused_q ? SlaveError : Okay));
+    if (b_stalled) write_response_stable: assert (s_axil_bvalid && s_axil_bresp == bresp_q);
+    if (read_due) begin
+      read_response: assert (s_axil_rvalid && s_axil_rdata == word_q
+          && s_axil_rresp == (known_q ? Okay : SlaveError));
+    end
+    if (r_stalled) read_stable: assert (s_axil_rvalid && s_axil_rdata == rdata_q && s_axil_rresp == rresp_q);
+    // What leaves for the camera.
+    camera_write: assert (register_command.write == (effective && !rst) && (!effective
+        || register_command.write_offset == offset && register_command.write_mask == mask
+        && register_command.write_ones == (data & mask)));
+    camera_read: assert (register_command.read_offset == read_offset);
+    // What leaves for the pipeline.
+    outputs: assert (contact_settings.threshold == limit && timeout == silence
+        && contact_settings.hold_contact == hold);
+    contact_words: assert (contact_settings.off_threshold == off && contact_settings.area_threshold == level
+        && contact_settings.minimum_area == area && 32'(contact_settings.debounce) == frames_needed);
+    stream_settings: assert (contact_settings.drop_frames == drop && 32'(dark_level) == dim
+        && 32'(reference_command.log2_frames) == averaged && 32'(zero_command.log2_frames) == zero_averaged);
+    interrupt: assert (irq == raised);
+    light_setting: assert (light_command.follow == light[0] && light_command.rate == light[6:4]);
+    light_written: assert (light_command.write == (rst ? '0 : writes_gain)
+        && (light_command.write == '0 || light_command.gain == 16'(written(32'(gain_before)))));
+    captures: assert (reference_command.request
+        == (writes_capture && data[ReferenceCaptureStartBit] && mask[ReferenceCaptureStartBit] && !rst));
+    zero_captures: assert (zero_command.request
+        == (writes_zero && data[ZeroCaptureStartBit] && mask[ZeroCaptureStartBit] && !rst));
+    // Tables.
+    table_written: assert (table_command.write == (writes_low && !rst));
+    table_asked: assert (table_command.read == (since == 3'd1 && index < size && !rst));
+    table_word: assert (table_command.select == select && 32'(table_command.index) == index
+        && table_command.high == high);
+    if (table_command.write) table_data: assert (table_command.low == data && index < size);
+    never_both: assert (!(table_command.write && since != 3'd0));
+    banks: assert (table_bank == ((frame_start && !rst) ? bank ^ requested : bank));
+    if (table_command.write) only_settled: assert (table_bank[select] == table_in_use[select]);
+    if (table_command.write) not_captured: assert (!(reference_status.busy && select == TableSelectReference)
+        && !(zero_status.busy && select == TableSelectZero));
+    absent: assert ((table_bank & ~has) == '0);
+
+    read_back: cover (read_due && read_offset == ThresholdOffset && word_q == 32'h12345678 && known_q);
+    interrupted: cover (irq && interrupts == 32'h2);
+    set_wins: cover (writes(StatusOffset) && data[StatusRowLongBit] && mask[StatusRowLongBit] && seen.faults.row_long
+        && sticky[StatusRowLongBit]);
+    refused_while_pending: cover (effective && offset == TableLowOffset && strobes == 4'b1111 && requested[TableCommitZeroBit]);
+    if (Camera != 0) camera_answer: cover (read_due && known_q && word_q == 32'h12345678 && rdata_q == '0 && write_due && !refused_q && offset == 32'h104);
+    refused_outside: cover (effective && offset == TableLowOffset && index == size && size == ZeroWords && refused);
+    captured: cover (frame_start && requested == 4'b1100 && reference_status.busy && !zero_status.busy);
+    reads_centroid: cover (read_due && read_offset == RecordCentroidOffset && word_q == 32'h12345678 && known_q);
+    changes_over: cover (frame_start && requested == has);
+    last_entry: cover (table_command.read && !upper && index == 31 && size == ZeroWords);
+    second_bin: cover (table_command.write && table_command.index == 24'd1);
+    data_first: cover (has_data && !has_address && aw);
+    cleared: cover (clears && frames_in != 0 && seen.frame_in);
+  end
+end

@@ -6,148 +6,121 @@
 //   Idle    between frames                      Open    `count` pixels of a frame taken, nothing wrong
 //   Broken  a fault in the frame: filled up     Dropped between frames behind a fault: words go until a start
 
-`default_nettype none
+parameter int Rows = 3;
+parameter int Columns = 4;
 
-module fv_frame_guard
-  import td_types_pkg::*;
-#(
-  parameter int Rows    = 3,
-  parameter int Columns = 4
-) (
-  input logic        clk,
-  input logic        rst,
-  input logic        en,
-  input logic [31:0] timeout,
-  input logic        s_valid,
-  input logic [23:0] s_data,
-  input logic        s_last,
-  input logic        s_user
-);
+localparam int Pixels = Rows * Columns;
+localparam int CountWidth = $clog2(Pixels + 1);
+localparam logic [CountWidth-1:0] One = 1;
+localparam logic [CountWidth-1:0] Whole = Pixels;
 
-  localparam int Pixels = Rows * Columns;
-  localparam int CountWidth = $clog2(Pixels + 1);
-  localparam logic [CountWidth-1:0] One = 1;
-  localparam logic [CountWidth-1:0] Whole = Pixels;
+logic row_short, row_long, start_missing, start_early, timed_out;
+assign {timed_out, start_early, start_missing, row_long, row_short} = faults;
 
-  logic s_ready, out_valid, out_frame_start, out_frame_end, out_bad;
-  logic row_short, row_long, start_missing, start_early, timed_out;
-  position_t out_position;
-  logic [23:0] out_data;
-  frame_guard #(.Rows(Rows), .Columns(Columns)) dut (
-    .*, .faults({timed_out, start_early, start_missing, row_long, row_short})
-  );
-
-  logic started;
-  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
-
-  // What should happen in this clock.
-  typedef enum logic [1:0] {Idle, Open, Broken, Dropped} state_e;
-  state_e state, state_next;
-  logic [CountWidth-1:0] count, count_next;
-  logic [31:0] silence;  // enabled clocks without a word since the last one of an open frame
-  logic between, pixel, filler, row_ends, short_now, long_now, missing_now, early_now, timed_out_now, fault;
-  always_comb begin
-    between = state == Idle || state == Dropped;
-    pixel = s_valid && (between ? s_user : state == Open && !s_user);
-    filler = state == Broken;
-    row_ends = (count + One) % CountWidth'(Columns) == '0;
-    short_now = pixel && s_last && !row_ends;
-    long_now = pixel && !s_last && row_ends;
-    missing_now = state == Idle && s_valid && !s_user;
-    early_now = state == Open && s_valid && s_user;
-    timed_out_now = state == Open && !s_valid && timeout != 0 && silence >= timeout;
-    fault = short_now || long_now || early_now || timed_out_now;
-    count_next = pixel || filler ? count + One : count;
-    state_next = state;
-    if (missing_now) state_next = Dropped;
-    if (pixel || fault || filler) begin
-      state_next = filler || fault ? Broken : Open;
-      if (count_next == Whole) begin
-        state_next = filler || fault ? Dropped : Idle;
-        count_next = '0;
-      end
+// What should happen in this clock.
+typedef enum logic [1:0] {Idle, Open, Broken, Dropped} state_e;
+state_e state, state_next;
+logic [CountWidth-1:0] count, count_next;
+logic [31:0] silence;  // enabled clocks without a word since the last one of an open frame
+logic between, pixel, filler, row_ends, short_now, long_now, missing_now, early_now, timed_out_now, fault;
+always_comb begin
+  between = state == Idle || state == Dropped;
+  pixel = s_valid && (between ? s_user : state == Open && !s_user);
+  filler = state == Broken;
+  row_ends = (count + One) % CountWidth'(Columns) == '0;
+  short_now = pixel && s_last && !row_ends;
+  long_now = pixel && !s_last && row_ends;
+  missing_now = state == Idle && s_valid && !s_user;
+  early_now = state == Open && s_valid && s_user;
+  timed_out_now = state == Open && !s_valid && timeout != 0 && silence >= timeout;
+  fault = short_now || long_now || early_now || timed_out_now;
+  count_next = pixel || filler ? count + One : count;
+  state_next = state;
+  if (missing_now) state_next = Dropped;
+  if (pixel || fault || filler) begin
+    state_next = filler || fault ? Broken : Open;
+    if (count_next == Whole) begin
+      state_next = filler || fault ? Dropped : Idle;
+      count_next = '0;
     end
   end
+end
 
-  // What should leave in the next enabled clock, and what left in this frame.
-  logic leaves, leaves_bad, held, framed;
-  logic [CountWidth-1:0] place;
-  logic [23:0] data;
-  logic [CountWidth-1:0] waited;  // enabled clocks for which a start has been refused
-  logic [1:0] flagged;            // faults flagged in the frame now coming in, or between frames
-  logic behind_fault;
-  kept #(.Width(30)) u_kept (.clk, .rst, .en, .out({out_valid, out_data, out_position, out_bad}), .held);
-  always_ff @(posedge clk) begin
-    if (en) begin
-      state <= state_next;
-      count <= count_next;
-      silence <= s_valid || state != Open ? '0 : silence + 32'd1;
-      leaves <= pixel | filler;
-      place <= count;
-      if (pixel) data <= s_data;
-      leaves_bad <= filler | fault;
-      waited <= s_valid && s_user && !s_ready ? waited + One : '0;
-      if (leaves && place == Whole - One) behind_fault <= leaves_bad;
+// What should leave in the next enabled clock, and what left in this frame.
+logic leaves, leaves_bad, held, framed;
+logic [CountWidth-1:0] place;
+logic [23:0] data;
+logic [CountWidth-1:0] waited;  // enabled clocks for which a start has been refused
+logic [1:0] flagged;            // faults flagged in the frame now coming in, or between frames
+logic behind_fault;
+kept #(.Width(30)) u_kept (.clk, .rst, .en, .out({out_valid, out_data, out_position, out_bad}), .held);
+always_ff @(posedge clk) begin
+  if (en) begin
+    state <= state_next;
+    count <= count_next;
+    silence <= s_valid || state != Open ? '0 : silence + 32'd1;
+    leaves <= pixel | filler;
+    place <= count;
+    if (pixel) data <= s_data;
+    leaves_bad <= filler | fault;
+    waited <= s_valid && s_user && !s_ready ? waited + One : '0;
+    if (leaves && place == Whole - One) behind_fault <= leaves_bad;
+  end
+  if (rst) begin
+    state <= Idle;
+    count <= '0;
+    leaves <= 1'b0;
+    silence <= '0;
+    waited <= '0;
+    behind_fault <= 1'b0;
+  end
+end
+
+// Faults flagged since the frame that is now coming in began, by the ports alone.
+logic [1:0] flags, flags_in_frame;
+assign flags = 2'(row_short) + 2'(row_long) + 2'(start_early) + 2'(timed_out);
+always_ff @(posedge clk) begin
+  if (en) flags_in_frame <= (pixel || filler) && count_next == '0 ? '0 : flags_in_frame + flags;
+  if (rst) flags_in_frame <= '0;
+end
+logic [1:0] flags_of_frame;  // those of the frame whose last pixel is present
+always_ff @(posedge clk) if (en) flags_of_frame <= flags_in_frame + flags;
+
+// The place of the pixel that leaves, by the ports alone.
+logic [CountWidth-1:0] left;
+always_ff @(posedge clk) begin
+  if (en && out_valid) left <= out_frame_end ? '0 : left + One;
+  if (rst) left <= '0;
+end
+
+always_comb begin
+  if (started) begin
+    ready: assert (s_ready == (en && (between || !s_user)));
+    flags_mean: assert ({row_short, row_long, start_missing, start_early, timed_out}
+        == (en ? {short_now, long_now, missing_now, early_now, timed_out_now} : 5'd0));
+    flagged_once: assert (32'(flags_in_frame) + 32'(flags) <= 1);
+    early_start_kept: assert (waited <= Whole);  // 1 to be seen, then the rest of the frame
+    if (s_valid && s_ready && s_user) start_begins_frame: assert (pixel && count == '0);
+
+    leaves_as_it_should: assert (out_valid == leaves);
+    if (out_valid) begin
+      pixels_in_order: assert (out_data == data && left == place);
+      first_row: assert (out_position.first_row == (left < CountWidth'(Columns)));
+      last_row: assert (out_position.last_row == (left >= CountWidth'(Pixels - Columns)));
+      first_column: assert (out_position.first_column == (left % CountWidth'(Columns) == '0));
+      last_column: assert (out_position.last_column == ((left + One) % CountWidth'(Columns) == '0));
     end
-    if (rst) begin
-      state <= Idle;
-      count <= '0;
-      leaves <= 1'b0;
-      silence <= '0;
-      waited <= '0;
-      behind_fault <= 1'b0;
-    end
+    frame_start: assert (out_frame_start == (out_valid && left == '0));
+    frame_end: assert (out_frame_end == (out_valid && left == Whole - One));
+    if (out_frame_end) marked: assert (out_bad == (flags_of_frame == 2'd1));
+    if (out_frame_end) mark_expected: assert (out_bad == leaves_bad);
+
+    good_after_fault: cover (out_frame_end && !out_bad && behind_fault);
+    filled: cover (out_frame_end && out_bad && state == Dropped);
+    refused_longest: cover (waited == Whole);
+    long_at_end: cover (en && long_now && count == Whole - One);
+    missing: cover (start_missing);
+    timed_out_late: cover (timed_out && timeout == 32'd3);
+    back_to_back: cover (out_frame_start && out_data == 24'h123456 && !behind_fault && held);
   end
-
-  // Faults flagged since the frame that is now coming in began, by the ports alone.
-  logic [1:0] flags, flags_in_frame;
-  assign flags = 2'(row_short) + 2'(row_long) + 2'(start_early) + 2'(timed_out);
-  always_ff @(posedge clk) begin
-    if (en) flags_in_frame <= (pixel || filler) && count_next == '0 ? '0 : flags_in_frame + flags;
-    if (rst) flags_in_frame <= '0;
-  end
-  logic [1:0] flags_of_frame;  // those of the frame whose last pixel is present
-  always_ff @(posedge clk) if (en) flags_of_frame <= flags_in_frame + flags;
-
-  // The place of the pixel that leaves, by the ports alone.
-  logic [CountWidth-1:0] left;
-  always_ff @(posedge clk) begin
-    if (en && out_valid) left <= out_frame_end ? '0 : left + One;
-    if (rst) left <= '0;
-  end
-
-  always_comb begin
-    if (started) begin
-      ready: assert (s_ready == (en && (between || !s_user)));
-      flags_mean: assert ({row_short, row_long, start_missing, start_early, timed_out}
-          == (en ? {short_now, long_now, missing_now, early_now, timed_out_now} : 5'd0));
-      flagged_once: assert (32'(flags_in_frame) + 32'(flags) <= 1);
-      early_start_kept: assert (waited <= Whole);  // 1 to be seen, then the rest of the frame
-      if (s_valid && s_ready && s_user) start_begins_frame: assert (pixel && count == '0);
-
-      leaves_as_it_should: assert (out_valid == leaves);
-      if (out_valid) begin
-        pixels_in_order: assert (out_data == data && left == place);
-        first_row: assert (out_position.first_row == (left < CountWidth'(Columns)));
-        last_row: assert (out_position.last_row == (left >= CountWidth'(Pixels - Columns)));
-        first_column: assert (out_position.first_column == (left % CountWidth'(Columns) == '0));
-        last_column: assert (out_position.last_column == ((left + One) % CountWidth'(Columns) == '0));
-      end
-      frame_start: assert (out_frame_start == (out_valid && left == '0));
-      frame_end: assert (out_frame_end == (out_valid && left == Whole - One));
-      if (out_frame_end) marked: assert (out_bad == (flags_of_frame == 2'd1));
-      if (out_frame_end) mark_expected: assert (out_bad == leaves_bad);
-
-      good_after_fault: cover (out_frame_end && !out_bad && behind_fault);
-      filled: cover (out_frame_end && out_bad && state == Dropped);
-      refused_longest: cover (waited == Whole);
-      long_at_end: cover (en && long_now && count == Whole - One);
-      missing: cover (start_missing);
-      timed_out_late: cover (timed_out && timeout == 32'd3);
-      back_to_back: cover (out_frame_start && out_data == 24'h123456 && !behind_fault && held);
-    end
-  end
-
-endmodule
-
-`default_nettype wire
+end

@@ -3,68 +3,50 @@
 // clocks behind the first word of the last row, the others behind it without a pause; frame_start with the first. Any
 // gaps between bursts, any en, any frame number, and frames that begin before the last one is whole.
 
-`default_nettype none
+parameter int Width = 1;
+parameter int Columns = 4;
+parameter int MakhoulIn = 0;
+parameter int MakhoulOut = 0;
+input logic pick;
 
-module fv_transpose #(
-  parameter int Width      = 1,
-  parameter int Columns    = 4,
-  parameter int MakhoulIn  = 0,
-  parameter int MakhoulOut = 0,
-  localparam int IndexWidth = $clog2(Columns)
-) (
-  input logic             clk,
-  input logic             rst,
-  input logic             en,
-  input logic             in_start,
-  input logic             in_frame_start,
-  input logic [Width-1:0] in_data,
-  input logic             pick
+localparam int IndexWidth = $clog2(Columns);
+
+logic active, last_row;
+logic [IndexWidth-1:0] position;
+logic [$clog2(Columns+1)-1:0] row;
+protocol_bursts #(.Columns(Columns), .Rows(Columns)) u_protocol (
+  .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row, .holds(allowed)
 );
 
-  logic allowed, started, active, last_row;
-  logic [IndexWidth-1:0] position;
-  logic [$clog2(Columns+1)-1:0] row;
-  logic out_start, out_frame_start;
-  logic [Width-1:0] out_data;
-  transpose #(.Width(Width), .Columns(Columns), .MakhoulIn(MakhoulIn), .MakhoulOut(MakhoulOut)) dut (.*);
-  protocol_bursts #(.Columns(Columns), .Rows(Columns)) u_protocol (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
+// Makhoul's order: even samples upwards, then odd samples downwards.
+function automatic logic [IndexWidth-1:0] place_of_sample(input logic [IndexWidth-1:0] n);
+  return n % 2 == 0 ? n / 2 : IndexWidth'(Columns - 1) - n / 2;
+endfunction
+function automatic logic [IndexWidth-1:0] sample_at_place(input logic [IndexWidth-1:0] p);
+  return 32'(p) < Columns / 2 ? p * 2 : IndexWidth'(2 * (Columns - 1 - 32'(p)) + 1);
+endfunction
+logic [IndexWidth-1:0] column, row_place;
+assign column = MakhoulIn != 0 ? sample_at_place(position) : position;
+assign row_place = MakhoulOut != 0 ? place_of_sample(IndexWidth'(row)) : IndexWidth'(row);
 
-  // Makhoul's order: even samples upwards, then odd samples downwards.
-  function automatic logic [IndexWidth-1:0] place_of_sample(input logic [IndexWidth-1:0] n);
-    return n % 2 == 0 ? n / 2 : IndexWidth'(Columns - 1) - n / 2;
-  endfunction
-  function automatic logic [IndexWidth-1:0] sample_at_place(input logic [IndexWidth-1:0] p);
-    return 32'(p) < Columns / 2 ? p * 2 : IndexWidth'(2 * (Columns - 1 - 32'(p)) + 1);
-  endfunction
-  logic [IndexWidth-1:0] column, row_place;
-  assign column = MakhoulIn != 0 ? sample_at_place(position) : position;
-  assign row_place = MakhoulOut != 0 ? place_of_sample(IndexWidth'(row)) : IndexWidth'(row);
+logic due, present, watched;
+logic [2*IndexWidth-1:0] place;
+logic [Width-1:0] value;
+follow_word #(.Width(Width), .Words(Columns * Columns), .Latency(2)) u_follow (
+  .clk, .rst, .en, .pick, .in_word(active), .in_first(in_frame_start), .in_closed(last_row & ~in_start),
+  .in_place({column, row_place}), .in_data, .close(in_start & last_row), .due, .present, .place, .watched, .value
+);
+logic held;
+kept #(.Width(Width)) u_kept (.clk, .rst(1'b0), .en, .out(out_data), .held);
 
-  logic due, present, watched;
-  logic [2*IndexWidth-1:0] place;
-  logic [Width-1:0] value;
-  follow_word #(.Width(Width), .Words(Columns * Columns), .Latency(2)) u_follow (
-    .clk, .rst, .en, .pick, .in_word(active), .in_first(in_frame_start), .in_closed(last_row & ~in_start),
-    .in_place({column, row_place}), .in_data, .close(in_start & last_row), .due, .present, .place, .watched, .value
-  );
-  logic held;
-  kept #(.Width(Width)) u_kept (.clk, .rst(1'b0), .en, .out(out_data), .held);
-
-  always_comb begin
-    if (started) begin
-      frame_when_due: assert (out_frame_start == due);
-      column_when_due: assert (out_start == (present && place[IndexWidth-1:0] == '0));
-      if (watched) in_place: assert (out_data == value);
-      last_word: cover (watched && place == '1);
-      last_word_behind_next: cover (watched && place == '1 && active && held);
-    end
+always_comb begin
+  if (started) begin
+    frame_when_due: assert (out_frame_start == due);
+    column_when_due: assert (out_start == (present && place[IndexWidth-1:0] == '0));
+    if (watched) in_place: assert (out_data == value);
+    last_word: cover (watched && place == '1);
+    last_word_behind_next: cover (watched && place == '1 && active && held);
   end
+end
 
-  bind fv_transpose.dut.u_ram ram_check #(.Depth(Depth)) u_check (.*);
-
-endmodule
-
-`default_nettype wire
+bind dut.u_ram ram_check #(.Depth(Depth)) u_check (.*);

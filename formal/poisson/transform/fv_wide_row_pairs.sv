@@ -4,114 +4,95 @@
 // row b negated in the real part of k, and in the imaginary part of N - k. The other words of the burst are 0. Mode 0
 // has no partner, and row b beside a row alone counts as 0. By sums this holds of every burst. Latency Beats / 2 + 2.
 
-`default_nettype none
+parameter int Width = 2;
+parameter int Size = 8;
+parameter int Paths = 2;
+input logic pick;  // free: the burst that begins is followed
+input logic [$clog2(2*Size)-1:0] where;  // free and constant: row, beat and word followed
 
-module fv_wide_row_pairs #(
-  parameter int Width = 2,
-  parameter int Size  = 8,
-  parameter int Paths = 2,
-  localparam int WordWidth = $clog2(2 * Paths)
-) (
-  input logic                     clk,
-  input logic                     rst,
-  input logic                     en,
-  input logic                     in_start,
-  input logic                     in_frame_start,
-  input logic                     in_alone,
-  input logic [2*Paths*Width-1:0] in_data,
-  input logic                     pick,    // free: the burst that begins is followed
-  input logic [$clog2(2*Size)-1:0] where   // free and constant: row, beat and word followed
+localparam int WordWidth = $clog2(2 * Paths);
+localparam int PositionWidth = $clog2(Size);
+localparam int Beats = Size / Paths;  // of a burst
+localparam int BeatWidth = $clog2(Beats);
+localparam int Latency = Beats / 2 + 2;
+
+logic started, active;
+logic [BeatWidth-1:0] beat;
+wide_timing #(.Beats(Beats), .Latency(Latency)) u_timing (.*);
+
+// The place followed stays.
+logic [$clog2(2*Size)-1:0] where_q;
+always_ff @(posedge clk) where_q <= where;
+always_comb if (started) assume (where == where_q);
+
+// Its position in bit-reversed order, and that of mode N - k.
+function automatic logic [PositionWidth-1:0] reversed(input logic [PositionWidth-1:0] word);
+  for (int b = 0; b < PositionWidth; b++) reversed[b] = word[PositionWidth-1-b];
+endfunction
+logic row_b;
+logic [BeatWidth-1:0] at;
+logic [WordWidth-1:0] word;
+logic [31:0] u, inverted, t;
+logic [PositionWidth-1:0] position, mirror;
+assign {at, word} = where;
+assign row_b = 32'(at) >= Beats / 2;
+assign u = 32'(at) % (Beats / 2);
+always_comb begin
+  inverted = u;  // all bits below the leading one
+  for (int b = 0; b < BeatWidth; b++) if (u >> (b + 1) != 0) inverted[b] = ~u[b];
+  t = 32'(word) < Paths ? 2 * u : 2 * inverted + 1;
+end
+assign position = PositionWidth'(t * Paths + 32'(word) % Paths);
+assign mirror = reversed(PositionWidth'(Size - 32'(reversed(position))));
+
+// The burst followed: its word, then what leaves.
+logic following, coming, alone, leaving;
+logic [7:0] age;  // enabled clocks since its start
+logic signed [Width-1:0] value, negated, sent;
+assign coming = following & (age >= 8'd2) & (age < 8'(2 + Beats));
+assign leaving = following & (age >= 8'(Latency + 2)) & (age < 8'(Latency + 2 + Beats));
+assign sent = in_data[word*Width+:Width];
+always_ff @(posedge clk) begin
+  if (en) begin
+    if (following) age <= age + 8'd1;
+    if (!following || age == 8'(Latency + 1 + Beats)) begin
+      following <= pick & in_start;
+      alone <= in_alone;
+      age <= 8'd1;
+    end
+    if (coming && beat == at) value <= row_b && alone ? '0 : sent;
+  end
+  if (rst) following <= 1'b0;
+end
+always_comb begin
+  if (coming) begin
+    for (int w = 0; w < 2 * Paths; w++) begin
+      if (beat != at || WordWidth'(w) != word) assume (in_data[w*Width+:Width] == '0);
+    end
+  end
+end
+assign negated = value == $signed({1'b1, {(Width - 1){1'b0}}}) ? $signed({1'b0, {(Width - 1){1'b1}}}) : -value;
+
+logic [BeatWidth-1:0] out_beat;
+assign out_beat = BeatWidth'(age - 8'(Latency + 2));
+for (genvar path = 0; path < Paths; path++) begin : g_path
+  logic [PositionWidth-1:0] here;
+  logic of_mode, of_mirror;
+  logic signed [Width-1:0] re, im;
+  assign here = PositionWidth'(32'(out_beat) * Paths + path);
+  assign of_mode = here == position;
+  assign of_mirror = here == mirror && position != '0;
+  assign re = row_b ? (of_mode ? negated : '0) : of_mirror ? value : '0;
+  assign im = row_b ? (of_mirror ? value : '0) : of_mode ? value : '0;
+  always_comb begin
+    if (started && leaving) begin
+      real_part: assert (out_re[path*Width+:Width] == re);
+      imaginary_part: assert (out_im[path*Width+:Width] == im);
+      partner: cover (of_mirror && !of_mode && value == '1 && en);
+    end
+  end
+end
+
+bind td_ram ram_check #(.Depth(Depth), .Defined(0), .Covered(0)) u_check (
+  .clk, .write_en, .write_address, .read_en, .read_address
 );
-
-  localparam int PositionWidth = $clog2(Size);
-  localparam int Beats = Size / Paths;  // of a burst
-  localparam int BeatWidth = $clog2(Beats);
-  localparam int Latency = Beats / 2 + 2;
-
-  logic out_start, out_frame_start, started, active;
-  logic [Paths*Width-1:0] out_re, out_im;
-  logic [BeatWidth-1:0] beat;
-  logic [$clog2(4*Paths+1)-1:0] saturations;
-  wide_row_pairs #(.Width(Width), .Size(Size), .Paths(Paths)) dut (.*);
-  wide_timing #(.Beats(Beats), .Latency(Latency)) u_timing (.*);
-
-  // The place followed stays.
-  logic [$clog2(2*Size)-1:0] where_q;
-  always_ff @(posedge clk) where_q <= where;
-  always_comb if (started) assume (where == where_q);
-
-  // Its position in bit-reversed order, and that of mode N - k.
-  function automatic logic [PositionWidth-1:0] reversed(input logic [PositionWidth-1:0] word);
-    for (int b = 0; b < PositionWidth; b++) reversed[b] = word[PositionWidth-1-b];
-  endfunction
-  logic row_b;
-  logic [BeatWidth-1:0] at;
-  logic [WordWidth-1:0] word;
-  logic [31:0] u, inverted, t;
-  logic [PositionWidth-1:0] position, mirror;
-  assign {at, word} = where;
-  assign row_b = 32'(at) >= Beats / 2;
-  assign u = 32'(at) % (Beats / 2);
-  always_comb begin
-    inverted = u;  // all bits below the leading one
-    for (int b = 0; b < BeatWidth; b++) if (u >> (b + 1) != 0) inverted[b] = ~u[b];
-    t = 32'(word) < Paths ? 2 * u : 2 * inverted + 1;
-  end
-  assign position = PositionWidth'(t * Paths + 32'(word) % Paths);
-  assign mirror = reversed(PositionWidth'(Size - 32'(reversed(position))));
-
-  // The burst followed: its word, then what leaves.
-  logic following, coming, alone, leaving;
-  logic [7:0] age;  // enabled clocks since its start
-  logic signed [Width-1:0] value, negated, sent;
-  assign coming = following & (age >= 8'd2) & (age < 8'(2 + Beats));
-  assign leaving = following & (age >= 8'(Latency + 2)) & (age < 8'(Latency + 2 + Beats));
-  assign sent = in_data[word*Width+:Width];
-  always_ff @(posedge clk) begin
-    if (en) begin
-      if (following) age <= age + 8'd1;
-      if (!following || age == 8'(Latency + 1 + Beats)) begin
-        following <= pick & in_start;
-        alone <= in_alone;
-        age <= 8'd1;
-      end
-      if (coming && beat == at) value <= row_b && alone ? '0 : sent;
-    end
-    if (rst) following <= 1'b0;
-  end
-  always_comb begin
-    if (coming) begin
-      for (int w = 0; w < 2 * Paths; w++) begin
-        if (beat != at || WordWidth'(w) != word) assume (in_data[w*Width+:Width] == '0);
-      end
-    end
-  end
-  assign negated = value == $signed({1'b1, {(Width - 1){1'b0}}}) ? $signed({1'b0, {(Width - 1){1'b1}}}) : -value;
-
-  logic [BeatWidth-1:0] out_beat;
-  assign out_beat = BeatWidth'(age - 8'(Latency + 2));
-  for (genvar path = 0; path < Paths; path++) begin : g_path
-    logic [PositionWidth-1:0] here;
-    logic of_mode, of_mirror;
-    logic signed [Width-1:0] re, im;
-    assign here = PositionWidth'(32'(out_beat) * Paths + path);
-    assign of_mode = here == position;
-    assign of_mirror = here == mirror && position != '0;
-    assign re = row_b ? (of_mode ? negated : '0) : of_mirror ? value : '0;
-    assign im = row_b ? (of_mirror ? value : '0) : of_mode ? value : '0;
-    always_comb begin
-      if (started && leaving) begin
-        real_part: assert (out_re[path*Width+:Width] == re);
-        imaginary_part: assert (out_im[path*Width+:Width] == im);
-        partner: cover (of_mirror && !of_mode && value == '1 && en);
-      end
-    end
-  end
-
-  bind td_ram ram_check #(.Depth(Depth), .Defined(0), .Covered(0)) u_check (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
-
-endmodule
-
-`default_nettype wire

@@ -2,75 +2,56 @@
 // fv_wide_rows: an arbitrary word leaves at its place, unchanged, in a burst that begins 2 enabled clocks behind the
 // last word of its row; start and frame_start with that word. Any gaps, any en, and frames that begin inside a row.
 
-`default_nettype none
+parameter int Width = 1;
+parameter int Columns = 8;
+parameter int Paths = 2;
+input logic pick;
 
-module fv_wide_rows #(
-  parameter int Width   = 1,
-  parameter int Columns = 8,
-  parameter int Paths   = 2,
-  localparam int PositionWidth = $clog2(Columns),
-  localparam int Beats = Columns / Paths,
-  localparam int BeatWidth = $clog2(Beats)
-) (
-  input logic             clk,
-  input logic             rst,
-  input logic             en,
-  input logic             in_valid,
-  input logic             in_frame_start,
-  input logic [Width-1:0] in_data,
-  input logic             pick
+localparam int PositionWidth = $clog2(Columns);
+localparam int Beats = Columns / Paths;
+localparam int BeatWidth = $clog2(Beats);
+
+protocol_words #(.Columns(Columns)) u_protocol (
+  .clk, .rst, .en, .in_valid, .in_frame_start, .out_start, .holds(allowed)
 );
 
-  logic allowed, started, out_start, out_frame_start;
-  logic [Paths*Width-1:0] out_data;
-  wide_rows #(.Width(Width), .Columns(Columns), .Paths(Paths)) dut (.*);
-
-  protocol_words #(.Columns(Columns)) u_protocol (
-    .clk, .rst, .en, .in_valid, .in_frame_start, .out_start, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-
-  // Place in the row.
-  logic of_first_row, of_first_row_q, row_end;
-  logic [PositionWidth-1:0] position, next_position;
-  assign position = in_frame_start ? '0 : next_position;
-  assign of_first_row = in_frame_start | (of_first_row_q & (position != '0));
-  assign row_end = in_valid & (position == PositionWidth'(Columns - 1));
-  always_ff @(posedge clk) begin
-    if (en && in_valid) begin
-      next_position <= position + PositionWidth'(1);
-      of_first_row_q <= of_first_row;
-    end
+// Place in the row.
+logic of_first_row, of_first_row_q, row_end;
+logic [PositionWidth-1:0] position, next_position;
+assign position = in_frame_start ? '0 : next_position;
+assign of_first_row = in_frame_start | (of_first_row_q & (position != '0));
+assign row_end = in_valid & (position == PositionWidth'(Columns - 1));
+always_ff @(posedge clk) begin
+  if (en && in_valid) begin
+    next_position <= position + PositionWidth'(1);
+    of_first_row_q <= of_first_row;
   end
+end
 
-  // Makhoul's order: even samples upwards, then odd samples downwards; a path has Beats neighbours.
-  logic [PositionWidth-1:0] makhoul;
-  assign makhoul = position % 2 == 0 ? position / 2 : PositionWidth'(Columns - 1) - position / 2;
+// Makhoul's order: even samples upwards, then odd samples downwards; a path has Beats neighbours.
+logic [PositionWidth-1:0] makhoul;
+assign makhoul = position % 2 == 0 ? position / 2 : PositionWidth'(Columns - 1) - position / 2;
 
-  localparam int PathWidth = $clog2(Paths);
-  logic due, present, watched;
-  logic [BeatWidth-1:0] place;
-  logic [PathWidth+Width-1:0] followed;
-  follow_word #(.Width(PathWidth + Width), .Words(Beats), .Latency(2)) u_follow (
-    .clk, .rst, .en, .pick, .in_word(in_valid), .in_first(in_valid & (position == '0)), .in_closed(1'b0),
-    .in_place(BeatWidth'(makhoul)), .in_data({PathWidth'(32'(makhoul) / Beats), in_data}), .close(row_end),
-    .due, .present, .place, .watched, .value(followed)
-  );
+localparam int PathWidth = $clog2(Paths);
+logic due, present, watched;
+logic [BeatWidth-1:0] place;
+logic [PathWidth+Width-1:0] followed;
+follow_word #(.Width(PathWidth + Width), .Words(Beats), .Latency(2)) u_follow (
+  .clk, .rst, .en, .pick, .in_word(in_valid), .in_first(in_valid & (position == '0)), .in_closed(1'b0),
+  .in_place(BeatWidth'(makhoul)), .in_data({PathWidth'(32'(makhoul) / Beats), in_data}), .close(row_end),
+  .due, .present, .place, .watched, .value(followed)
+);
 
-  logic [PathWidth-1:0] path;
-  assign path = followed[Width+:PathWidth];
-  always_comb begin
-    if (started) begin
-      if (!rst) start_with_last: assert (out_start == row_end);
-      if (!rst) frame_start_with_last: assert (out_frame_start == (row_end & of_first_row));
-      if (watched) in_place: assert (out_data[path*Width+:Width] == followed[Width-1:0]);
-      last_word: cover (watched && place == BeatWidth'(Beats - 1) && path == PathWidth'(Paths - 1));
-      back_to_back: cover (due && next_position == PositionWidth'(1) && in_valid && en);
-    end
+logic [PathWidth-1:0] path;
+assign path = followed[Width+:PathWidth];
+always_comb begin
+  if (started) begin
+    if (!rst) start_with_last: assert (out_start == row_end);
+    if (!rst) frame_start_with_last: assert (out_frame_start == (row_end & of_first_row));
+    if (watched) in_place: assert (out_data[path*Width+:Width] == followed[Width-1:0]);
+    last_word: cover (watched && place == BeatWidth'(Beats - 1) && path == PathWidth'(Paths - 1));
+    back_to_back: cover (due && next_position == PositionWidth'(1) && in_valid && en);
   end
+end
 
-  bind td_ram ram_check #(.Depth(Depth)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
-
-endmodule
-
-`default_nettype wire
+bind td_ram ram_check #(.Depth(Depth)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Module around a proof: formal/<unit>/fv_<core>.sv repeats nothing of what the core's header says.
+
+The file has a comment, a paragraph of parameters and of inputs of its own if there are any, and the statements of the
+module, which has
+
+- the core's parameters, with the values that the paragraph gives to some of them, and those of the paragraph;
+- the core's inputs, but for those that the proof assigns, and those of the paragraph, such as a constant that is any;
+- the core's outputs, and the inputs that the proof assigns, as signals, and the core itself as `dut`;
+- formal/assumed.sv, if the proof uses `started` or `allowed` and declares neither; without an `allowed` every input is.
+"""
+
+import re
+
+from commands.common import header
+from commands.common.repository import ROOT, Core, code
+
+FRONT = re.compile(r"(?://.*\n)*\n((?:(?:parameter|localparam|input) [^;]*;.*\n)*)")
+
+
+def module(core: Core) -> str:
+    """Return the module fv_<core>; errors in it name file and line of the proof."""
+    assert core.proof is not None, core.name
+    head, text = header.read(core.hdl), core.proof.read_text()
+    front = FRONT.match(text)
+    assert front is not None, core.proof
+    body, line = text[front.end() :], text.count("\n", 0, front.end()) + 1
+    words = re.findall(r"(?<!\.)\b\w+", code(body))
+    assigned = re.findall(r"^assign (\w+) =", body, re.M)
+    own = [each.strip() for each in code(front[1]).split(";")[:-1]]
+    own_inputs = [each for each in own if each.startswith("input")]
+    values = {each.split(" = ")[0].split()[-1]: each for each in own if each not in own_inputs}
+    parameters = values | head.parameters | values  # what the core derives comes last
+    inputs = [f"input {port.type} {port.name}" for port in head.of("input") if port.name not in assigned]
+    signals = [port for port in head.ports if port.side == "output" or port.name in assigned]
+    given = [f".{name}({name})" for name, each in head.parameters.items() if each.startswith("parameter")]
+    lines = [
+        "`default_nettype none",
+        f"module {core.proof.stem} {' '.join(f'import {package}::*;' for package in head.imports)}",
+        f"#({', '.join(parameters.values())})" if parameters else "",
+        f"({', '.join(inputs + own_inputs)});",
+        *(f"{port.type} {port.name};" for port in signals),
+        f"{core.name} #({', '.join(given)}) dut (.*);",
+    ]
+    if {"started", "allowed"} & {*words} and not re.search(r"^logic [^;]*\b(?:started|allowed)\b", body, re.M):
+        lines += ["logic allowed, started;", "assumed u_assumed (.*);"]
+        lines += [] if "allowed" in words else ["assign allowed = 1'b1;"]
+    lines += [f'`line {line} "{core.proof.relative_to(ROOT)}" 0', f"{body}endmodule", "`default_nettype wire\n"]
+    return "\n".join(lines)
