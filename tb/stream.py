@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Drivers and monitors of the streams between cores, and the loop that most testbenches share."""
 
+from __future__ import annotations
+
 import gc
 import itertools
 import random
@@ -113,7 +115,7 @@ def depth_position(frame_start: Any, row_end: Any, frame_end: Any) -> int:
 class EveryEdge:
     """Generators that advance at each rising edge of a clock, in one task: a task for each takes as long as most do."""
 
-    of: ClassVar[dict[Any, "EveryEdge"]] = {}
+    of: ClassVar[dict[Any, EveryEdge]] = {}
 
     def __init__(self, clock: Any) -> None:
         self.clock = clock

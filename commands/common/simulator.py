@@ -32,6 +32,7 @@ from commands.common import signals, variables
 from commands.common.repository import HDL, ROOT, sources
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, one_of
+from tb import start
 
 SIMULATORS = ("verilator", "icarus")
 Simulator = Annotated[str, variables.one(SIMULATORS), "SIM"]
@@ -42,7 +43,8 @@ LOG = "build.log"  # of a build, in its folder
 # By default cocotb makes pytest rewrite every module that a simulation imports, numpy included, so that a failed
 # assertion shows its values. That takes seconds per run, longer than most runs. COCOTB_REWRITE_ASSERTION_FILES=*.py
 # switches it on.
-NO_REWRITING = {"COCOTB_REWRITE_ASSERTION_FILES": os.environ.get("COCOTB_REWRITE_ASSERTION_FILES", "")}
+REWRITING = "COCOTB_REWRITE_ASSERTION_FILES"
+NO_REWRITING = {} if os.environ.get(REWRITING) else {REWRITING: "", **start.ENTRY}
 # cocotb would write paths of attachments to results.xml, which cannot hold every path.
 NO_ATTACHMENTS = {"COCOTB_RESULTS_ATTACHMENTS": ""}
 BUILD = ROOT / "build"
