@@ -18,7 +18,7 @@ from tactile_depth.chip.poisson.transform.wide_dst_inverse import wide_dst_inver
 from tactile_depth.chip.poisson.wide_elimination import wide_elimination
 from tactile_depth.chip.poisson.wide_substitution import wide_substitution
 
-Model = Callable[..., np.ndarray]
+Model = Callable[..., "np.ndarray"]
 
 
 class Cores(NamedTuple):
