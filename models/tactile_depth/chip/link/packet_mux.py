@@ -27,21 +27,27 @@ class PacketMux:
     chosen: int | None = None
     depth_is_next: bool = False
 
-    def choose(self, valid: Sequence[bool]) -> int | None:
+    def choose(self, valid: Sequence[int]) -> int | None:
         """Return the source whose packet begins, of those that offer one; None if none does."""
         if valid[RECORD] and valid[DEPTH] and self.depth_is_next and not any(valid[:RECORD]):
             return DEPTH
         return next((source for source, offered in enumerate(valid) if offered), None)
 
-    def clock(self, valid: Sequence[bool], last: Sequence[bool], ready: bool) -> None:
-        """Advance by one clock edge, with valid and last of each source, and ready of the sink."""
-        if self.chosen is None:
+    def clock(self, *, rst: int, out_ready: int, **pins: int) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        valid, data, last = ([pins[f"{name}_{pin}"] for name in SOURCES] for pin in ("valid", "data", "last"))
+        chosen = self.chosen
+        out: dict[str, int | None] = {f"{name}_ready": 0 for name in SOURCES} | {"out_valid": 0}
+        if chosen is None:
             self.chosen = self.choose(valid)
             if self.chosen in (RECORD, DEPTH):
                 self.depth_is_next = self.chosen == RECORD
-        elif valid[self.chosen] and last[self.chosen] and ready:
-            self.chosen = None
-
-    def reset(self) -> None:
-        """Advance by one clock edge in reset."""
-        self.chosen, self.depth_is_next = None, False
+        else:
+            out |= {f"{SOURCES[chosen]}_ready": out_ready, "out_valid": valid[chosen]}
+            if valid[chosen]:
+                out |= {"out_data": data[chosen], "out_last": last[chosen]}
+            if valid[chosen] and last[chosen] and out_ready:
+                self.chosen = None
+        if rst:
+            self.chosen, self.depth_is_next = None, False
+        return out
