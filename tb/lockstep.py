@@ -14,7 +14,7 @@ from tb.settings import RUN
 Pins = dict[str, int]
 
 WORD: Sequence[int] = ()  # a choice: any word of the width of the pin
-CLOCKS = 150_000 if RUN.full else 6_000
+CLOCKS = 50_000 if RUN.full else 6_000
 RATES = (0, 0.03, 0.3, 0.7, 0.97, 1)
 
 

@@ -7,7 +7,7 @@ import cocotb
 
 from formal.entries import Proof
 from tactile_depth.chip.contact.contact_debounce import ContactDebounce
-from tb.lockstep import Pins, play
+from tb.lockstep import CLOCKS, Pins, play
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("AreaWidth")
@@ -39,4 +39,4 @@ async def frames(dut: Any) -> None:
         if pins["area"] == AGAINST and not model.touching:
             pins["area"] = largest
 
-    await play(dut, ContactDebounce(), choices, against)
+    await play(dut, ContactDebounce(), choices, against, clocks=3 * CLOCKS)

@@ -21,7 +21,7 @@ PROOFS = (
 
 @cocotb.test()
 async def packets(dut: Any) -> None:
-    choices = {"out_ready": 1.0}
+    choices: dict[str, Any] = {"out_ready": 1.0}
     for name in SOURCES:
         choices |= {f"{name}_valid": 1.0, f"{name}_data": WORD, f"{name}_last": 1.0}
     await play(dut, PacketMux(), choices, offers=SOURCES)

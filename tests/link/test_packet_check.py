@@ -11,8 +11,10 @@ from tactile_depth.chip.link.packet_check import PacketCheck
 def checked(piece: bytes) -> bytes | None:
     """Return what the models make of a piece between two delimiters, None if it is bad."""
     model, data = PacketCheck(), cobs_decode(piece)
-    body = bytes(out.byte for byte in data or b"" if (out := model.clock(byte)).byte is not None)
-    return body if model.clock(None, True, data is None).good else None
+    seen = [model.clock(in_valid=1, in_data=byte) for byte in data or b""]
+    seen += [model.clock(in_end=1, in_bad=data is None), model.clock()]
+    body = bytes(out["out_data"] for out in seen if out["out_valid"])
+    return body if seen[-1]["out_good"] else None
 
 
 @given(st.binary(max_size=300), st.data())

@@ -33,11 +33,11 @@ class PacketMux:
             return DEPTH
         return next((source for source, offered in enumerate(valid) if offered), None)
 
-    def clock(self, *, rst: int, out_ready: int, **pins: int) -> dict[str, int | None]:
-        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+    def clock(self, *, rst: int, out_ready: int, **pins: int) -> dict[str, int]:
+        """Advance by one clock edge; return the outputs before it, but those that do not count."""
         valid, data, last = ([pins[f"{name}_{pin}"] for name in SOURCES] for pin in ("valid", "data", "last"))
         chosen = self.chosen
-        out: dict[str, int | None] = {f"{name}_ready": 0 for name in SOURCES} | {"out_valid": 0}
+        out = {f"{name}_ready": 0 for name in SOURCES} | {"out_valid": 0}
         if chosen is None:
             self.chosen = self.choose(valid)
             if self.chosen in (RECORD, DEPTH):

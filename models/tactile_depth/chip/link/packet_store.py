@@ -4,26 +4,9 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import Final, NamedTuple
+from typing import Final
 
 BANKS: Final = 2
-
-
-class Offer(NamedTuple):
-    """Byte that the store offers.
-
-    Attributes
-    ----------
-    byte : int
-    last : bool
-        It is the last one that was kept of its packet.
-    length : int
-        True length of the packet.
-    """
-
-    byte: int
-    last: bool
-    length: int
 
 
 class PacketStore:
@@ -38,6 +21,8 @@ class PacketStore:
     ----------
     bad : bool
         A packet was bad or lost, in the clock before.
+    packet : bytearray
+        Bytes that came of the packet that is written.
     """
 
     def __init__(self, bank_bytes: int) -> None:
@@ -47,7 +32,7 @@ class PacketStore:
     def reset(self) -> None:
         """Advance by one clock edge in reset."""
         self.bad = False
-        self._packet = bytearray()  # that is written
+        self.packet = bytearray()
         self._lost = False
         self._waiting: deque[bytes] = deque()
         self._place = 0  # of the next byte of the first that waits
@@ -58,38 +43,35 @@ class PacketStore:
         """A bank is free."""
         return len(self._waiting) < BANKS
 
-    @property
-    def offer(self) -> Offer | None:
-        """Byte that is offered, None if none is."""
-        if not self._offers:
-            return None
-        packet = self._waiting[0]
-        last = self._place + 1 == min(len(packet), self._bank_bytes)
-        return Offer(packet[self._place], last, len(packet))
-
-    def clock(self, data: int | None, ends: bool, good: bool, ready: bool, drop: bool) -> None:
-        """Advance by one clock edge.
-
-        `data` is the byte that came, None for none; `ends` and `good` are of its packet. `ready` and `drop` are of the
-        consumer: it takes a byte, and wants no other byte of the packet.
-        """
-        offer, has_room = self.offer, self.ready
-        waits = bool(self._waiting)
-        if offer is not None and ready:
-            self._place += 1
-            if offer.last or drop:
-                self._place = 0
-                self._waiting.popleft()
+    def clock(
+        self, *, rst: int, in_valid: int, in_data: int, in_end: int, in_good: int, out_ready: int, out_drop: int
+    ) -> dict[str, int]:
+        """Advance by one clock edge; return the outputs before it, but those that do not count."""
+        out: dict[str, int] = {"in_ready": self.ready, "bad": self.bad, "out_valid": self._offers}
+        waits, has_room = bool(self._waiting), self.ready
+        if self._offers:
+            packet = self._waiting[0]
+            length, last = len(packet), self._place + 1 == min(len(packet), self._bank_bytes)
+            out |= {"out_data": packet[self._place], "out_last": last}
+            out |= {"out_length": length, "out_length_mod3": length % 3}
+            if out_ready:
+                self._place += 1
+                if last or out_drop:
+                    self._place = 0
+                    self._waiting.popleft()
         self._reads, self._offers = (
-            waits and not self._reads and offer is None,
-            self._reads if offer is None else not ready,
+            waits and not self._reads and not self._offers,
+            self._reads or (self._offers and not out_ready),
         )
-        self.bad = ends and not (good and not self._lost)
-        if data is not None:
-            self._packet.append(data)
+        self.bad = bool(in_end and (self._lost or not in_good))
+        if in_valid:
+            self.packet.append(in_data)
             self._lost |= not has_room
-        if ends:
+        if in_end:
             if not self.bad:
-                self._waiting.append(bytes(self._packet))
-            self._packet.clear()
+                self._waiting.append(bytes(self.packet))
+            self.packet.clear()
             self._lost = False
+        if rst:
+            self.reset()
+        return out
