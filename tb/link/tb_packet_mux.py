@@ -8,10 +8,9 @@ import cocotb
 from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.chip.link.packet_mux import SOURCES, PacketMux
 from tb.lockstep import WORD, play
-from tb.structures import BOTH, ICARUS, Mutants, Structure
+from tb.structures import BOTH, ICARUS, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
-MUTANTS = Mutants(repeats=2)
 PROOFS = (
     Proof(
         FULL_WIDTH,
