@@ -77,10 +77,12 @@ def imports(nodes: Iterable[ast.AST]) -> dict[str, Place]:
     """Return the places of the names that a file imports from this repository, wherever it does."""
     found = {}
     for node in nodes:
-        if isinstance(node, ast.ImportFrom) and node.module and (file := file_of(node.module)):
+        if isinstance(node, ast.ImportFrom) and node.module:
             for each in node.names:
-                inside = file_of(f"{node.module}.{each.name}") if file.name == "__init__.py" else None
-                found[each.asname or each.name] = (inside, ANY) if inside else (file, each.name)
+                if file := file_of(f"{node.module}.{each.name}"):
+                    found[each.asname or each.name] = file, ANY
+                elif file := file_of(node.module):
+                    found[each.asname or each.name] = file, each.name
         elif isinstance(node, ast.Import):
             for each in node.names:
                 if file := file_of(each.name):
@@ -143,7 +145,7 @@ def tests_in(file: Path) -> list[Place]:
     """Return the places of a testbench but for settings and what these alone use."""
     source = read(file)
     every = {*source.defined, *source.imported}
-    used = {name for own, all in source.defined.items() for each in all for name in each.names if name != own}
+    used = {name for own, of in source.defined.items() for each in of for name in each.names if name != own}
     return [(file, name) for name in every - used - {*OTHERS, *(name for names in KINDS.values() for name in names)}]
 
 

@@ -36,8 +36,10 @@ FILES = {
     "formal/fv_top.sv": "module fv_top;\n  top dut (.*);\n  shared u_shared (.*);\nendmodule\n",
     "formal/shared.sv": "module shared;\nendmodule\n",
     "formal/protocol_rows.sv": "module protocol_rows;\nendmodule\n",
-    "models/tactile_depth/chip/top.py": "def top(word: int) -> int:\n    return scaled(word)\n\n\n"
-    "def scaled(word: int) -> int:\n    return 2 * word\n\n\ndef latency() -> int:\n    return 3\n",
+    "models/tactile_depth/chip/top.py": "from tactile_depth.chip import scale\n\n\ndef top(word: int) -> int:\n"
+    "    return scaled(word)\n\n\ndef scaled(word: int) -> int:\n    return scale.TWO * word\n\n\n"
+    "def latency() -> int:\n    return 3\n",
+    "models/tactile_depth/chip/scale.py": "TWO = 2\n",
     "tb/tb_top.py": '"""Top."""\n\nfrom tactile_depth.chip.top import top\nfrom tb.tests import again as again\n\n'
     'STEPS = 5\nSTRUCTURES = (Structure(mutants=True),)\nMUTANTS = Mutants(protocol="rows")\n'
     "PROOFS = (Proof(STEPS),)\n\n\n"
@@ -70,7 +72,8 @@ def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("formal/fv_top.sv", "u_shared", "u_other", ["proof"]),
         ("formal/shared.sv", ";", "(input logic a);", ["proof"]),
         ("formal/protocol_rows.sv", ";", "(input logic a);", ["mutants"]),
-        ("models/tactile_depth/chip/top.py", "2 * word", "3 * word", ["mutants"]),
+        ("models/tactile_depth/chip/top.py", "TWO * word", "TWO + word", ["mutants"]),
+        ("models/tactile_depth/chip/scale.py", "2", "3", ["mutants"]),
         ("models/tactile_depth/chip/top.py", "return 3", "return 4", []),
         ("models/tactile_depth/chip/top.py", "word: int) -> int:\n", "word: float):  # any\n    'Scale.'\n", []),
         ("tb/tb_top.py", "top(1) == 2", "top(2) == 4", ["mutants"]),
