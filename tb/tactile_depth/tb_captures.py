@@ -46,7 +46,7 @@ async def a_capture_without_a_zero_is_refused(dut: Any) -> None:
 @case(Level.FORMATS, needs=lambda config: config.flat_field)
 async def reference(dut: Any) -> None:
     """Capture two frames after a broken one: the colours of later frames are relative to their mean."""
-    pipeline = await started(dut)
+    pipeline = await started(dut, accepts="random")
     rng, columns = pipeline.random, pipeline.columns
     shades = [pack([[rng.randint(90, 160) for _ in range(3)] for _ in range(pipeline.pixels)]) for _ in range(2)]
     still = [video(shade, columns) for shade in shades]
@@ -71,7 +71,7 @@ async def zero(dut: Any) -> None:
     Frames that begin before the capture ends keep the old one from first depth to last. Later frames use the new one.
     Both kinds are in the pipeline at once.
     """
-    pipeline = await started(dut, offers="random")
+    pipeline = await started(dut, offers="random", accepts="one_in_4")
     tables, into = pipeline.tables, pipeline.into
     await pipeline.hold_light()
     assert await pipeline.write("ZERO_CAPTURE", ZERO_CAPTURE.pack(start=1, log2_frames=1)) == Response.OKAY
@@ -131,7 +131,7 @@ async def zero(dut: Any) -> None:
 @case(Level.FORMATS, needs=lambda config: config.flat_field)
 async def dark_pixels_are_held(dut: Any) -> None:
     """Send dark pixels anywhere in a row, and a whole dark row: each is replaced and counted."""
-    pipeline = await started(dut)
+    pipeline = await started(dut, accepts="random")
     words = [word.data for word in pipeline.pressed()]
     for row in range(pipeline.rows):
         for column in range(pipeline.columns):

@@ -8,12 +8,13 @@ import cocotb
 from cocotb.triggers import ClockCycles
 
 from tactile_depth.chip.latency import first_depth_latency
-from tactile_depth.chip.registers.register_map import MAP
+from tactile_depth.chip.registers.register_map import MAP, REGISTERS
 from tb.axis import broken, profile
 from tb.selection import Level, case, up_to
 from tb.stream import parametrize
 from tb.tactile_depth.bench import CONTROL, Stream, started
 
+CAPTURES = ("REFERENCE_CAPTURE", "ZERO_CAPTURE")
 PHASES = ("mid_frame", "filling", "waiting", "output", "stalled", "full", "idle")
 
 
@@ -35,6 +36,9 @@ async def resets(dut: Any, clocks: int, phase: str) -> None:
     pipeline = await started(dut)
     await pipeline.write("THRESHOLD", -5)
     await pipeline.write("CONTROL", CONTROL.pack(hold_contact=1))
+    pipeline.contact.takes = repeat(False)  # a record waits
+    for name in CAPTURES:
+        await pipeline.write(name, REGISTERS[name].pack(start=1, log2_frames=4))  # refused where the build has none
     first = pipeline.pixels + 1 + pipeline.random.randrange(pipeline.pixels // 2)
     streams: list[Stream] = [pipeline.frame() for _ in range(5)]
     wait = {
@@ -59,6 +63,7 @@ async def resets(dut: Any, clocks: int, phase: str) -> None:
     assert phase in pipeline.phases(), f"the test is void: the phase is {pipeline.phases()}"
     await pipeline.reset(clocks)
     pipeline.sink.stall(repeat(True))
+    pipeline.contact.takes = repeat(True)
     assert not dut.contact.value
     for register in MAP:
         fields = [field for field in register.fields if field.reset is not None]
