@@ -18,7 +18,7 @@ STRUCTURES = (
 )
 PROOFS = (
     Proof(
-        "areas are only compared; a count of four frames",
+        "areas are only compared; every count of frames",
     ),
 )
 
