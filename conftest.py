@@ -7,11 +7,9 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"  # here and in each process of a test: 
 os.environ["PYTHONDONTWRITEBYTECODE"] = ""  # a thousand processes import the same modules
 
 import itertools
-import json
 import re
 import shutil
 import time
-import zlib
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -48,8 +46,13 @@ class CoreBench(pytest.Module):
         return super().collect()
 
 
+def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    return CoreBench.from_parent(parent, path=module_path) if module_path in BENCHES else None
+
+
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
-    return CoreBench.from_parent(parent, path=file_path) if file_path in BENCHES else None
+    named = parent.session.isinitpath(file_path)  # on the command line: then pytest makes its module
+    return None if named else pytest_pycollect_makemodule(file_path, parent)
 
 
 def core_of(path: Path) -> str:
@@ -164,18 +167,15 @@ def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
         toplevel = toplevel or core_of(request.path)
         name = re.sub(r"[^\w-]+", "_", request.node.name).strip("_")
         folder = simulation.BUILD / "tests" / f"{request.node.path.stem}-{name}"
-        stamp = folder / "parameters.json"  # the runners rebuild for newer sources, not for other parameters
-        flags = zlib.crc32(Path(simulation.__file__).read_bytes())
         cores = repository.sources(toplevel if toplevel in repository.cores() else None)
         sources = list({path.name: path for path in [*cores, *files]}.values())
-        built = json.dumps([toplevel, list(map(str, sources)), structure.parameters, flags])
-        if not stamp.is_file() or stamp.read_text() != built:
+        state, built = simulation.state([simulator, toplevel, structure.parameters], sources), folder / "built"
+        if not built.is_file() or built.read_text() != state:
             shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir(parents=True, exist_ok=True)
-        stamp.write_text(built)
+            simulation.build(simulator, toplevel, sources, structure.parameters, folder, log=folder / "build.log")
+            built.write_text(state)
         if structure.roms:
             structure.roms(folder)
-        simulation.build(simulator, toplevel, sources, structure.parameters, folder, log=folder / "build.log")
         wanted = replace(RUN, device=structure.device, level=structure.level)
         environment = replace(wanted, **settings).environment | {"COCOTB_RANDOM_TEST_ORDER": "1"}
 

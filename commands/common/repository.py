@@ -58,11 +58,16 @@ def _benches(folder: Path, name: str) -> tuple[Path, ...]:
 
 
 @cache
+def _files() -> Mapping[str, Path]:
+    return {file.stem: file for file in sorted(HDL.rglob("*.sv"), key=lambda file: file.stem)}
+
+
+@cache
 def cores() -> Mapping[str, Core]:
     """Return every core of hdl/ by name, in the order of the names."""
     index = {}
-    for file in sorted(HDL.rglob("*.sv"), key=lambda file: file.stem):
-        name, folder = file.stem, file.parent.relative_to(HDL)
+    for name, file in _files().items():
+        folder = file.parent.relative_to(HDL)
         if name.endswith(PACKAGE):
             continue
         index[name] = Core(
@@ -102,7 +107,7 @@ def sources(top: str | None = None, without: Iterable[str] = ()) -> list[Path]:
 
     The cores `without` are left out, with what only they need.
     """
-    files = {file.stem: file for file in HDL.rglob("*.sv")}
+    files = _files()
     packages = {name for name in files if name.endswith(PACKAGE)}
     needed = set(files)
     if top is not None:

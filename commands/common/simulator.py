@@ -38,6 +38,7 @@ SIMULATORS = ("verilator", "icarus")
 Simulator = Annotated[str, variables.one(SIMULATORS), "SIM"]
 VERILATOR = "verilator_bin"  # the program itself: the script around it starts three more, longer than most lints take
 RAM_CHECK = ROOT / "formal" / "ram_check.sv"  # each memory has one, with TD_SIMULATED alone
+LIBRARY = "LIBPYTHON_LOC"  # where cocotb's runner takes the path of Python's shared library from
 LOG = "build.log"  # of a build, in its folder
 
 # By default cocotb makes pytest rewrite every module that a simulation imports, numpy included, so that a failed
@@ -100,8 +101,10 @@ def check(simulator: str) -> None:
             os.environ["PATH"] = f"{package / 'bin'}{os.pathsep}{path}"
     elif shutil.which("iverilog") is None:
         raise InputError("SIM=icarus, but Icarus Verilog is not installed: run `apt-get install iverilog`")
-    if find_libpython.find_libpython() is None:
+    library = os.environ.get(LIBRARY) or find_libpython.find_libpython()
+    if library is None:
         raise InputError("cocotb needs Python's shared library: run `apt-get install libpython3-dev`")
+    os.environ[LIBRARY] = library  # or each run would look for it
 
 
 def build(
@@ -171,15 +174,20 @@ def build(
         raise RuntimeError(f"{unknown.group()}: Icarus builds with its default")
 
 
+def state(values: Sequence[object], sources: Iterable[Path]) -> str:
+    """Return a number, in hexadecimal, of all that a model is built from: values, sources and tools."""
+    key = hashlib.sha256(json.dumps([*values, versions()]).encode())
+    for source in (*sources, RAM_CHECK, HDL / "verilator.vlt", Path(__file__)):
+        key.update(source.read_bytes())
+    return key.hexdigest()[:16]
+
+
 def built_once(values: Sequence[object], sources: Iterable[Path], what: str, make: Callable[[Path], None]) -> Path:
     """Return the folder of a model that `make` builds in it, once for each state of values, sources and tools.
 
     Raises RuntimeError if the build fails; its folder has the output in `LOG`.
     """
-    key = hashlib.sha256(json.dumps([*values, versions()]).encode())
-    for source in (*sources, RAM_CHECK, Path(__file__)):
-        key.update(source.read_bytes())
-    folder = BUILD / "simulators" / key.hexdigest()[:16]
+    folder = BUILD / "simulators" / state(values, sources)
     complete = folder / "complete"
     folder.parent.mkdir(parents=True, exist_ok=True)
     with folder.with_suffix(".lock").open("w") as lock:
