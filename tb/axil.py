@@ -10,6 +10,11 @@ from cocotb_bus.drivers.amba import AXI4LiteMaster, AXIProtocolError
 from tactile_depth.chip.registers.axil_port import Response
 from tactile_depth.chip.registers.register_map import MAP, WORD
 
+CLIENT = {  # PROTOCOL of a core with the port
+    "stays": "s_axil_aw s_axil_w s_axil_ar",
+    "s_axil_bresp": "live & s_axil_bvalid",
+    "s_axil_rdata s_axil_rresp": "live & s_axil_rvalid",
+}
 OFFSET = {register.name: register.offset for register in MAP}
 
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Structures, mutants and refused parameters of a core: data in the core's testbench, for tests and commands.
 
-The testbench of a core, `tb/<unit>/tb_<core>.py`, states STRUCTURES, a sequence of `Structure`; where needed MUTANTS, a
-`Mutants`; and REFUSED, a mapping from a change of parameters to the module that refuses it, or to a `Refused`.
+The testbench of a core, `tb/<unit>/tb_<core>.py`, states STRUCTURES, a sequence of `Structure`; where needed PROTOCOL
+(commands/verify/protocol.py); MUTANTS, a `Mutants`; and REFUSED, a mapping from a change of parameters to the module
+that refuses it, or to a `Refused`.
 """
 
 from __future__ import annotations
@@ -79,10 +80,6 @@ class Mutants:
 
     Attributes
     ----------
-    protocol : str
-        protocol_<protocol>.sv in formal/; by default protocol_<name>.sv, if there is one.
-    rows_are, columns_are : str
-        Parameters of the core that the protocol calls Rows and Columns.
     outside : sequence of str
         Registers of the core that its testbench writes.
     repeats : int
@@ -91,9 +88,6 @@ class Mutants:
         False: mutants of its own cells and of the pins of the cores inside, which have their own runs.
     """
 
-    protocol: str = ""
-    rows_are: str = ""
-    columns_are: str = ""
     outside: Sequence[str] = ()
     repeats: int = 60
     flat: bool = True

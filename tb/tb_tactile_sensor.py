@@ -24,6 +24,7 @@ from tb.cases import on_bench
 from tb.settings import RUN
 from tb.stream import MANY, configuration, start_clock
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tb.tactile_depth.settings import PROTOCOL as PROTOCOL
 
 PIPELINE: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal", "bits_per_channel": 2}
 
@@ -49,7 +50,7 @@ STRUCTURES = (
         on=ICARUS,
     ),
 )
-MUTANTS = Mutants("tactile_depth", flat=False)
+MUTANTS = Mutants(flat=False)
 REFUSED = {"Camera=0": "Config_has_no_camera"}
 NO_PROOF = "camera_unit and tactile_depth in a row"
 

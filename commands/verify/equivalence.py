@@ -16,7 +16,6 @@ A mutant that no step settles is open.
 """
 
 import itertools
-import json
 import re
 import subprocess
 from collections.abc import Collection, Iterable, Mapping
@@ -25,12 +24,11 @@ from pathlib import Path
 
 from commands.common import repository
 from commands.hardware.yosys import in_wheel
+from commands.verify import protocol
 from commands.verify.mutants import SELECTOR, instance, ports, yosys
 
-FORMAL = repository.ROOT / "formal"
 EQUIVALENT, DIFFERENT, OPEN = "equivalent", "different", "open"
 
-ALWAYS = "1'b1"
 HOLDS = "protocol_holds"
 RESET = "any_rst"
 TO_GRAPH = """read_rtlil mutants.il
@@ -87,65 +85,28 @@ class Graph:
     ands: list[tuple[int, int, int]]
 
 
-def across(bits: int) -> str:
-    return f"[{bits - 1}:0] " if bits > 1 else ""
+def environment(core: str, folder: Path) -> str:
+    """Return a module of Verilog: the netlist with all mutants behind the protocol of its core.
 
-
-def environment(core: str, folder: Path, protocol: str, parameters: Mapping[str, int | str]) -> str:
-    """Return the core and its protocol as one module of Verilog; the module of the protocol goes to protocol.il.
-
-    A protocol is a module of formal/, protocol_<name>. Without that file all inputs are allowed, and all outputs count.
-    The inputs of a protocol are ports of the core: inputs as they are offered, outputs as the core without a mutant
-    drives them. Its outputs are
-
-    - `holds`: the inputs are allowed. They must be in a reset with all other inputs at 0;
-    - `given_<input>`: the value that replaces what is offered;
-    - `counts_<output>`: the cycles in which an output counts, as a whole or, as wide as the output, bit by bit;
-      `counts` is that of all outputs without their own.
-
-    Inputs that the protocol does not allow are replaced, in that cycle, by zeros and a reset. So the module accepts any
-    inputs, and its core sees only allowed ones. Proofs by induction need that.
+    Its inputs any_<input> are what is offered; the outputs looked_at_<output> tell in which cycles an output counts.
     """
-    sides = ports(core, folder)
-    inputs = {name: bits for name, (side, bits) in sides.items() if side == "input" and name != "clk"}
+    sides = {name: (side, f"[{bits - 1}:0]") for name, (side, bits) in ports(core, folder).items() if name != "clk"}
+    inputs = {name: bits for name, (side, bits) in sides.items() if side == "input"}
     outputs = {name: bits for name, (side, bits) in sides.items() if side == "output"}
-    rules = read_protocol(f"protocol_{protocol}", parameters, folder)
-    declared = [f"input wire {across(bits)}any_{name}" for name, bits in inputs.items()]
-    declared += [f"output wire [{bits - 1}:0] {name}" for name, bits in outputs.items()]
-    wide = {name: rules.get(f"counts_{name}", ("", 1))[1] for name in outputs}
-    declared += [f"output wire {across(bits)}looked_at_{name}" for name, bits in wide.items()]
+    declared = [f"input wire {bits} any_{name}" for name, bits in inputs.items()]
+    declared += [f"output wire {bits} {name}, output wire looked_at_{name}" for name, bits in outputs.items()]
     declared += [f"output wire {HOLDS}", f"input wire [11:0] {SELECTOR}", "input wire clk"]
-    lines = [f"module environment ({', '.join(declared)});"]
-    lines += [f"  wire [{bits - 1}:0] {name};" for name, bits in inputs.items()]
-    wires = {name: f"any_{name}" if name in inputs else name for name, (side, _) in rules.items() if side == "input"}
-    wires |= {name: f"rule_{name}" for name, (side, _) in rules.items() if side == "output"}
-    lines += [f"  wire {across(bits)}rule_{name};" for name, (side, bits) in rules.items() if side == "output"]
-    if rules:
-        connections = ", ".join(f".{name}({wire})" for name, wire in wires.items())
-        lines += [f"  protocol_{protocol} protocol ({connections});"]
-    lines += [instance(core, folder), f"  assign {HOLDS} = {wires.get('holds', ALWAYS)};"]
-    for name, bits in inputs.items():
-        value = wires.get(f"given_{name}", f"any_{name}")
-        lines += [f"  assign {name} = {HOLDS} ? {value} : {bits}'d{int(name == 'rst')};"]
-    otherwise = wires.get("counts", ALWAYS)
-    lines += [f"  assign looked_at_{name} = {wires.get(f'counts_{name}', otherwise)};" for name in outputs]
-    return "\n".join([*lines, "endmodule\n"])
-
-
-def read_protocol(top: str, parameters: Mapping[str, int | str], folder: Path) -> dict[str, tuple[str, int]]:
-    """Write the module of a protocol to protocol.il; returns its ports, name to (direction, bits)."""
-    file = repository.formal(top)
-    if file is None:
-        (folder / "protocol.il").write_text("")
-        return {}
-    declared = re.findall(r"^ +parameter +int +(\w+)", file.read_text(), re.M)
-    chosen = " ".join(f"-G {name}={value}" for name, value in parameters.items() if name in declared)
-    protocols = {*FORMAL.rglob("protocol_*.sv"), *(FORMAL / "protocols").glob("*.sv")}
-    files = " ".join(map(str, [*repository.packages(), *sorted(protocols)]))
-    read = f"read_slang --threads 1 --top {top} {chosen} {files}\n"
-    yosys(f"{read}write_json protocol.json\nwrite_rtlil protocol.il\n", folder, "protocol")
-    module = json.loads((folder / "protocol.json").read_text())["modules"][top]
-    return {name: (port["direction"], len(port["bits"])) for name, port in module["ports"].items()}
+    wires = [f".{name}(any_{name}), .sees_{name}({name})" for name in inputs]
+    wires += [f".{name}({name}), .counts_{name}(looked_at_{name})" for name in outputs]
+    wires += [".clk(clk)"] if "clk" in ports(core, folder) else []
+    return "\n".join(
+        [
+            f"module environment ({', '.join(declared)});",
+            *(f"  wire {bits} {name};" for name, bits in inputs.items()),
+            f"  protocol_{core} protocol ({', '.join(wires)}, .holds({HOLDS}));",
+            f"{instance(core, folder)}endmodule\n",
+        ]
+    )
 
 
 def clocks(core: str, folder: Path) -> list[str]:
@@ -153,10 +114,18 @@ def clocks(core: str, folder: Path) -> list[str]:
     return [name for name, (side, _) in ports(core, folder).items() if side == "input" and name.endswith("clk")]
 
 
-def graph(core: str, folder: Path, protocol: str, parameters: Mapping[str, int | str]) -> Graph:
+def graph(core: str, folder: Path, parameters: Mapping[str, int | str]) -> Graph:
     """Return the graph of the netlist with all mutants and its environment; memories become registers."""
-    (folder / "environment.v").write_text(environment(core, folder, protocol, parameters))
+    (folder / "protocol.sv").write_text(protocol.module(core))
+    (folder / "environment.v").write_text(environment(core, folder))
     (folder / "first_wins.v").write_text(FIRST_WINS)
+    chosen = " ".join(f"-G {name}={value}" for name, value in parameters.items())
+    files = " ".join(map(str, [*repository.packages(), *protocol.PARTS.values()]))
+    yosys(
+        f"read_slang --threads 1 --top protocol_{core} {chosen} {files} protocol.sv\nwrite_rtlil protocol.il\n",
+        folder,
+        "protocol",
+    )
     steps = TO_GRAPH.format(**(TWO_CLOCKS if len(clocks(core, folder)) > 1 else ONE_CLOCK))
     yosys(f"{steps}write_aiger -ascii -symbols graph.aag\n", folder, "graph")
     lines = iter((folder / "graph.aag").read_text().splitlines())
@@ -294,8 +263,7 @@ class Miter(Gates):
             port = name.split("[")[0]
             if port == HOLDS or port.startswith("looked_at_"):
                 continue
-            whole, own = f"looked_at_{port}", f"looked_at_{name}"  # of all bits, or of this one
-            looked_at = read(value, source.outputs[own if own in source.outputs else whole])
+            looked_at = read(value, source.outputs[f"looked_at_{port}"])
             wrong[name] = self.both(looked_at, self.differ(read(value, literal), read(other, literal)))
         for literal, following, _ in source.latches:
             if literal not in apart:

@@ -2,9 +2,9 @@
 """Fingerprints of all that a result of a core depends on, as the files stand, committed or not.
 
 A proof depends on the RTL of the core and of the parts and packages below it, on the modules of its bench in formal/,
-and on PROOFS; mutants on the same RTL, on the testbench, on the protocol, and on STRUCTURES and MUTANTS. Of Python the
-definitions count that these reach, in tb/, formal/ and the models too: one that nothing reaches may change. Comments,
-docstrings, type hints of functions and white space do not count, nor do commands and tools.
+on the protocol, and on PROOFS; mutants on the same RTL and protocol, on the testbench, STRUCTURES and MUTANTS. Of
+Python the definitions count that these reach, in tb/, formal/ and the models too: one that nothing reaches may change.
+Comments, docstrings, type hints of functions and white space do not count, nor do commands and tools.
 """
 
 import ast
@@ -18,8 +18,9 @@ from pathlib import Path
 
 from commands.common import repository
 from commands.common.repository import ROOT
+from commands.verify import protocol
 
-KINDS = {"proof": ("PROOFS",), "mutants": ("STRUCTURES", "MUTANTS", "PROTOCOL")}  # and the settings of each
+KINDS = {"proof": ("PROOFS", "PROTOCOL"), "mutants": ("STRUCTURES", "MUTANTS", "PROTOCOL")}  # and the settings of each
 OTHERS = ("NO_PROOF", "REFUSED")  # settings that no result depends on
 ANY, REST = "*", ""  # all definitions of a file; its statements that define no name
 TOKEN = re.compile(r"[\w$`']+|[()\[\]{},;]|[^\w\s()\[\]{},;]+")
@@ -183,11 +184,11 @@ def fingerprint(core: str, kind: str) -> str:
     files = repository.cores()[core]
     settings = files.settings
     own = [(settings, name) for name in KINDS[kind] if settings and name in read(settings).defined]
+    body = repository.code(protocol.body(core))
+    parts = [rtl_files().get(name) for name in ("offer_stays", *words(core, "PROTOCOL"), *MODULE.findall(body))]
     if kind == "proof":
         below, python = [files.proof, rtl_files().get("assumed")], own
     else:
-        named = [text for name in KINDS[kind] for text in words(core, name)]
-        below = [rtl_files().get(f"protocol_{name}") for name in (core, *named)]
-        python = own + [place for bench in files.benches for place in tests_in(bench)]
-    texts = rtl_below([files.hdl, *filter(None, below)]) | reached(python)
+        below, python = [], own + [place for bench in files.benches for place in tests_in(bench)]
+    texts = rtl_below([files.hdl, *filter(None, parts + below)]) | reached(python) | {" ".join(TOKEN.findall(body))}
     return hashlib.sha256("\0".join(sorted(texts)).encode()).hexdigest()[:16]

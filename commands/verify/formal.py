@@ -23,7 +23,7 @@ from typing import Annotated
 from commands.common import header, tabular, variables
 from commands.common.repository import ROOT, chosen, cores, sources, stated, tested, units
 from commands.hardware.yosys import in_wheel
-from commands.verify import items, proof_module, sign_off
+from commands.verify import items, proof_module, protocol, sign_off
 from commands.verify.fingerprint import fingerprint
 from formal.entries import Cone, Proof
 from tactile_depth.base.errors import InputError
@@ -76,7 +76,8 @@ def script(proof: Proof, mode: str, written: Sequence[Path]) -> str:
     bench = f"fv_{proof.core}"
     clocks = [port for port in header.read(cores()[proof.core].hdl).of("input") if port.name.endswith("clk")]
     parameters = " ".join(f"-G{name}={value}" for name, value in proof.parameters.items())
-    files = [*sources(), *(path for path in sorted(BENCHES.rglob("*.sv")) if not path.name.startswith("fv_"))]
+    files = [*sources(), *protocol.SHARED, *written]
+    read = " ".join(file.name for file in files if file.suffix == ".sv")
     flavor = "assert" if mode == "prove" else "cover"
     lines = [
         "[options]",
@@ -88,7 +89,7 @@ def script(proof: Proof, mode: str, written: Sequence[Path]) -> str:
         "[engines]",
         proof.engine if mode == "prove" else COVER_ENGINE,
         "[script]",
-        f"read_slang --threads 1 --top {bench} {parameters} {' '.join(file.name for file in files)} {bench}.sv",
+        f"read_slang --threads 1 --top {bench} {parameters} {read}",
         f"prep -flatten -top {bench}",
         *(f"select -assert-count 1 w:dut.{wire}" for wire in proof.free),
         *(f"cutpoint w:dut.{wire}" for wire in proof.free),
@@ -96,7 +97,7 @@ def script(proof: Proof, mode: str, written: Sequence[Path]) -> str:
         f"select -assert-min 1 t:$check r:FLAVOR={flavor} %i",
         "select -clear",
         "[files]",
-        *(str(file) for file in [*files, *written]),
+        *map(str, files),
     ]
     return "\n".join(lines) + "\n"
 
@@ -167,6 +168,7 @@ def run(proof: Proof | Cone, mode: str) -> Outcome:
     written = folder / f"{mode}_files"  # both modes may run at once
     written.mkdir(exist_ok=True)
     (written / f"fv_{proof.core}.sv").write_text(proof_module.module(cores()[proof.core]))
+    (written / f"protocol_{proof.core}.sv").write_text(protocol.module(proof.core))
     if proof.roms:
         proof.roms(written)
     (folder / f"{mode}.sby").write_text(script(proof, mode, sorted(written.iterdir())))

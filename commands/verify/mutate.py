@@ -26,7 +26,6 @@ from commands.common.results import save
 from commands.verify import equivalence, mutants, sign_off
 from commands.verify.equivalence import EQUIVALENT, settle
 from commands.verify.fingerprint import fingerprint
-from tactile_depth.chip.configuration import Configuration
 
 OUT = repository.ROOT / "build" / "mutate"
 CORE_BAR, TOTAL_BAR = 95.0, 97.0  # per cent of the mutants that are not equivalent: each core, all cores together
@@ -94,12 +93,7 @@ def mutate(name: str, count: int, seed: int, jobs: int, seconds: int) -> Outcome
         what = {mutant.number: mutant.what for mutant in made}
         outcome.mutants += len(made)
         outcome.killed += len(killed)
-        called = {"Rows": core.rows_are, "Columns": core.columns_are}
-        parameters = {**built.parameters, **{name: built.parameters[own] for name, own in called.items() if own}}
-        if "configuration" in built.device:  # the protocol needs the grid
-            config = Configuration(**built.device["configuration"])
-            parameters |= {"Rows": config.rows, "Columns": config.columns}
-        graph = equivalence.graph(name, folder, core.protocol or name, parameters)
+        graph = equivalence.graph(name, folder, built.parameters)
 
         def survived(number: int, verdict: str, how: str, label: str = built.label, what: dict = what) -> None:
             found = {"structure": label, "mutant": number, "what": what[number], "verdict": verdict, "how": how}

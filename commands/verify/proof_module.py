@@ -7,13 +7,16 @@ module, which has
 - the core's parameters, with the values that the paragraph gives to some of them, and those of the paragraph;
 - the core's inputs, but for those that the proof assigns, and those of the paragraph, such as a constant that is any;
 - the core's outputs, and the inputs that the proof assigns, as signals, and the core itself as `dut`;
-- formal/assumed.sv, if the proof uses `started` or `allowed` and declares neither; without an `allowed` every input is.
+- the core's protocol as `u_protocol`, unless the proof instantiates it (protocol.py);
+- formal/assumed.sv, if the proof uses `started` or `allowed` and declares neither; `allowed` is what the protocol says,
+  unless the proof assigns it.
 """
 
 import re
 
 from commands.common import header
 from commands.common.repository import ROOT, Core, code
+from commands.verify import protocol
 
 FRONT = re.compile(r"(?://.*\n)*\n((?:(?:parameter|localparam|input) [^;]*;.*\n)*)")
 
@@ -21,7 +24,7 @@ FRONT = re.compile(r"(?://.*\n)*\n((?:(?:parameter|localparam|input) [^;]*;.*\n)
 def module(core: Core) -> str:
     """Return the module fv_<core>; errors in it name file and line of the proof."""
     assert core.proof is not None, core.name
-    head, text = header.read(core.hdl), core.proof.read_text()
+    head, text = header.read(core.hdl), protocol.BODY.sub("", core.proof.read_text())
     front = FRONT.match(text)
     assert front is not None, core.proof
     body, line = text[front.end() :], text.count("\n", 0, front.end()) + 1
@@ -42,8 +45,13 @@ def module(core: Core) -> str:
         *(f"{port.type} {port.name};" for port in signals),
         f"{core.name} #({', '.join(given)}) dut (.*);",
     ]
+    if "u_protocol (" not in body:
+        wires = ", ".join(f".{port.name}" for port in head.ports)
+        lines.append(f"protocol_{core.name} #({', '.join(given)}) u_protocol ({wires});")
     if {"started", "allowed"} & {*words} and not re.search(r"^logic [^;]*\b(?:started|allowed)\b", body, re.M):
         lines += ["logic allowed, started;", "assumed u_assumed (.*);"]
-        lines += [] if "allowed" in words else ["assign allowed = 1'b1;"]
+        lines += (
+            [] if re.search(r"^assign allowed\b|\(allowed\)", body, re.M) else ["assign allowed = u_protocol.allowed;"]
+        )
     lines += [f'`line {line} "{core.proof.relative_to(ROOT)}" 0', f"{body}endmodule", "`default_nettype wire\n"]
     return "\n".join(lines)

@@ -12,6 +12,8 @@ localparam int Denominator = 1;
 localparam int Bits = 8;
 localparam int Bayer = 0;
 
+assign allowed = 1'b1;
+
 assign in_samples = '0;
 assign in_colour = '0;
 assign in_gains = '0;
@@ -54,3 +56,41 @@ always_comb begin
     end
   end
 end
+
+// Protocol: pixels of the window in raster order, from a frame's start on; a break comes without a pixel and ends
+// its frame. The colours of the word that a break makes do not count.
+module protocol_area_average;
+  localparam int Across = (Columns * Numerator + Denominator - 1) / Denominator;
+  localparam int Height = (Rows * Numerator + Denominator - 1) / Denominator;
+  logic pixel_right, last_column, last_row;
+  logic [15:0] row = '0, column = '0;
+  logic [1:0] origin = '0;  // colour of the frame's first pixel
+  logic [15:0] breaks = '0;
+  assign last_column = column == 16'(Across - 1);
+  assign last_row = row == 16'(Height - 1);
+  assign pixel_right = (in_row_start == (column == '0)) & (in_frame_start == (column == '0 && row == '0))
+      & (in_frame_start | in_colour == (origin ^ {row[0], column[0]}));
+  assign holds = rst | (in_valid ? pixel_right & ~in_abort : 1'b1);
+  always_ff @(posedge clk) begin
+    if (en) begin
+      breaks <= {breaks[14:0], in_abort};
+      if (in_valid) begin
+        if (in_frame_start) origin <= in_colour;
+        column <= last_column ? '0 : column + 16'd1;
+        if (last_column) row <= last_row ? '0 : row + 16'd1;
+      end
+      if (in_abort) begin
+        column <= '0;
+        row <= '0;
+      end
+    end
+    if (reset) begin
+      column <= '0;
+      row <= '0;
+      breaks <= '0;
+    end
+  end
+  assign counts_out_valid = live & ~reset;
+  assign {counts_out_last, counts_out_user} = {2{counts_out_valid & out_valid}};
+  assign counts_out_pixel = counts_out_valid & out_valid & ~breaks[15];
+endmodule

@@ -6,7 +6,6 @@ parameter int Bits = 10;
 parameter int Channels = 1;
 parameter int GainsWidth = 48;
 
-protocol_black_level u_protocol (.clk, .rst, .en, .in_valid, .in_frame_start, .out_valid, .holds(allowed));
 
 logic valid, abort, held;
 logic [3:0] marks;

@@ -17,11 +17,7 @@ localparam int Lanes = Bayer != 0 ? 2 : 3;
 
 bind dut.u_line ram_check #(.Depth(Depth)) u_check (.*);
 
-logic [7:0] column;
-protocol_block_totals #(.Columns(Columns), .Numerator(Numerator)) u_protocol (
-  .clk, .rst, .en, .in_row_start, .in_frame_start, .in_blue_row, .in_ends, .in_red_columns, .out_valid, .column,
-  .holds(allowed)
-);
+wire [7:0] column = u_protocol.column;
 
 // Where the row ends, from the beginning of its block; its part in the block.
 logic [BlockWidth:0] begin_q, begins, ends;
@@ -118,3 +114,26 @@ always_comb begin
     end
   end
 end
+
+// Protocol: whole rows of Columns blocks, of any number, from a frame's start on, in a reset too; totals count with
+// out_valid.
+module protocol_block_totals;
+  logic [7:0] column;  // blocks of the row that have ended
+  logic in_frame = 1'b0, blue_row = 1'b0, starts_right, stays_right;
+  logic [7:0] ended = '0;
+  assign column = in_row_start ? '0 : ended;
+  assign starts_right = in_row_start ? in_frame_start | (in_frame & ended == 8'(Columns)) : ~in_frame_start;
+  assign stays_right = (~in_ends | ((in_frame | in_row_start) & column != 8'(Columns)))
+      & (in_row_start | in_blue_row == blue_row);
+  assign holds = starts_right & stays_right & 32'(in_red_columns) <= Numerator;
+  always_ff @(posedge clk) begin
+    if (en) begin
+      ended <= column + 8'(in_ends);
+      blue_row <= in_blue_row;
+    end
+    in_frame <= ~reset & (in_frame | (en & in_row_start));
+    if (reset) ended <= '0;
+  end
+  assign counts_out_valid = live & ~reset;
+  assign {counts_out_totals, counts_out_areas} = {2{counts_out_valid & out_valid}};
+endmodule

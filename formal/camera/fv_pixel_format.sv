@@ -6,9 +6,6 @@
 parameter int Format = CameraFormatYuyv;
 parameter int Phase = 0;
 
-protocol_pixel_format #(.Format(Format)) u_protocol (
-  .clk, .rst, .en, .in_valid, .in_odd_column, .in_abort, .out_valid, .holds(allowed)
-);
 logic held;
 kept #(.Width(Channels * Width + 4)) u_kept (
   .clk, .rst, .en, .out({out_valid, out_abort, out_row_start, out_frame_start, out_samples}), .held
@@ -116,3 +113,18 @@ end else begin : g_pair
     end
   end
 end
+
+// Protocol: pixels of YUYV come in pairs, a break without a pixel; any others. Samples and marks count with
+// out_valid, the colour of a pixel in RAW formats alone.
+module protocol_pixel_format;
+  logic expects_odd = 1'b0, pixel;
+  assign holds = rst | ~in_valid | format_is_yuyv(Format) == 0 | (~in_abort & in_odd_column == expects_odd);
+  always_ff @(posedge clk) begin
+    if (en && (in_valid || in_abort)) expects_odd <= in_valid & ~in_odd_column;
+    if (reset) expects_odd <= 1'b0;
+  end
+  assign counts = live & ~reset;
+  assign pixel = counts & out_valid;
+  assign {counts_out_samples, counts_out_row_start, counts_out_frame_start} = {3{pixel}};
+  assign counts_out_colour = pixel & (format_is_bayer(Format) != 0);
+endmodule

@@ -10,9 +10,7 @@ localparam int Wide = TotalWidth + WeightWidth + Drop + 2;
 
 typedef logic signed [Wide-1:0] wide_t;
 
-logic allowed;
-protocol_round_divide #(.WeightWidth(WeightWidth)) u_protocol (.clk, .en, .weight, .holds(allowed));
-always_comb assume (allowed);
+always_comb assume (u_protocol.allowed);
 
 // The operands of the present mean.
 logic [Latency*TotalWidth-1:0] totals;

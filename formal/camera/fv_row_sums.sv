@@ -11,7 +11,6 @@ parameter int Bayer = 1;
 
 localparam int Lanes = Bayer != 0 ? 2 : 3;
 
-protocol_row_sums u_protocol (.clk, .rst, .en, .in_valid, .in_row_start, .out_ends, .holds(allowed));
 
 // Where the pixel ends, from the beginning of its block; its part in the block.
 logic [BlockWidth:0] begin_q, begins, ends;

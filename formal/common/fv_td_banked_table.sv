@@ -8,10 +8,6 @@ parameter int Width = 1;
 parameter int Depth = 3;
 input logic [AddressWidth-1:0] chosen;
 
-protocol_td_banked_table #(.Depth(Depth)) u_protocol (
-  .clk, .rst, .en, .table_bank, .table_in_use, .frame_start, .change, .read, .read_address, .free_write,
-  .free_write_address, .free_read, .free_read_address, .holds(allowed)
-);
 always_comb assume (32'(chosen) < Depth);
 
 logic [AddressWidth-1:0] watched;  // chosen in the first clock, then constant
@@ -52,3 +48,29 @@ end
 
 bind dut.g_bank[0].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_0 (.*);
 bind dut.g_bank[1].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (.*);
+
+// Protocol: `change` comes one enabled clock or more behind frame_start; nothing is written in a reset or while a
+// change-over is due, no word is read in the clock that writes it; words count while they stand.
+module protocol_td_banked_table;
+  localparam logic [AddressWidth:0] End = Depth;
+  logic begun = 1'b0, named = 1'b0, shown = 1'b0, free_shown = 1'b0;
+  assign holds = (rst | ~change | begun)
+      & (~free_write | (~rst & table_bank == table_in_use & (~begun | named == table_in_use)))
+      & (~free_write | ~free_read | free_write_address != free_read_address)
+      & {1'b0, read_address} < End & {1'b0, free_write_address} < End & {1'b0, free_read_address} < End;
+  assign counts_table_in_use = live;
+  assign counts_read_word = live & shown;
+  assign counts_free_word = live & free_shown;
+  always_ff @(posedge clk) begin
+    free_shown <= free_read & ~reset;
+    if (en) begin
+      begun <= frame_start | (begun & ~change);
+      if (frame_start) named <= table_bank;
+      shown <= read;
+    end
+    if (reset) begin
+      begun <= 1'b0;
+      shown <= 1'b0;
+    end
+  end
+endmodule

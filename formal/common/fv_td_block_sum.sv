@@ -11,7 +11,6 @@ parameter int SumWidth = 5;
 parameter int Signed = 1;
 parameter int ColumnLog2 = 1;
 localparam int BlockLog2 = 1;
-input logic offered;  // frame_start
 input logic [BlockWidth-1:0] chosen;
 
 localparam int Wide = 1 << ColumnLog2;
@@ -28,13 +27,7 @@ ram_check #(.Depth(Blocks)) u_check (
   .clk, .write_en, .write_address(write_block), .read_en, .read_address(read_block)
 );
 
-logic given;
-logic [15:0] row, column;
-assign in_frame_start = given;
-protocol_td_block_sum #(.Rows(Rows), .Columns(Columns)) u_protocol (
-  .clk, .rst, .in_valid, .in_frame_start(offered), .in_first_frame, .read_en, .write_en,
-  .given_in_frame_start(given), .row, .column, .holds(allowed)
-);
+wire [15:0] row = u_protocol.row, column = u_protocol.column;
 
 logic row_ends, block_ends, last_q, last, fresh;
 logic [BlockWidth-1:0] watched, block;
@@ -84,3 +77,18 @@ always_comb begin
     row_follows: cover (write_complete && in_valid);
   end
 end
+
+// Protocol: frames in raster order, whole but for a reset, the first after a reset begins new sums; whatever the
+// memory answers.
+module protocol_td_block_sum;
+  logic [15:0] row, column;
+  logic begun = 1'b0;
+  logic [3:0] place;
+  assign holds = rst | ~in_valid | begun | in_first_frame;
+  always_ff @(posedge clk) begun <= ~reset & (begun | in_valid);
+  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (.*, .en(1'b1));
+  assign given_in_frame_start = in_valid & ~rst ? &place[1:0] : in_frame_start;
+  assign counts = live & ~reset;
+  assign counts_read_block = counts & read_en;
+  assign {counts_write_block, counts_write_sums} = {2{counts & write_en}};
+endmodule

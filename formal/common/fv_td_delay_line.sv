@@ -24,3 +24,10 @@ end
 if (Delay > 4) begin : g_memory  // longer than the longest shift register
   bind dut.g_memory.u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
 end
+
+// Protocol: any inputs; out counts once Delay words came in after a reset.
+module protocol_td_delay_line;
+  logic [7:0] words = '0;
+  assign counts_out = words == 8'(Delay) & ~rst;
+  always_ff @(posedge clk) words <= rst ? '0 : words + 8'(en & live & words != 8'(Delay));
+endmodule

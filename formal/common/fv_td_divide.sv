@@ -5,9 +5,6 @@ parameter int DivisorWidth = 3;
 parameter int QuotientWidth = 4;
 parameter int Latency = 5;  // models/tactile_depth/chip/common/td_divide.py
 
-protocol_td_divide #(.DivisorWidth(DivisorWidth), .QuotientWidth(QuotientWidth)) u_protocol (
-  .clk, .rst, .start, .divisor, .done, .overflow, .holds(allowed)
-);
 
 logic [Latency-1:0] due;  // bit n: done is due in n clocks
 logic [NumeratorWidth-1:0] numerator_q, product;
@@ -36,3 +33,17 @@ always_comb begin
     abandoned: cover (start && due[1]);
   end
 end
+
+// Protocol: the divisor is held from start to done; results count with done, quotients that fit alone.
+module protocol_td_divide;
+  logic dividing = 1'b0;
+  logic [DivisorWidth-1:0] held;
+  assign holds = rst | start | ~dividing | divisor == held;
+  assign counts_done = live & ~reset;
+  assign counts_overflow = counts_done & done;
+  assign counts = counts_overflow & ~overflow;
+  always_ff @(posedge clk) begin
+    dividing <= ~reset & (start | (dividing & ~done));
+    if (start) held <= divisor;
+  end
+endmodule

@@ -18,7 +18,6 @@ parameter int Signed = 0;
 parameter int Channels = 1;
 localparam int LaneWidth = Lanes > 1 ? $clog2(Lanes) : 1;
 localparam int DataWidth = 1;
-input logic offered;  // in_frame_start
 input logic [LaneWidth-1:0] choose;  // the pixel of each beat that is followed
 
 localparam int Channel = Channels / 2;
@@ -54,16 +53,7 @@ td_table_port #(.IndexWidth(IndexWidth), .Width(Width), .Signed(Signed)) u_port 
   .index(table_index), .word(table_word), .free_word(read_word)
 );
 
-logic given;
-logic [15:0] row, beat;
-assign in_frame_start = given;
-protocol_td_node_map #(
-  .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Lanes(Lanes), .Channels(Channels)
-) u_protocol (
-  .clk, .rst, .en, .table_command, .table_bank, .table_in_use, .capture_write, .capture_write_node, .capture_read,
-  .capture_read_node, .in_valid, .in_frame_start(offered), .given_in_frame_start(given), .row,
-  .column(beat), .holds(allowed)
-);
+wire [15:0] row = u_protocol.row, beat = u_protocol.column;
 
 logic [1:0] read_left;  // clocks until what was read stands
 logic bank, named;

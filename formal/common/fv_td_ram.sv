@@ -8,11 +8,7 @@ parameter int Depth = 6;
 parameter int Style = 1;
 input logic [AddressWidth-1:0] chosen;
 
-logic allowed;
-protocol_td_ram #(.Depth(Depth)) u_protocol (
-  .write_en, .write_address, .read_en, .read_address, .holds(allowed)
-);
-always_comb assume (allowed && 32'(chosen) < Depth);
+always_comb assume (u_protocol.allowed && 32'(chosen) < Depth);
 
 logic started = 1'b0;
 logic known = 1'b0, rewritten = 1'b0, returned = 1'b0, held = 1'b0;

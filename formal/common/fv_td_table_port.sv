@@ -52,3 +52,18 @@ always_comb begin
     withdrawn: cover (rst && own && command_q.write && command_q.read);
   end
 end
+
+// Protocol: anything on the bus. Index and word count with an access, an entry once one was read.
+module protocol_td_table_port;
+  logic named = 1'b0, read_q = 1'b0, known = 1'b0;
+  always_ff @(posedge clk) begin
+    named <= table_command.select == 2'(Select);
+    read_q <= live & read;
+    known <= known | read_q;
+  end
+  assign holds = 1'b1;
+  assign {counts_write, counts_read} = {2{live}};
+  assign counts_index = live & (write | read);
+  assign counts_word = live & write;
+  assign counts_table_answer = live & (~named | known);
+endmodule

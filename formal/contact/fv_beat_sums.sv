@@ -5,9 +5,7 @@ parameter int Width = 2;
 parameter int Lanes = 4;
 parameter int Latency = 2;  // models/tactile_depth/chip/contact/beat_sums.py
 
-logic allowed;
-protocol_beat_sums #(.Width(Width), .Lanes(Lanes)) u_protocol (.above, .weights, .count, .holds(allowed));
-always_comb assume (allowed);
+always_comb assume (u_protocol.allowed);
 
 logic [Latency-1:0] known = '0;
 logic [Latency*Lanes-1:0] above_q;
@@ -50,3 +48,13 @@ always_comb begin
     none: cover (count == '0);
   end
 end
+
+// Protocol: the weight of a depth that is not above is 0; limits count where something is above.
+module protocol_beat_sums;
+  logic [Lanes-1:0] without_weight;
+  for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
+    assign without_weight[lane] = weights[lane*Width+:Width] == '0;
+  end
+  assign holds = (above | without_weight) == '1;
+  assign {counts_least_offset, counts_greatest_offset} = {2{count != '0}};
+endmodule

@@ -6,9 +6,6 @@ parameter int PositionWidth = 2;
 parameter int WeightWidth = 3;
 parameter int Latency = 16;  // models/tactile_depth/chip/contact/centroid.py
 
-protocol_centroid #(.PositionWidth(PositionWidth), .WeightWidth(WeightWidth)) u_protocol (
-  .clk, .rst, .start, .column_moment, .row_moment, .weight, .done, .holds(allowed)
-);
 
 logic [Latency-1:0] due;
 logic [MomentWidth-1:0] columns, rows;
@@ -45,3 +42,24 @@ always_comb begin
     rounded_up: cover (done && up[0]);
   end
 end
+
+// Protocol: row_moment and weight are held from start to done; no moment is more than the weight times the largest
+// position; means count with done.
+module protocol_centroid;
+  logic dividing = 1'b0;
+  logic [MomentWidth-1:0] held_moment, limit;
+  logic [WeightWidth-1:0] held_weight;
+  assign limit = {weight, PositionWidth'(0)} - MomentWidth'(weight);
+  assign holds = rst | (start
+      ? weight != '0 & column_moment <= limit & row_moment <= limit
+      : ~dividing | (row_moment == held_moment & weight == held_weight));
+  assign counts_done = live & ~reset;
+  assign counts = counts_done & done;
+  always_ff @(posedge clk) begin
+    dividing <= ~reset & (start | (dividing & ~done));
+    if (start) begin
+      held_moment <= row_moment;
+      held_weight <= weight;
+    end
+  end
+endmodule

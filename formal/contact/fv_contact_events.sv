@@ -10,9 +10,6 @@ parameter int Rows = 4;
 parameter int Columns = 8;
 parameter int Latency = 28;  // models/tactile_depth/chip/contact/contact_events.py
 
-protocol_contact_events #(.Rows(Rows), .Columns(Columns)) u_protocol (
-  .clk, .rst, .in_valid, .in_position, .m_event_tvalid, .holds(allowed)
-);
 
 // When a record is due, and what it says of its frame.
 logic [Latency-1:0] due;
@@ -37,7 +34,7 @@ end
 
 logic [Latency-1:0] early;
 for (genvar n = 0; n < Latency; n++) begin : g_early
-  assign early[n] = due[n] && 32'(u_protocol.u_frames.next_place) > n;
+  assign early[n] = due[n] && 32'(u_protocol.u_depth_frames.next_place) > n;
 end
 always_comb begin
   if (started) begin

@@ -20,12 +20,9 @@ localparam int Behind = ToPeak - 2;         // clocks from the count to the peak
 assign on_threshold = 32'(on_level);
 assign off_threshold = 32'(off_level);
 
-logic [$clog2(Pixels/Lanes)-1:0] beat;
+wire [$clog2(Pixels/Lanes)-1:0] beat = u_protocol.u_depth_frames.place;
 logic [3:0] place;  // of the first depth of a beat
 assign place = 4'(Lanes * 32'(beat));
-protocol_contact_peak #(.Rows(Rows), .Columns(Columns), .Lanes(Lanes)) u_protocol (
-  .clk, .rst, .in_valid, .in_position, .count_valid, .peak_valid, .place(beat), .holds(allowed)
-);
 
 // A beat one clock later, with its thresholds.
 logic valid_q, first_q;

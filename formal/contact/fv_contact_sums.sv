@@ -14,12 +14,9 @@ localparam int SumWidth = Width + 6;        // of a sum or a moment in so small 
 localparam int ToSums = 2 + $clog2(Lanes);  // clocks from the last beat of a frame
 localparam int Behind = ToSums - 1;         // clocks from what the frame should come to, to the sums
 
-logic [$clog2(Pixels/Lanes)-1:0] beat;
+wire [$clog2(Pixels/Lanes)-1:0] beat = u_protocol.u_depth_frames.place;
 logic [3:0] place;  // of the first depth of a beat
 assign place = 4'(Lanes * 32'(beat));
-protocol_contact_sums #(.Rows(Rows), .Columns(Columns), .Lanes(Lanes)) u_protocol (
-  .clk, .rst, .in_valid, .in_position, .sums_valid, .place(beat), .holds(allowed)
-);
 
 // What the frame should come to; an arbitrary depth, row and column of it.
 typedef struct packed {

@@ -9,9 +9,6 @@
 parameter int Width = 1;
 input logic pick;
 
-protocol_depth_gate #(.Width(Width)) u_protocol (
-  .clk, .rst, .en, .in_valid, .in_position, .in_data, .m_valid, .tap_valid, .holds(allowed)
-);
 
 // What is given to the output: as long as its two places and the frame allow.
 logic drops, refused, moves, room, given, leaves;  // `drops`: of the frame that is, or would be, present
@@ -90,3 +87,22 @@ always_comb begin
     recovers: cover (leaves && m_position.frame_end && refused && drops);
   end
 end
+
+// Protocol: frames of any number of words, in successive enabled clocks; after a reset the first word is a frame's
+// first, in a reset too. A word stays while en is low.
+module protocol_depth_gate;
+  logic open = 1'b0, stays = 1'b0;
+  logic [Width+2:0] word, word_before;
+  assign word = {in_position, in_data};
+  assign holds = (in_valid | ~open) & (~in_valid | in_position[2] == ~open)
+      & (~stays | (in_valid & word == word_before));
+  always_ff @(posedge clk) begin
+    if (reset) open <= 1'b0;
+    else if (en && in_valid) open <= ~in_position[0];
+    stays <= in_valid & ~en & ~reset;
+    word_before <= word;
+  end
+  assign counts = live & ~reset;
+  assign {counts_m_position, counts_m_data} = {2{counts & m_valid}};
+  assign {counts_tap_position, counts_tap_data} = {2{counts & tap_valid}};
+endmodule

@@ -6,7 +6,6 @@
 parameter int Width = 24;
 parameter int Lanes = 1;
 
-protocol_threshold_comparator u_protocol (.clk, .rst, .in_valid, .in_frame_start, .holds(allowed));
 
 logic signed [31:0] of_frame, in_force;  // threshold when the frame began; that which counts now
 assign in_force = in_valid & in_frame_start ? threshold : of_frame;

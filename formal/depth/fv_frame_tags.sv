@@ -7,7 +7,6 @@ parameter int Latency = 10;
 parameter int Pixels = 4;
 input logic pick;
 
-protocol_frame_tags #(.Pixels(Pixels)) u_protocol (.clk, .rst, .en, .push, .holds(allowed));
 
 logic [Latency-1:0] pushed;
 logic followed_due;
@@ -35,3 +34,15 @@ always_comb begin
     alone: cover (due && en && pushed[Latency-2:0] == '0);
   end
 end
+
+// Protocol: frames end at least Pixels enabled clocks apart.
+module protocol_frame_tags;
+  localparam int CountWidth = $clog2(Pixels + 1);
+  logic [CountWidth-1:0] left = '0;  // enabled clocks until the next push may come
+  assign holds = ~push | rst | left == '0;
+  assign counts = live;
+  always_ff @(posedge clk) begin
+    if (reset) left <= '0;
+    else if (en) left <= push ? CountWidth'(Pixels - 1) : left - CountWidth'(left != '0);
+  end
+endmodule

@@ -20,13 +20,8 @@ localparam int SumWidth = Width + 2 + MaxLog2;
 localparam int Clocks = 7;  // from the last word to done
 localparam int ToMap = 6;   // from a block's last word to its zero offset
 
-logic [15:0] row_in, column_in, row, column;
-logic [1:0] given;
-protocol_zero_capture #(.Rows(Rows), .Columns(Columns), .Lanes(Lanes)) u_protocol (
-  .clk, .rst, .en, .in_valid, .in_frame_start, .in_frame_end, .map_write, .row(row_in), .column(column_in),
-  .given_in_frame_start(given[1]), .given_in_frame_end(given[0])
-);
-assign allowed = {in_frame_start, in_frame_end} == given;
+wire [15:0] row_in = u_protocol.row, column_in = u_protocol.column;
+logic [15:0] row, column;
 
 // With several lanes the two depths of a block in a beat are added up first.
 logic take, frame_start;

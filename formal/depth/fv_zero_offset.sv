@@ -30,14 +30,7 @@ td_table_port #(.Select(3), .IndexWidth(NodeWidth), .Width(Width), .Signed(1)) u
   .index(table_index), .word(table_word), .free_word(asked_word)
 );
 
-logic holds;
-logic [2:0] given;
-logic [15:0] row, column;
-protocol_zero_offset #(.Rows(Rows), .Columns(Columns), .BlockLog2(1), .Lanes(Lanes)) u_protocol (
-  .clk, .rst, .en, .table_command, .table_bank, .table_in_use, .capture_write, .capture_write_node, .in_valid,
-  .in_position, .out_valid, .row, .column, .given_in_position(given), .holds
-);
-assign allowed = holds && in_position == given;
+wire [15:0] row = u_protocol.row, column = u_protocol.column;
 logic [1:0] read_left;  // clocks until what was read stands
 
 // The beat that is followed, and the words on their way.
@@ -101,7 +94,7 @@ always_ff @(posedge clk) begin
   end
   read_left <= table_read ? 2'd1 : read_left - 2'(read_left != 0);
   if (table_read) begin
-    read_known <= u_protocol.u_zeros.settled;  // what is read while a change is due: fv_td_node_map
+    read_known <= u_protocol.u_protocol_node_map.settled;  // what is read while a change is due: fv_td_node_map
     asked_word <= table_in_use ? words_0[table_index] : words_1[table_index];
   end
   if (rst) begin

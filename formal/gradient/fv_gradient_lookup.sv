@@ -19,9 +19,6 @@ td_table_port #(.Select(0), .IndexWidth(IndexWidth), .Width(Width), .Words(2), .
   .index(table_index), .word(table_word), .free_word(asked_word)
 );
 
-protocol_gradient_lookup #(.BitsPerChannel(BitsPerChannel)) u_protocol (
-  .clk, .rst, .en, .table_command, .table_bank, .table_in_use, .in_valid, .in_position, .out_valid, .holds(allowed)
-);
 always_comb if (!started) assume (!table_bank);
 
 // The table as the register map describes it: red uppermost, then green, then blue.
@@ -88,3 +85,21 @@ end
 
 bind dut.u_table.g_bank[0].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
 bind dut.u_table.g_bank[1].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (.*);
+
+// Protocol: nothing is written while a change of bank is due, or with a read. Frames have two pixels or more.
+module protocol_gradient_lookup;
+  logic begun = 1'b0, named = 1'b0, begins, write, legal, known;
+  assign begins = in_valid & in_position[0] & in_position[1];
+  table_accesses #(
+    .Select(td_register_map_pkg::TableSelectGradient), .Entries(1 << (3 * BitsPerChannel))
+  ) u_accesses (.clk, .rst, .holds, .table_command, .write, .read(), .index(), .idle(), .legal, .known);
+  assign holds = legal & (rst | ~write | (table_bank == table_in_use & named == table_in_use)) & (rst | ~(begun & begins));
+  always_ff @(posedge clk) begin
+    if (en && holds) begun <= begins;
+    if (reset || (en && begins)) named <= table_bank;
+  end
+  assign counts_table_in_use = live;
+  assign counts_table_answer = live & known;
+  assign counts_out_valid = live & ~reset & en;
+  assign {counts_out_position, counts_out_gx, counts_out_gy} = {3{counts_out_valid & out_valid}};
+endmodule

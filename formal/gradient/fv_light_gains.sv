@@ -15,12 +15,8 @@ parameter int GainWidth = 5;
 parameter int OutWidth = 6;
 parameter int OutFraction = 4;
 
-logic [3:0] place;
-logic [15:0] row, column;
-protocol_light_gains #(.Rows(Rows), .Columns(Columns)) u_protocol (
-  .clk, .rst, .en, .in_valid, .out_valid, .row, .column, .given_in_position(place)
-);
-assign allowed = !in_valid || in_position == place;
+wire [15:0] row = u_protocol.row, column = u_protocol.column;
+assign allowed = !in_valid || in_position == u_protocol.place;
 
 // Part 1.
 

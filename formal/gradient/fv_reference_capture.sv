@@ -28,12 +28,7 @@ ram_check #(.Depth(Nodes)) u_check (
   .clk, .write_en(map_write), .write_address(map_write_node), .read_en(map_read), .read_address(map_read_node)
 );
 
-logic [15:0] row, column;
-logic [3:0] given;
-protocol_reference_capture #(.Rows(Rows), .Columns(Columns)) u_protocol (
-  .clk, .rst, .en, .in_valid, .in_position, .map_write, .map_read, .row, .column, .given_in_position(given)
-);
-assign allowed = in_position == given;
+wire [15:0] row = u_protocol.row, column = u_protocol.column;
 typedef enum logic [1:0] {Idle, Armed, Summing, Dividing} state_e;
 state_e state;
 logic [NodeWidth-1:0] watched;  // chosen in the first clock, then constant

@@ -6,10 +6,7 @@
 //
 // Frames are numbered modulo 8; the bench follows what stands in each bank.
 
-logic in_frame;
-protocol_bank_choice u_protocol (
-  .clk, .rst, .keep, .write_begin, .write_end, .take, .done, .waiting, .reading, .in_frame, .holds(allowed)
-);
+wire in_frame = u_protocol.begun;
 
 // Frames that are held: `ended` is whole and awaits publish, `ready` waits for the reader.
 logic [2:0] number, ended_number, ready_number, taken_number;
@@ -84,3 +81,18 @@ always_comb begin
     gives_up: cover (!keep && ready);
   end
 end
+
+// Protocol: a frame ends once, behind its begin; take while a frame waits and the reader is free, done while one is
+// read. A bank counts while it is written, or read.
+module protocol_bank_choice;
+  logic begun = 1'b0;
+  assign holds = rst | ((~write_end | (begun & ~write_begin)) & (~done | reading)
+      & (~take | (waiting & keep & (~reading | done))));
+  assign counts = live & ~reset;
+  assign counts_write_bank = counts & (write_begin | begun);
+  assign counts_read_bank = counts & reading;
+  always_ff @(posedge clk) begin
+    if (write_begin || write_end) begun <= write_begin;
+    if (reset) begun <= 1'b0;
+  end
+endmodule

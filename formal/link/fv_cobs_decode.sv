@@ -7,8 +7,6 @@
 
 parameter int Longest = 5;
 
-logic counts_out_data, counts_out_bad, counts;
-protocol_cobs_decode u_protocol (.*, .holds(allowed));
 
 logic begun, broken, is_code, first, after_full;
 logic [7:0] place, next_code;  // of the next byte, and of the next code

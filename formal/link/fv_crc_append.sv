@@ -5,9 +5,6 @@
 // The specification of the CRC is not reflected: it takes the bits of a byte from the lowest, and its highest bit is
 // the lowest of the core's.
 
-protocol_crc_append u_protocol (
-  .*, .holds(allowed), .counts_out_data(), .counts_out_last(), .counts()
-);
 
 function automatic logic [31:0] with_byte(input logic [31:0] remainder, input logic [7:0] data);
   logic [31:0] out;

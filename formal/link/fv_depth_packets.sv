@@ -17,10 +17,6 @@ input logic signed [DataWidth-1:0] pick_value;
 input logic [5:0] pick_byte;
 input logic pick_bit;
 
-protocol_depth_packets u_protocol (
-  .clk, .rst, .cold_rst, .shift, .resets, .value_read, .depth_valid, .depth_ready, .depth_data, .depth_last,
-  .sending, .holds(allowed)
-);
 
 // The store: what it answers.
 logic [PlaceWidth-1:0] watched;
@@ -231,3 +227,26 @@ always_comb begin
     mean: cover (depth_valid && kind == 2'd3 && at == 7'd10);
   end
 end
+
+// Protocol: shifts up to 16; `resets` stands while a frame is sent; a cold reset comes with a reset. Bytes count
+// while they are valid, an address with its read, a word of the record behind the 18 bytes in front of it.
+module protocol_depth_packets;
+  logic was_sending = 1'b0, trailer = 1'b0;
+  logic [4:0] bytes = '0;  // of the packet that were taken, up to 18
+  logic [15:0] resets_q;
+  assign holds = shift <= 5'd16 & (~cold_rst | rst) & (rst | ~was_sending | ~sending | resets == resets_q);
+  assign counts = live & ~reset;
+  assign counts_value_address = counts & value_read;
+  assign {counts_depth_data, counts_depth_last} = {2{counts & depth_valid}};
+  assign counts_record_word = counts & sending & trailer & bytes == 5'd18;
+  always_ff @(posedge clk) begin
+    was_sending <= sending & ~reset;
+    resets_q <= resets;
+    if (depth_valid && depth_ready) begin
+      if (bytes == '0) trailer <= depth_data == 8'h98;
+      if (depth_last) bytes <= '0;
+      else if (bytes != 5'd18) bytes <= bytes + 5'd1;
+    end
+    if (reset) bytes <= '0;
+  end
+endmodule

@@ -18,14 +18,10 @@ bind dut.g_bank[0].u_values ram_check #(.Depth(Depth), .Covered(0)) u_check (.*)
 bind dut.g_bank[1].u_values ram_check #(.Depth(Depth), .Covered(0)) u_check (.*);
 bind dut.u_records ram_check #(.Depth(Depth), .Covered(0)) u_check (.*);
 
-logic written, begins, ends, awaited, reading;
-logic [PlaceWidth:0] beat;
-logic [3:0] word;
-protocol_depth_store #(.Rows(Rows), .Columns(Columns), .Lanes(Lanes)) u_protocol (
-  .clk, .rst, .keep, .s_axis_tvalid, .s_axis_tuser, .s_event_tvalid, .s_event_tlast, .frame_valid, .frame_take,
-  .frame_done, .value_read, .value_address, .record_word, .written, .beat, .begins, .ends, .awaited, .word, .reading,
-  .holds(allowed)
-);
+wire written = u_protocol.written, begins = u_protocol.begins,
+    ends = u_protocol.ends, awaited = u_protocol.waits, reading = u_protocol.taken;
+wire [PlaceWidth:0] beat = u_protocol.beat;
+wire [3:0] word = u_protocol.next_word;
 always_comb assume (32'(pick) < Pixels && pick_word <= 4'd11);
 
 // The followed bit of the value, and of the word, of each frame: it comes, has ended, waits, is taken.
@@ -75,3 +71,45 @@ always_comb begin
     reads: cover (read_q2 && word_read_q);
   end
 end
+
+// Protocol: any beats; a record of 12 words behind the last beat of its frame and before the last beat of the next,
+// or without a frame, between last beats too. The reader takes a frame that waits, and reads inside it; what it
+// reads counts.
+module protocol_depth_store;
+  localparam int Pixels = Rows * Columns;
+  logic written;  // a beat belongs to a frame
+  logic [PlaceWidth:0] beat;  // its place
+  logic begins, ends;
+  localparam int Beats = Pixels / Lanes;
+  logic in_frame = 1'b0, waits = 1'b0, taken = 1'b0, was_taken = 1'b0, known = 1'b0, known_q = 1'b0;
+  logic [PlaceWidth:0] next_beat = '0;
+  logic [3:0] next_word = '0;
+  assign begins = s_axis_tvalid & s_axis_tuser;
+  assign written = s_axis_tvalid & (s_axis_tuser | in_frame);
+  assign beat = s_axis_tuser ? '0 : next_beat;
+  assign ends = written & beat == (PlaceWidth + 1)'(Beats - 1);
+  assign holds = (rst | ((~ends | (~waits & next_word == '0 & ~s_event_tvalid))
+      & (~s_event_tvalid | s_event_tlast == (next_word == 4'd11))))
+      & (~frame_take | (frame_valid & keep & ~taken)) & (~frame_done | taken) & (~value_read | (taken & ~frame_done & 32'(value_address) < Pixels))
+      & record_word <= 4'd11;
+  assign counts = live & ~reset;
+  assign counts_value_data = counts & known_q;
+  assign counts_record_data = counts & was_taken;
+  always_ff @(posedge clk) begin
+    if (s_axis_tvalid) next_beat <= beat + (PlaceWidth + 1)'(1);
+    if (begins || ends) in_frame <= begins;
+    if (s_event_tvalid) next_word <= s_event_tlast ? '0 : next_word + 4'd1;
+    waits <= ends | (waits & ~(s_event_tvalid & s_event_tlast));
+    taken <= frame_take | (taken & ~frame_done);
+    was_taken <= taken;
+    known <= known | (value_read & holds);
+    known_q <= known;
+    if (reset) begin
+      in_frame <= 1'b0;
+      next_word <= '0;
+      waits <= 1'b0;
+      taken <= 1'b0;
+      was_taken <= 1'b0;
+    end
+  end
+endmodule

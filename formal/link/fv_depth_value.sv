@@ -7,9 +7,7 @@ parameter int DataWidth = 20;
 localparam int SumWidth = DataWidth + 2;
 localparam int Shifts = 17;
 
-logic holds, counts;
-protocol_depth_value u_protocol (.*);
-always_comb assume (holds);
+always_comb assume (u_protocol.allowed);
 
 logic signed [SumWidth-1:0] weighed, sum, sum_q;
 logic [4:0] shift_q;
@@ -32,9 +30,27 @@ always_ff @(posedge clk) wanted <= rounded[shift_q];
 
 always_comb begin
   if (u_protocol.codes != '0) same_sum: assert (dut.sum == sum);  // behind the proof
-  if (counts) begin
+  if (u_protocol.counts) begin
     as_rounded: assert (value == wanted);
     clips: cover (value == 16'sh7fff && wanted == 16'sh7fff);
     negative: cover (value < 0 && shift_q == 5'd16);
   end
 end
+
+// Protocol: one code a value, or up to four of a mean; shifts up to 16. The value counts from 3 clocks behind its
+// last code until 3 clocks behind the first code of the next.
+module protocol_depth_value;
+  logic [2:0] codes = '0;  // of the value
+  logic mean = 1'b0, complete, complete_q = 1'b0, complete_q2 = 1'b0;
+  assign holds = shift <= 5'd16 & (~in_valid | in_first | (average & mean & codes != '0 & codes < 3'd4));
+  assign complete = codes == (mean ? 3'd4 : 3'd1);
+  assign counts = complete_q2;
+  always_ff @(posedge clk) begin
+    if (in_valid && holds) begin
+      codes <= in_first ? 3'd1 : codes + 3'd1;
+      mean <= average;
+    end
+    complete_q <= complete & holds;
+    complete_q2 <= complete_q;
+  end
+endmodule

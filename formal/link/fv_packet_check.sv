@@ -7,8 +7,6 @@
 
 input logic pick;
 
-logic counts_out_data, counts_out_good, counts;
-protocol_packet_check u_protocol (.*, .holds(allowed));
 
 // x^32 + .. + 1, the highest power on the left; a right packet leaves the remainder C704DD7B.
 localparam logic [31:0] Polynomial = 32'h04C11DB7;

@@ -5,10 +5,7 @@
 // the kind is taken. An ask, a select with good fields and
 // one with bad ones are told once, one clock behind the byte that shows it.
 
-logic [10:0] place;
-logic counts_in_ready, counts_in_drop, counts_select_format, counts_select_shift, counts_request_data;
-logic counts_request_last, counts_request_write, counts_picture_data, counts_picture_last, counts;
-protocol_packet_decode u_protocol (.*, .holds(allowed));
+wire [10:0] place = u_protocol.at;
 
 // n parts of a size, 1 to `most`, behind a header.
 function automatic logic parts(input int length, input int header, input int size, input int most);
@@ -95,3 +92,33 @@ always_comb begin
     silent: cover (taken && kind == Unknown && in_length > 11'd1);
   end
 end
+
+// Protocol: packets as they leave packet_store. A byte that was not taken is offered again; a packet has 1 to 2047
+// bytes, the same length with each, and ends with the last of them, with that of a full bank, or where the core
+// drops it. What is offered counts while it is valid.
+module protocol_packet_decode;
+  localparam logic [10:0] BankBytes = 11'd1024;
+  logic stays, consistent;
+  logic [10:0] at = '0, length, end_at;
+  offer_stays #(.Width(22)) u_offer (
+    .clk, .rst, .reset, .valid(in_valid), .ready(in_ready), .word({in_data, in_last, in_length, in_length_mod3}),
+    .holds(stays)
+  );
+  assign end_at = in_length < BankBytes ? in_length : BankBytes;
+  assign consistent = (in_length != '0) & (at == '0 | in_length == length) & (in_length_mod3 == 2'(in_length % 11'd3))
+      & (in_last == (at + 11'd1 == end_at));
+  assign holds = stays & (~in_valid | consistent);
+  assign counts = live;
+  assign counts_in_ready = live & in_valid;
+  assign counts_in_drop = live & in_valid & in_ready & ~rst;
+  assign {counts_select_format, counts_select_shift} = {2{live & select}};
+  assign {counts_request_data, counts_request_last, counts_request_write} = {3{live & request_valid}};
+  assign {counts_picture_data, counts_picture_last} = {2{live & picture_valid}};
+  always_ff @(posedge clk) begin
+    if (in_valid && in_ready) begin
+      at <= in_last | in_drop ? '0 : at + 11'd1;
+      length <= in_length;
+    end
+    if (reset) at <= '0;
+  end
+endmodule

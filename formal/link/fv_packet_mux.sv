@@ -5,9 +5,6 @@
 // Packets may have any length. A packet passes from the clock after it was chosen to that in which its last byte
 // leaves.
 
-protocol_packet_mux u_protocol (
-  .*, .holds(allowed), .counts_out_data(), .counts_out_last(), .counts()
-);
 
 logic [3:0] valid, ready, turn, owner;  // a bit for each stream; whose packet begins, or passes
 logic passes, leaves, behind_record, stalled, stalled_last, whole;

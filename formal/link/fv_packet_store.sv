@@ -9,9 +9,7 @@
 parameter int BankBytes = 4;
 input logic pick;
 
-logic [11:0] bytes;
-logic counts_out_data, counts_out_last, counts_out_length, counts_out_length_mod3, counts;
-protocol_packet_store u_protocol (.*, .holds(allowed));
+wire [11:0] bytes = u_protocol.count;
 
 localparam int PlaceWidth = $clog2(BankBytes);
 localparam logic [11:0] Most = 12'(BankBytes);
@@ -118,3 +116,17 @@ always_comb begin
 end
 
 bind dut.u_bytes ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
+
+// Protocol: a byte, or the end of a packet, or none; a good packet has 1 to 2047 bytes. Any consumer. What is
+// offered counts while it is valid.
+module protocol_packet_store;
+  logic [11:0] count = '0;  // of the packet that comes; 2048 stands for more
+  assign holds = ~(in_valid & in_end) & ~(in_end & in_good & (count == '0 | count[11]));
+  assign counts = live;
+  assign counts_out_data = live & out_valid;
+  assign {counts_out_last, counts_out_length, counts_out_length_mod3} = {3{counts_out_data}};
+  always_ff @(posedge clk) begin
+    if (in_valid && !count[11]) count <= count + 12'd1;
+    if (in_end || reset) count <= '0;
+  end
+endmodule

@@ -12,9 +12,6 @@ localparam int Pixels = Rows * Columns;
 localparam logic [3:0] Header = 4'd8;   // bytes in front of the pixels
 localparam logic [3:0] Longest = 4'd10; // the last byte of a pixel; the next one has the number of its first
 
-protocol_picture_pixels u_protocol (
-  .*, .holds(allowed), .counts_m_axis_tdata(), .counts_m_axis_tlast(), .counts_m_axis_tuser(), .counts()
-);
 
 // The place of the next pixel and the number of its picture are the header of a packet that goes on.
 logic takes, begins, goes_on, wanted, differs, moved;

@@ -9,10 +9,7 @@ input logic [5:0] pick;
 
 bind dut.u_records ram_check #(.Depth(Depth), .Covered(0)) u_check (.*);
 
-logic [3:0] word;
-protocol_record_packet u_protocol (
-  .clk, .rst, .s_event_tvalid, .s_event_tlast, .record_valid, .word, .holds(allowed)
-);
+wire [3:0] word = u_protocol.next_word;
 
 logic [5:0] watched, place;  // place: bytes of the packet that were taken
 logic [1:0] silent;
@@ -59,3 +56,15 @@ always_comb begin
     second_word: cover (leaves && place == 6'd5);
   end
 end
+
+// Protocol: records of 12 words; bytes count while they are valid.
+module protocol_record_packet;
+  logic [3:0] next_word = '0;
+  assign holds = rst | ~s_event_tvalid | s_event_tlast == (next_word == 4'd11);
+  assign counts = live & ~reset;
+  assign {counts_record_data, counts_record_last} = {2{counts & record_valid}};
+  always_ff @(posedge clk) begin
+    if (s_event_tvalid) next_word <= s_event_tlast ? '0 : next_word + 4'd1;
+    if (reset) next_word <= '0;
+  end
+endmodule

@@ -6,7 +6,6 @@
 
 parameter int Divider = 4;
 
-protocol_uart_transmit u_protocol (.*, .holds(allowed), .counts());
 
 logic sending;
 logic [7:0] age;   // clocks

@@ -13,9 +13,6 @@ localparam int MeanDrop = 1;
 localparam int MomentWidth = Width + 2 * $clog2(Rows) + 2;
 localparam int ToMean = 6;
 
-protocol_column_mean #(.Rows(Rows)) u_protocol (
-  .clk, .rst, .en, .in_next, .in_frame_start, .holds(allowed)
-);
 
 // The sum in one step, when d is there, and then its way through the roundings.
 logic [ToMean-1:0] old;  // old[n]: in_next was n + 1 enabled clocks ago
@@ -49,3 +46,30 @@ always_comb begin
     of_all_rows: cover (old[ToMean-1] && 32'(row) == Rows - 2 && mean != '0 && en);
   end
 end
+
+// Protocol: rows at least 6 enabled clocks apart; a frame begins with any of them, and has at most Rows; after a
+// reset none has begun. The mean counts from the row before the last one on.
+module protocol_column_mean;
+  localparam int Apart = 6;
+  logic [2:0] left = '0;        // enabled clocks until a row may come
+  logic [15:0] rows_left = '0;  // of the frame
+  logic known = 1'b0;           // a mean of whole rows stands at the output
+  logic [Apart-1:0] next_q = '0;
+  assign holds = rst | (in_next ? left == '0 & (in_frame_start | rows_left != '0) : ~in_frame_start);
+  assign counts_mean = known & ~reset & en;
+  assign counts_clipped = live & ~reset;
+  always_ff @(posedge clk) begin
+    if (en) begin
+      left <= in_next ? 3'(Apart - 1) : left - 3'(left != '0);
+      if (in_next) rows_left <= (in_frame_start ? 16'(Rows) : rows_left) - 16'd1;
+      next_q <= Apart'({next_q, in_next});
+      known <= known | next_q[Apart-1];
+    end
+    if (reset) begin
+      left <= '0;
+      rows_left <= '0;
+      known <= 1'b0;
+      next_q <= '0;
+    end
+  end
+endmodule

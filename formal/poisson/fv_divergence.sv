@@ -12,13 +12,11 @@ parameter int Neumann = 0;
 localparam int ColumnWidth = $clog2(Columns);
 input logic [ColumnWidth-1:0] chosen;
 
-logic [ColumnWidth-1:0] column, watched;  // watched: chosen in the first clock, then constant
+wire [ColumnWidth-1:0] column = u_protocol.column;
+logic [ColumnWidth-1:0] watched;  // watched: chosen in the first clock, then constant
 logic first_row, first_column, last_row, last_column;
 assign {last_column, last_row, first_column, first_row} = in_position;
 
-protocol_divergence #(.Columns(Columns)) u_protocol (
-  .clk, .rst, .en, .in_valid, .in_position, .out_valid, .column, .holds(allowed)
-);
 
 int gx, gy, left, above;
 assign gx = Neumann != 0 && last_column ? 0 : 32'(in_gx);
@@ -63,3 +61,27 @@ always_comb begin
 end
 
 bind dut.u_line ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
+
+// Protocol: pixels in raster order, in a reset too; how many rows a frame has is left open.
+module protocol_divergence;
+  localparam int ColumnWidth = $clog2(Columns);
+  logic [ColumnWidth-1:0] column;
+  logic first_row = 1'b1, last_row_before, marks_right;
+  logic in_first_row, in_first_column, in_last_row, in_last_column;
+  assign {in_last_column, in_last_row, in_first_column, in_first_row} = in_position;
+  assign marks_right = (in_first_column == (column == '0)) & (in_last_column == (column == ColumnWidth'(Columns - 1)))
+      & (in_first_row == first_row) & (column == '0 | in_last_row == last_row_before);
+  assign holds = ~in_valid | marks_right;
+  always_ff @(posedge clk) begin
+    if (reset) begin
+      column <= '0;
+      first_row <= 1'b1;
+    end else if (en && in_valid) begin
+      column <= in_last_column ? '0 : column + ColumnWidth'(1);
+      if (in_last_column) first_row <= in_last_row;
+      last_row_before <= in_last_row;
+    end
+  end
+  assign {counts_out_valid, counts_out_frame_start} = {2{live & ~reset & en}};
+  assign counts_out_data = counts_out_valid & out_valid;
+endmodule

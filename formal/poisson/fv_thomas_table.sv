@@ -17,10 +17,9 @@ logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Columns];
 initial $readmemh("square.hex", square);
 
 localparam int Width = LastShiftWidth + CoeffWidth;
-logic allowed, due, held;
+logic due, held;
 logic [Width-1:0] expected;
-protocol_thomas_table #(.Rows(Rows)) u_protocol (.clk, .en, .row, .holds(allowed));
-always_comb assume (allowed);
+always_comb assume (u_protocol.allowed);
 follow_delay #(.Width(Width), .Latency(Latency)) u_follow (
   .clk, .rst(1'b0), .en, .pick, .in(square[32'(row) * Columns + 32'(position)]), .due, .word(expected)
 );

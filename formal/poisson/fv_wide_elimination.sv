@@ -33,13 +33,10 @@ localparam int RowWidth = $clog2(Rows + 1);
 localparam int CountWidth = $clog2(4 * Words + 3);
 localparam int LineWidth = Words * (LastShiftWidth + CoeffWidth);
 
-logic active, last_row;
-logic [PositionWidth-1:0] position, column;  // column: chosen in the first clock, then constant
-logic [RowWidth-1:0] row;
-protocol_wide_elimination #(.Columns(Columns), .Words(Words), .Rows(Rows)) u_protocol (
-  .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start, .active, .position, .row, .last_row,
-  .holds(allowed)
-);
+wire active = u_protocol.active, last_row = u_protocol.last_row;
+wire [PositionWidth-1:0] position = u_protocol.position;
+wire [RowWidth-1:0] row = u_protocol.row;
+logic [PositionWidth-1:0] column;  // column: chosen in the first clock, then constant
 
 logic [LineWidth-1:0] square[Rows*Clocks];
 initial $readmemh("square.hex", square);
@@ -180,3 +177,39 @@ wide_elimination_steps #(
 );
 
 bind dut.u_row_above ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
+
+// Protocol: bursts of Columns / Words clocks as protocol_bursts allows them; words leave 2 enabled clocks behind the
+// starts going out. out_last counts in the last row of a frame, out_ahead in all but the first.
+module protocol_wide_elimination;
+  localparam int Clocks = Columns / Words;
+  localparam int PositionWidth = $clog2(Clocks);
+  localparam int RowWidth = $clog2(Rows + 1);
+  logic active;  // a clock of a burst comes in 2 enabled clocks, with this position in it
+  logic [PositionWidth-1:0] position;
+  logic [RowWidth-1:0] row;  // of the burst in its frame
+  logic last_row;
+  logic [15:0] out_left = '0;
+  logic [1:0] start_q = '0, frame_start_q;
+  logic [RowWidth-1:0] out_row, out_row_q;
+  logic words, unused_counts;
+  assign words = counts_out_start & (start_q[1] | out_left != '0);
+  assign out_row = ~start_q[1] ? out_row_q : frame_start_q[1] ? '0 : out_row_q + RowWidth'(1);
+  assign counts_out_last = words & (out_row == RowWidth'(Rows - 1));
+  assign counts_out_ahead = words & (out_row != '0);
+  protocol_bursts #(.Columns(Clocks), .Rows(Rows)) u_bursts (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row, .holds,
+    .counts_out_start, .counts_out_frame_start, .counts_saturations, .counts(unused_counts)
+  );
+  always_ff @(posedge clk) begin
+    if (en) begin
+      start_q <= {start_q[0], out_start};
+      frame_start_q <= {frame_start_q[0], out_frame_start};
+      out_left <= start_q[1] ? 16'(Clocks - 1) : out_left - 16'(out_left != '0);
+      out_row_q <= out_row;
+    end
+    if (reset) begin
+      start_q <= '0;
+      out_left <= '0;
+    end
+  end
+endmodule

@@ -26,12 +26,9 @@ localparam int Longest = Latency + Pairs * 2 * Beats + 1;  // to the last word, 
 localparam int AgeWidth = $clog2(Longest);
 localparam int BeatWidth = $clog2(Beats);
 
-logic active, last_row;
-logic [PositionWidth-1:0] position;
-logic [RowWidth-1:0] row;
-protocol_wide_stack #(.Columns(Columns), .Rows(Rows), .InWords(InWords), .OutWords(OutWords)) u_protocol (
-  .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row, .holds(allowed)
-);
+wire active = u_protocol.active, last_row = u_protocol.last_row;
+wire [PositionWidth-1:0] position = u_protocol.position;
+wire [RowWidth-1:0] row = u_protocol.row;
 
 // All of the input as late as the words are, and the starts of last rows as late as anything that follows from them.
 logic [1:0] start_q, frame_start_q, active_q;
@@ -147,3 +144,42 @@ wide_stack_steps #(
 );
 
 bind td_ram ram_check #(.Depth(Depth), .Defined(0), .Covered(0)) u_check (.*);
+
+// Protocol: bursts of Columns / InWords clocks as protocol_bursts allows them, no faster in all than a frame of them
+// leaves; pairs of rows going out, 6 enabled clocks behind their starts.
+module protocol_wide_stack;
+  localparam int Clocks = Columns / InWords;
+  localparam int Beats = Columns / OutWords;
+  localparam int PositionWidth = $clog2(Clocks);
+  localparam int RowWidth = $clog2(Rows + 1);
+  logic active;
+  logic [PositionWidth-1:0] position;
+  logic [RowWidth-1:0] row;
+  logic last_row;
+  // Clocks that a frame of an odd number of rows waits, where rows come as fast as they leave.
+  localparam int Wait = (Rows + 1) / 2 * 2 * Beats > Rows * Clocks ? (Rows + 1) / 2 * 2 * Beats - Rows * Clocks : 0;
+  logic bursts, unused_saturations, unused_counts;
+  logic [15:0] wait_left = '0, out_left = '0;
+  logic [5:0] start_q = '0;
+  assign holds = bursts & ~(in_start & in_frame_start & wait_left != '0);
+  assign counts_out_alone = counts_out_start & out_start;
+  assign counts = counts_out_start & (start_q[5] | out_left != '0);
+  protocol_bursts #(.Columns(Clocks), .Rows(Rows)) u_bursts (
+    .clk, .rst(rst | ~holds), .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row,
+    .holds(bursts), .counts_out_start, .counts_out_frame_start, .counts_saturations(unused_saturations),
+    .counts(unused_counts)
+  );
+  always_ff @(posedge clk) begin
+    if (en) begin
+      if (in_start & last_row) wait_left <= 16'(Clocks + Wait - 1);
+      else wait_left <= wait_left - 16'(wait_left != '0);
+      start_q <= 6'({start_q, out_start});
+      out_left <= start_q[5] ? 16'(2 * Beats - 1) : out_left - 16'(out_left != '0);
+    end
+    if (reset) begin
+      wait_left <= '0;
+      start_q <= '0;
+      out_left <= '0;
+    end
+  end
+endmodule

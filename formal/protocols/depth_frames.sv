@@ -13,26 +13,22 @@ module depth_frames #(
 ) (
   input  logic                  clk,
   input  logic                  rst,
+  input  logic                  reset,
   input  logic                  in_valid,
   input  logic [2:0]            in_position,  // frame_start, row_end, frame_end
   output logic [PlaceWidth-1:0] place,
-  output logic                  holds,
-  output logic                  reset,
-  output logic                  counts
+  output logic                  holds
 );
 
-  logic live = 1'b0, frame_start, row_end, frame_end;
+  logic frame_start, row_end, frame_end;
   logic [PlaceWidth-1:0] next_place = '0;  // of the next depth; 0: the first of a frame
   logic [ColumnWidth-1:0] next_column = '0, column;
   assign {frame_start, row_end, frame_end} = in_position;
-  assign reset = rst | ~holds;
   assign place = frame_start ? '0 : next_place;
   assign column = frame_start ? '0 : next_column;
   assign holds = ~in_valid | rst | ((frame_start | next_place != '0)
       & (row_end == (column == ColumnWidth'(Columns - 1))) & (frame_end == (place == PlaceWidth'(Rows * Columns - 1))));
-  assign counts = live & ~reset;
   always_ff @(posedge clk) begin
-    live <= live | reset;
     if (reset) begin
       next_place <= '0;
     end else if (in_valid) begin

@@ -8,12 +8,13 @@ module settled #(
 ) (
   input  logic clk,
   input  logic en,
+  input  logic holds,  // of the protocol: in a clock without, the core sees none
   output logic settled
 );
 
   logic [7:0] passed = '0;
   assign settled = passed == 8'(Clocks);
-  always_ff @(posedge clk) if (en && !settled) passed <= passed + 8'd1;
+  always_ff @(posedge clk) if (en && holds && !settled) passed <= passed + 8'd1;
 
 endmodule
 

@@ -16,6 +16,8 @@ parameter int SlopeExponent = 3;
 parameter int PitchNm = 63400;
 localparam logic [ConfigBits-1:0] Config = configuration();
 
+assign allowed = 1'b1;
+
 localparam int GradientWords = Polynomial != 0 && Corrections == 0 ? 0 : 1 << 3 * BitsPerChannel;
 localparam int CoefficientWords = Polynomial != 0 ? PolynomialWords : 0;
 localparam int ZeroWords = 4 * 8;

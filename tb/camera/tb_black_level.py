@@ -20,6 +20,12 @@ STRUCTURES = (
     built(10, 3),
     built(8, 1),
 )
+PROTOCOL = {
+    "begun": {"begins": "en & in_valid"},
+    "holds": "rst | ~in_valid | begun | in_frame_start",
+    "counts": "live & ~reset",
+    "out_samples out_colour out_row_start out_frame_start out_gains": "counts & out_valid",
+}
 MUTANTS = Mutants(repeats=2)
 PROOFS = tuple(
     Proof(

@@ -45,8 +45,8 @@ STRUCTURES = (
     built(VGA, on=VERILATOR),
     built(OTHER, on=ICARUS, mutants=ICARUS),
 )
+PROTOCOL = {"counts": "live"}
 MUTANTS = Mutants(
-    "after_reset",
     outside=(
         "dropped",
         "lost",

@@ -19,7 +19,7 @@ from tb.cases import on_bench
 from tb.pins import by_name
 from tb.settings import RUN
 from tb.stream import REGRESS, parameters, parametrize, sample, start_clock
-from tb.structures import BOTH, ICARUS, Mutants, Structure
+from tb.structures import BOTH, ICARUS, Structure
 
 Fault = Callable[[str, int, int], int | None]
 COUNTS = ("AddressBytes", "DeviceId", "QuarterClocks", "MillisecondClocks", "Attempts")
@@ -65,7 +65,7 @@ STRUCTURES = (
     built("short", on=BOTH),
     built("wide", on=ICARUS, mutants=ICARUS),
 )
-MUTANTS = Mutants("after_reset")
+PROTOCOL = {"counts": "live"}
 REFUSED = {
     "AddressBytes=3": "AddressBytes_must_be_1_or_2",
     "QuarterClocks=3": "QuarterClocks_must_be_at_least_4_the_line_takes_three_to_be_seen",

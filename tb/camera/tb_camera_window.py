@@ -41,6 +41,11 @@ STRUCTURES = (
         13,
     ),
 )
+PROTOCOL = {
+    "counts": "live & ~reset",
+    "out_data out_inside out_odd_row out_odd_column": "counts & out_valid",
+    "out_row_start out_frame_start": "counts & out_valid & out_inside",
+}
 MUTANTS = Mutants(repeats=2)
 REFUSED = {
     "WindowColumns=1": "WindowColumns_and_WindowRows_must_be_2_to_8191",

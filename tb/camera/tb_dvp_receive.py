@@ -27,6 +27,7 @@ STRUCTURES = (
 REFUSED = {
     "FifoLog2=2": "FifoLog2_must_be_at_least_3_or_nearly_equal_clocks_lose_every_frame",
 }
+PROTOCOL = {"counts": "live", "m_axis_tdata m_axis_tlast m_axis_tuser": "live & m_axis_tvalid"}
 PROOFS = (
     Proof(
         "the widths in use; td_async_fifo is proven by itself",

@@ -25,6 +25,7 @@ STRUCTURES = (
     built(20, 3, 4),
     built(50, 25, 16),
 )
+PROTOCOL = {"holds": "weight != '0", "settled": {"Clocks": 10}, "counts": "settled"}
 MUTANTS = Mutants(repeats=2)
 REFUSED = {
     "TotalWidth=9": "TotalWidth_must_be_at_least_10_plus_Drop_WeightWidth_at_least_1_and_Drop_at_least_2",

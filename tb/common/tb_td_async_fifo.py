@@ -23,6 +23,7 @@ STRUCTURES = (
 REFUSED = {
     "DepthLog2=1": "DepthLog2_must_be_at_least_2",
 }
+PROTOCOL = {"read_data": "read_valid"}
 PROOFS = (
     Proof(
         f"codes of three bits, words are only counted; {WORD_FREE}",

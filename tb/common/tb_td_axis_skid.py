@@ -15,6 +15,7 @@ from tb.stream import REGRESS, parameters, parametrize, sample, start_clock
 from tb.structures import BOTH, ICARUS, Structure
 
 STRUCTURES = (Structure({"Width": 26}, on=BOTH, mutants=ICARUS),)
+PROTOCOL = {"counts": "live", "m_data": "live & m_valid"}
 PROOFS = (Proof(WORD_FREE),)
 
 

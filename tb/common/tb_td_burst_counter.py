@@ -20,6 +20,7 @@ STRUCTURES = (
 REFUSED = {
     "Words=1": "Words_must_be_at_least_2",
 }
+PROTOCOL = {"counts": "live", "position": "live & active"}
 PROOFS = tuple(
     Proof(
         why,

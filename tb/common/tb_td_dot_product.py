@@ -20,6 +20,7 @@ STRUCTURES = (
     built(35, 24),
     built(4, 3, mutants=ICARUS),
 )
+PROTOCOL = {"settled": {"Clocks": 4}, "counts": "settled"}
 PROOFS = (Proof("no control but en; no width enters"),)
 
 

@@ -20,6 +20,7 @@ STRUCTURES = (
     built(15, 10, mutants=ICARUS),
     built(2, 3),
 )
+PROTOCOL = {"settled": {}, "counts": "settled"}
 PROOFS = (Proof("no control but en; no width enters"),)
 
 

@@ -74,6 +74,7 @@ REFUSED = {
     "Lanes=128": LEAST,
     "Lanes=16 Channels=3": POWERS,
 }
+PROTOCOL = "protocol_node_map"
 PROOFS = tuple(
     Proof(
         "half a block to a beat, a whole one, two; a cut row of blocks; weights and sums are exact at any width",

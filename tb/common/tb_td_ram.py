@@ -41,6 +41,10 @@ REFUSED = {
     "Depth=1": "Depth_must_be_at_least_2",
     'Style=2 File="contents.hex"': "an_ultra_memory_has_no_contents_at_power_up",
 }
+PROTOCOL = {
+    "holds": "~(read_en & write_en & read_address == write_address)"
+    " & (~read_en | 32'(read_address) < Depth) & (~write_en | 32'(write_address) < Depth)"
+}
 PROOFS = tuple(Proof(WORD_FREE, {"Style": style}) for style in (0, 1, 2))
 
 

@@ -26,6 +26,7 @@ REFUSED = {
     "Count=3": "Count_must_be_a_power_of_two",
     "StepWidth=33": "StepWidth_must_be_at_most_Width",
 }
+PROTOCOL = {"settled": {"Clocks": "$clog2(Count)"}, "counts": "settled"}
 PROOFS = tuple(
     Proof(
         "sums are exact at any width; no tree, and one of two levels",

@@ -33,6 +33,7 @@ STRUCTURES = (
 REFUSED = {
     "Depth=1": "Depth_must_be_at_least_2",
 }
+PROTOCOL = {"holds": "32'(address) < Depth", "settled": {}, "counts": "settled"}
 NO_PROOF = "one read register and no other state; its contents and addresses are proven of those that use it"
 
 

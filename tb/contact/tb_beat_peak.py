@@ -28,6 +28,7 @@ def refused(missing: str) -> dict[str, Any]:
 
 
 REFUSED = refused("top_at")
+PROTOCOL = {"peak peak_offset": "any"}
 PROOFS = (Proof("comparisons are exact at any width"),)
 
 

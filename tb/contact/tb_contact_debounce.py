@@ -16,6 +16,7 @@ STRUCTURES = (
     built(5, on=ICARUS, mutants=ICARUS),
     built(21),
 )
+PROTOCOL = {"begun": {"begins": "area_valid"}, "counts": "live & ~reset", "began ended": "counts & begun"}
 PROOFS = (
     Proof(
         "areas are only compared; every count of frames",

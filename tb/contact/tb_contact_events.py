@@ -29,6 +29,11 @@ STRUCTURES = (
     built(16, 8, 32, 8, 0),
     built(12, 4, 16, 2, 0),
 )
+PROTOCOL = {
+    "depth_frames": {"Columns": "Columns / Lanes"},
+    "counts": "live & ~reset",
+    "m_event_tdata m_event_tlast": "counts & m_event_tvalid",
+}
 MUTANTS = Mutants(outside=("frame",), flat=False)
 REFUSED = {
     "Width=1": "Width_must_be_2_to_32",

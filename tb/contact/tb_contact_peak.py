@@ -48,6 +48,12 @@ def proofs(bounds: str) -> tuple[Proof, ...]:
 
 STRUCTURES = structures(7)
 REFUSED = refused("some")
+PROTOCOL = {
+    "depth_frames": {"Columns": "Columns / Lanes"},
+    "counts": "live & ~reset",
+    "count": "counts & count_valid",
+    "any_above peak peak_row peak_column": "counts & peak_valid",
+}
 PROOFS = proofs(
     "positions are only counted; either order of rows; the peak of a beat of several depths is proven of beat_peak",
 )

@@ -15,6 +15,11 @@ from tb.stream import REGRESS, parametrize
 
 STRUCTURES = structures(8)
 REFUSED = refused("first")
+PROTOCOL = {
+    "depth_frames": {"Columns": "Columns / Lanes"},
+    "counts": "live & ~reset",
+    "sums": "counts & sums_valid",
+}
 PROOFS = proofs(
     "positions are only counted; sums are exact at any width; either order of rows; the sums of a beat of "
     "several depths are proven of beat_sums",

@@ -18,6 +18,7 @@ STRUCTURES = (
     built(3, on=ICARUS, mutants=ICARUS),
     built(2),
 )
+PROTOCOL = {"counts": "live & ~reset", "m_event_tdata m_event_tlast": "counts & m_event_tvalid"}
 PROOFS = (
     Proof(
         "words are sent alike; three of them to a packet",

@@ -25,6 +25,11 @@ REFUSED = {
     "Width=33": "Width_must_be_2_to_32",
     "Lanes=0": "Lanes_must_be_at_least_1",
 }
+PROTOCOL = {
+    "begun": {"begins": "in_valid & in_frame_start"},
+    "holds": "rst | ~in_valid | begun | in_frame_start",
+    "counts": "live & ~reset",
+}
 PROOFS = tuple(
     Proof(
         f"{FULL_WIDTH}; of several depths, which are only compared, any one decides",

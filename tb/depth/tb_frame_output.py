@@ -22,6 +22,7 @@ REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
     "Rows=1": "Rows_must_be_at_least_2",
 }
+PROTOCOL = {"counts": "live & ~reset & en", "out_data": "counts & out_valid"}
 PROOFS = (
     Proof(
         f"rows and columns are only counted; {WORD_FREE}",

@@ -65,6 +65,14 @@ REFUSED = {
     "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
     "MaxLog2=9": "MaxLog2_must_be_at_most_8",
 }
+PROTOCOL = {
+    "raster_places": {"Columns": "Columns / Lanes"},
+    "in_frame_start": "in_valid & ~rst ? &place[1:0] : in_frame_start",
+    "in_frame_end": "in_valid & ~rst ? &place[3:2] : in_frame_end",
+    "counts": "live & ~reset",
+    "map_write": "live",
+    "map_write_node map_write_zero": "live & map_write",
+}
 PROOFS = (
     *(
         Proof(

@@ -70,6 +70,17 @@ REFUSED = {  # by td_node_map
         ("Columns=96", "Lanes=3"), "Columns_and_Lanes_must_be_powers_of_two_with_Lanes_of_two_blocks_Channels_too"
     ),
 }
+PROTOCOL = {
+    "protocol_node_map": {
+        "Select": "td_register_map_pkg::TableSelectZero",
+        "in_frame_start": "in_position[2]",
+        "capture_read": "1'b0",
+        "capture_read_node": "'0",
+    },
+    "in_position": "in_valid & ~rst ? {&place[1:0], place[3], &place[3:2]} : in_position",
+    "out_position": "counts_out_data",
+    "saturations": "live & ~reset",
+}
 PROOFS = tuple(
     Proof(
         f"subtraction is exact at any width; {ROUNDING}; td_node_map is proven by itself",

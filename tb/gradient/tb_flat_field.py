@@ -73,6 +73,17 @@ STRUCTURES = (
 REFUSED = {
     "Offset=1": "Offset_must_be_even_it_is_subtracted_before_rounding_to_even",
 }
+PROTOCOL = {
+    "protocol_node_map": {
+        "Channels": 3,
+        "Select": "td_register_map_pkg::TableSelectReference",
+        "in_frame_start": "&in_position[1:0]",
+    },
+    "in_position": "in_valid & ~rst ? place : in_position",
+    "out_position out_red out_green out_blue": "counts_out_valid & out_valid",
+    "capture_read_gains": "captured",
+    "dark saturations": "live & ~reset",
+}
 PROOFS = (
     Proof(
         f"every clock reads a node; {WORD_FREE}",

@@ -42,6 +42,14 @@ STRUCTURES = (
     built(9, 32),
     built(2, 11, *SMALL),
 )
+PROTOCOL = {
+    "raster_places": {},
+    "in_position": "place",
+    "counts": "live & ~reset & en",
+    "gains": "live",
+    "saturations": "live & ~reset",
+    "out_position out_red out_green out_blue": "counts & out_valid",
+}
 MUTANTS = Mutants(repeats=6)
 REFUSED = {
     "Columns=7": "Columns_must_be_at_least_8",

@@ -53,6 +53,13 @@ REFUSED = {
     "MaxLog2=11": "a_sum_over_2_to_the_MaxLog2_frames_must_fit_Width_bits",
     "GainFraction=10": "GainFraction_plus_2_BlockLog2_must_be_at_least_Width",
 }
+PROTOCOL = {
+    "raster_places": {},
+    "in_position": "in_valid & ~rst ? place : in_position",
+    "counts": "live & ~reset",
+    "map_write_node map_write_gains": "counts & map_write",
+    "map_read_node": "counts & map_read",
+}
 PROOFS = tuple(
     Proof(
         "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width"

@@ -19,6 +19,12 @@ STRUCTURES = (
     built(2, on=ICARUS),
 )
 REFUSED = {"Longest=0": "Longest_must_be_at_least_1"}
+PROTOCOL = {
+    "holds": "~(in_valid & in_broken)",
+    "counts": "live",
+    "out_data": "live & out_valid",
+    "out_bad": "live & out_end",
+}
 PROOFS = (
     Proof(
         "the length of a piece is only counted",

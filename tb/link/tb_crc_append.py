@@ -14,6 +14,7 @@ from tb.stream import MANY, parametrize
 from tb.structures import BOTH, ICARUS, Mutants, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
+PROTOCOL = {"stays": "in_", "counts": "live & ~reset", "out_data out_last": "counts & out_valid"}
 MUTANTS = Mutants(repeats=2)
 PROOFS = (
     Proof(

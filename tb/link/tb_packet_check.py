@@ -13,6 +13,12 @@ from tb.lockstep import WORD, Pins, play
 from tb.structures import BOTH, Mutants, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=BOTH),)
+PROTOCOL = {
+    "holds": "~(in_valid & in_end)",
+    "counts": "live",
+    "out_data": "live & out_valid",
+    "out_good": "live & out_end",
+}
 MUTANTS = Mutants()  # a CRC is slow in Icarus
 PROOFS = (
     Proof(

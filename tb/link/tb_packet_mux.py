@@ -11,6 +11,11 @@ from tb.lockstep import WORD, play
 from tb.structures import BOTH, ICARUS, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
+PROTOCOL = {
+    "stays": "status_ reply_ record_ depth_",
+    "counts": "live & ~reset",
+    "out_data out_last": "counts & out_valid",
+}
 PROOFS = (
     Proof(
         FULL_WIDTH,

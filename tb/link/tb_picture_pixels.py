@@ -27,6 +27,11 @@ STRUCTURES = (
     ),
     built(2, 300),
 )
+PROTOCOL = {
+    "stays": "picture_",
+    "counts": "live & ~reset",
+    "m_axis_tdata m_axis_tlast m_axis_tuser": "counts & m_axis_tvalid",
+}
 MUTANTS = Mutants(repeats=4)
 REFUSED = {
     "Rows=0": "Rows_must_be_1_to_4096",

@@ -15,6 +15,7 @@ from tb.stream import parametrize, start_clock
 from tb.structures import BOTH, ICARUS, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
+PROTOCOL = {"counts": "live & ~reset", "status_data status_last": "counts & status_valid"}
 PROOFS = (
     Proof(
         "fields leave alike; three bytes of them",

@@ -19,6 +19,7 @@ STRUCTURES = (
     ),
 )
 REFUSED = {"Divider=3": "Divider_must_be_at_least_4"}
+PROTOCOL = {"counts": "live & ~reset", "out_data": "counts & out_valid"}
 PROOFS = (
     Proof(
         "clocks of a bit are only counted",

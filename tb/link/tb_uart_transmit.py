@@ -20,6 +20,7 @@ STRUCTURES = (
         {"Divider": 33},
     ),
 )
+PROTOCOL = {"stays": "in_", "counts": "live & ~reset"}
 PROOFS = (
     Proof(
         "clocks of a bit are only counted",

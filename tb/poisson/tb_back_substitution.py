@@ -9,7 +9,7 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.chip.rom_files import write_thomas
 from tb.poisson.elimination_bench import a_frame_begins_afresh, frames, many_frames, reset_in_mid_frame
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tb.structures import ICARUS, VERILATOR, Structure
 
 NAMES = ("Width", "CoeffWidth", "Rows", "Columns", "TableWords", "SettledWidth")
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
@@ -33,7 +33,7 @@ STRUCTURES = (
     built(CHOICES | {"data_width": 12, "coefficient_width": 10}, mutants=ICARUS),
     built(CHOICES | {"rows": 21, "data_width": 32, "coefficient_width": 24}),
 )
-MUTANTS = Mutants("bursts")
+PROTOCOL = "protocol_bursts"
 PROOFS = (
     Proof(
         f"the smallest burst that holds the loop of the recursion; {ROUNDING}",

@@ -15,7 +15,7 @@ from tb.poisson.elimination_bench import (
     reset_as_the_mean_is_clipped,
     reset_in_mid_frame,
 )
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tb.structures import ICARUS, VERILATOR, Structure
 
 NAMES = ["Width", "CoeffWidth", "Rows", "Columns", "StoreDrop", "Neumann", "TableWords", "SettledWidth"]
 NAMES += ["LastShiftWidth", "MomentDrop", "MeanReciprocal", "MeanDrop"]
@@ -40,7 +40,7 @@ STRUCTURES = (
     built(CHOICES | {"neumann": True, "data_width": 12, "coefficient_width": 10}, mutants=ICARUS),
     built(CHOICES | {"rows": 21, "neumann": True, "data_width": 32, "coefficient_width": 24}),
 )
-MUTANTS = Mutants("bursts")
+PROTOCOL = "protocol_bursts"
 PROOFS = tuple(
     Proof(
         f"the smallest burst that holds the loop of the recursion; {ROUNDING}",

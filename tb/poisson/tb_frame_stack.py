@@ -8,7 +8,7 @@ import cocotb
 from formal.entries import WORD_FREE, Proof
 from tactile_depth.chip.poisson.frame_stack import LATENCY, frame_stack
 from tb.stream import check_frame_memory, parameters, parametrize, places, sample
-from tb.structures import ICARUS, VERILATOR, Mutants, Refused, of_parameters
+from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
 
 built = of_parameters("Columns Width Rows WordsPerRow")
 STRUCTURES = (
@@ -36,7 +36,7 @@ REFUSED = {
     "Rows=1": "Rows_must_be_at_least_2",
     "WordsPerRow=0": Refused("WordsPerRow_must_be_at_least_1", {"verilator": "depth_must_be_at_least_2"}),
 }
-MUTANTS = Mutants("bursts")
+PROTOCOL = "protocol_bursts"
 PROOFS = tuple(
     Proof(
         "rows, positions and memory rows are only counted; rows and memory rows no power of two, and one; words to "

@@ -13,7 +13,7 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.spectral_divide import LATENCY, reciprocals, spectral_divide
 from tactile_depth.chip.rom_files import write_solver
 from tb.stream import MANY, check_bursts, configuration, extremes, parameters, parametrize, sample, uniform
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
 def built(choices: Any, **runs: Any) -> Structure:
@@ -40,7 +40,7 @@ STRUCTURES = (
     built({"columns": 32, "data_width": 12, "coefficient_width": 10}, mutants=ICARUS),
     built({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 40.0}),
 )
-MUTANTS = Mutants("bursts", rows_are="Columns")
+PROTOCOL = {"protocol_bursts": {"Rows": "Columns"}}
 REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
     "Columns=1": "Columns_must_be_a_power_of_two_at_least_2",

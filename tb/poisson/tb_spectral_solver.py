@@ -29,7 +29,8 @@ STRUCTURES = (
     built({"columns": 32, "data_width": 12, "coefficient_width": 10}, mutants=BOTH),
     built({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 9.5}),
 )
-MUTANTS = Mutants("words", flat=False)
+PROTOCOL = {"protocol_words": {"Rows": "value(Config, RowsField)"}}
+MUTANTS = Mutants(flat=False)
 NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"
 
 

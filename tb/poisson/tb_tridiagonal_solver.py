@@ -38,7 +38,8 @@ STRUCTURES = (
     built(CHOICES | {"data_width": 32, "coefficient_width": 24, "neumann": True, "depth_range_px": 5.3}, {}),
     built(CHOICES | {"columns": 32, "rows": 11}, PACKED),
 )
-MUTANTS = Mutants("words", flat=False)
+PROTOCOL = "protocol_words"
+MUTANTS = Mutants(flat=False)
 NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"
 
 

@@ -41,7 +41,8 @@ STRUCTURES = (
     built(CHOICES | {"columns": 64, "rows": 96, "lanes": 16, "neumann": True}),
     built(CHOICES | {"columns": 128, "rows": 13, "lanes": 64}),
 )
-MUTANTS = Mutants("words", flat=False)
+PROTOCOL = "protocol_words"
+MUTANTS = Mutants(flat=False)
 NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"
 
 

@@ -19,7 +19,7 @@ from tactile_depth.chip.poisson.wide_substitution import LATENCY, wide_substitut
 from tactile_depth.chip.rom_files import write_wide_thomas
 from tb.pairs import AloneMonitor, PairMonitor
 from tb.stream import MANY, check_bursts, configuration, parametrize, uniform, with_and_without_en
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tb.structures import ICARUS, VERILATOR, Structure
 from tb.wide import WideDriver
 
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal", "lanes": 4}
@@ -50,7 +50,7 @@ STRUCTURES = (
 )
 RULE = "Words_and_Columns_must_be_powers_of_two_and_Words_2_to_half_of_Columns"
 REFUSED = {"Words=1": RULE, "Words=3": RULE, "Words=128": RULE, "Columns=96": RULE, "Rows=2": "Rows_must_be_at_least_3"}
-MUTANTS = Mutants("wide_pairs")
+PROTOCOL = "protocol_wide_pairs"
 PROOFS = tuple(
     Proof(
         "z that goes straight into the next product, and z that waits; an even and an odd number of rows; three pairs, "

@@ -12,14 +12,14 @@ from cocotb.triggers import ClockCycles, RisingEdge
 from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.chip.registers.axil_port import Response, offset_of, response, strobed_bits
 from tactile_depth.chip.registers.register_map import ADDRESS_WIDTH
-from tb.axil import present, read, take, write, write_beats
+from tb.axil import CLIENT, present, read, take, write, write_beats
 from tb.cases import on_bench
 from tb.registers.axil_pins import INPUTS, PortChecker, expected, pins, reset
 from tb.stream import REGRESS, parametrize
-from tb.structures import BOTH, ICARUS, Mutants, Structure
+from tb.structures import BOTH, ICARUS, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
-MUTANTS = Mutants(protocol="axil_registers")
+PROTOCOL = CLIENT | {"counts": "live"}
 PROOFS = (
     Proof(
         FULL_WIDTH,

@@ -23,7 +23,7 @@ from tactile_depth.chip.registers.table_access import PORTS
 from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
 from tactile_depth.chip.tactile_depth import config_value, default_parameters, top_parameters
 from tb import structs
-from tb.axil import OFFSET, master_of, read, response_of, take, value_of, write_beats
+from tb.axil import CLIENT, OFFSET, master_of, read, response_of, take, value_of, write_beats
 from tb.axil import write as write_at
 from tb.cases import on_bench
 from tb.registers.axil_pins import reset
@@ -82,6 +82,7 @@ STRUCTURES = (
         QUADRATIC,
     ),
 )
+PROTOCOL = CLIENT | {"counts": "live"}
 MUTANTS = Mutants(flat=False)
 REFUSED = {
     "Rows=0": "Rows_does_not_fit_GRID",

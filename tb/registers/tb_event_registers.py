@@ -27,7 +27,8 @@ from tb.registers.register_bench import WHOLE, RegisterBench
 from tb.structures import BOTH, ICARUS, Mutants, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
-MUTANTS = Mutants(protocol="after_reset", outside=("counts",))
+PROTOCOL = {"counts": "live"}
+MUTANTS = Mutants(outside=("counts",))
 NO_PROOF = "every register and output of it is proven through the port: axil_registers"
 
 

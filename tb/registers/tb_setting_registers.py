@@ -10,10 +10,10 @@ from tactile_depth.chip.registers.setting_registers import MASKS, RESETS, SETTIN
 from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
 from tb.stream import parametrize
-from tb.structures import BOTH, ICARUS, Mutants, Structure
+from tb.structures import BOTH, ICARUS, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
-MUTANTS = Mutants(protocol="after_reset")
+PROTOCOL = {"counts": "live"}
 NO_PROOF = "every register and output of it is proven through the port: axil_registers"
 
 

@@ -22,6 +22,7 @@ STRUCTURES = (
     built(4, on=ICARUS),
     built(9, on=ICARUS),
 )
+PROTOCOL = {"counts": "live", "write": "write & ~rst"}
 PROOFS = tuple(
     Proof(
         "all tables, and a build without some",

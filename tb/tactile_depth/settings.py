@@ -9,6 +9,7 @@ from formal.entries import Cone
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import config_value, top_parameters, write_roms
 from tactile_depth.sensor.synthetic import synthetic
+from tb.axil import CLIENT
 from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
 
 WHOLE = ""  # every test of the run
@@ -89,6 +90,17 @@ STRUCTURES = (
         FORMATS,
     ),
 )
+PROTOCOL = CLIENT | {
+    "axis_source": {
+        "valid": "s_axis_tvalid",
+        "ready": "s_axis_tready",
+        "word": "{s_axis_tuser, s_axis_tlast, s_axis_tdata}",
+    },
+    "counts": "live",
+    "m_axis_tdata m_axis_tlast m_axis_tuser": "live & m_axis_tvalid",
+    "contact m_event_tvalid": "live & ~reset",
+    "m_event_tdata m_event_tlast": "live & ~reset & m_event_tvalid",
+}
 MUTANTS = Mutants(flat=False)
 REFUSED = {
     "Polynomial=1": "Polynomial_needs_FlatField",

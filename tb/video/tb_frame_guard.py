@@ -28,6 +28,12 @@ STRUCTURES = (
         8,
     ),
 )
+PROTOCOL = {
+    "counts": "live & ~reset",
+    "out_valid out_frame_start out_frame_end": "counts & en",
+    "out_data out_position": "counts & en & out_valid",
+    "out_bad": "counts & en & out_valid & out_frame_end",
+}
 MUTANTS = Mutants(outside=("silence",))
 REFUSED = {
     "Rows=1": "Rows_and_Columns_must_be_at_least_2",

@@ -59,7 +59,7 @@ def test_survivors_of_a_core_with_cores_inside_can_be_settled(tmp_path: Path) ->
     """Build the graph of a core with cores inside: the cores are a part of it."""
     core, (built, *_) = "axil_registers", repository.structures("axil_registers")
     mutants.make(core, built, 20, 1, tmp_path, flat=repository.mutants(core).flat)
-    outputs = graph(core, tmp_path, core, built.parameters).outputs
+    outputs = graph(core, tmp_path, built.parameters).outputs
     assert any("s_axil_rdata" in name for name in outputs)
 
 

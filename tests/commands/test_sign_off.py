@@ -33,7 +33,8 @@ FILES = {
     "hdl/part.sv": "module part (input logic a); // a part\nendmodule\n",
     "hdl/other.sv": "module other;\nendmodule\n",
     "hdl/a_pkg.sv": "package a_pkg;\n  localparam int N = 1;\nendpackage\n",
-    "formal/fv_top.sv": "module fv_top;\n  top dut (.*);\n  shared u_shared (.*);\nendmodule\n",
+    "formal/fv_top.sv": "module fv_top;\n  top dut (.*);\n  shared u_shared (.*);\nendmodule\n"
+    "module protocol_top;\n  assign holds = 1;\nendmodule\n",
     "formal/shared.sv": "module shared;\nendmodule\n",
     "formal/protocol_rows.sv": "module protocol_rows;\nendmodule\n",
     "models/tactile_depth/chip/top.py": "from tactile_depth.chip import scale\n\n\ndef top(word: int) -> int:\n"
@@ -41,7 +42,7 @@ FILES = {
     "def latency() -> int:\n    return 3\n",
     "models/tactile_depth/chip/scale.py": "TWO = 2\n",
     "tb/tb_top.py": '"""Top."""\n\nfrom tactile_depth.chip.top import top\nfrom tb.tests import again as again\n\n'
-    'STEPS = 5\nSTRUCTURES = (Structure(mutants=True),)\nMUTANTS = Mutants(protocol="rows")\n'
+    'STEPS = 5\nSTRUCTURES = (Structure(mutants=True),)\nPROTOCOL = {"protocol_rows": {}}\n'
     "PROOFS = (Proof(STEPS),)\n\n\n"
     "@cocotb.test()\nasync def words(dut):\n    assert top(1) == 2\n",
     "tb/tests.py": "@cocotb.test()\nasync def again(dut):\n    pass\n",
@@ -71,7 +72,8 @@ def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("hdl/other.sv", "other", "another", []),
         ("formal/fv_top.sv", "u_shared", "u_other", ["proof"]),
         ("formal/shared.sv", ";", "(input logic a);", ["proof"]),
-        ("formal/protocol_rows.sv", ";", "(input logic a);", ["mutants"]),
+        ("formal/protocol_rows.sv", ";", "(input logic a);", ["proof", "mutants"]),
+        ("formal/fv_top.sv", "assign holds = 1", "assign holds = 0", ["proof", "mutants"]),
         ("models/tactile_depth/chip/top.py", "TWO * word", "TWO + word", ["mutants"]),
         ("models/tactile_depth/chip/scale.py", "2", "3", ["mutants"]),
         ("models/tactile_depth/chip/top.py", "return 3", "return 4", []),

@@ -25,7 +25,8 @@ STRUCTURES = (
     built(transform_parameters(32, 6, -3, 9, 7, 3, 6, 1), mutants=ICARUS),  # four values can clip at once in sdf_fft
     built(transform_parameters(64, 32, 1, 35, 24, 0, 35, 1)),
 )
-MUTANTS = Mutants("bursts", columns_are="Size", flat=False)
+PROTOCOL = {"protocol_bursts": {"Columns": "Size"}}
+MUTANTS = Mutants(flat=False)
 PROOFS = (
     Proof(
         "the smallest transform, every core of a longer one is in it",

@@ -25,7 +25,8 @@ STRUCTURES = (
     built(transform_parameters(32, 6, -5, 9, 7, -1, 6, 1), mutants=ICARUS),  # eight values can clip at once
     built(transform_parameters(64, 35, 0, 35, 24, -1, 32, 1)),
 )
-MUTANTS = Mutants("bursts", columns_are="Size", flat=False)
+PROTOCOL = {"protocol_bursts": {"Columns": "Size"}}
+MUTANTS = Mutants(flat=False)
 PROOFS = (
     Proof(
         "the smallest transform, every core of a longer one is in it",

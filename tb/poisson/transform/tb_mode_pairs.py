@@ -11,7 +11,7 @@ from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.mode_pairs import latency as mode_pairs_latency
 from tactile_depth.chip.poisson.transform.mode_pairs import mode_pairs
 from tb.stream import check_bursts, parameters, parametrize, uniform
-from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
+from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("Size Width")
 STRUCTURES = (
@@ -21,7 +21,7 @@ STRUCTURES = (
     built(64, 24),
     built(8, 4, mutants=ICARUS),
 )
-MUTANTS = Mutants("bursts", columns_are="Size")
+PROTOCOL = {"protocol_bursts": {"Columns": "Size"}}
 REFUSED = {
     "Size=12": "Size_must_be_a_power_of_two_at_least_4",
     "Size=2": "Size_must_be_a_power_of_two_at_least_4",

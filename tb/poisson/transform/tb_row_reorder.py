@@ -3,7 +3,7 @@
 
 from formal.entries import ONE_ORDER, WORD_FREE, Proof
 from tb.poisson.transform.row_bench import a_frame_begins_afresh, reset_in_mid_row, rows
-from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
+from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("Columns Width ToBurst")
 STRUCTURES = (
@@ -14,7 +14,7 @@ STRUCTURES = (
     built(64, 35, 1),
     built(64, 35, 0),
 )
-MUTANTS = Mutants("words")
+PROTOCOL = "protocol_words"
 REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_4",
     "Columns=2": "Columns_must_be_a_power_of_two_at_least_4",

@@ -11,7 +11,7 @@ from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.sdf_butterfly import LATENCY, sdf_butterfly
 from tactile_depth.chip.poisson.transform.sdf_fft import Stage
 from tb.stream import check_bursts, extremes, parameters, parametrize, uniform
-from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
+from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("Size Delay RotateBlock Inverse Halve Width")
 STRUCTURES = (
@@ -26,7 +26,7 @@ STRUCTURES = (
     built(8, 1, 0, 0, 0, 15),
     built(64, 32, 64, 0, 0, 27),
 )
-MUTANTS = Mutants("bursts", columns_are="Size")
+PROTOCOL = {"protocol_bursts": {"Columns": "Size"}}
 REFUSED = {
     "Size=12": "Size_must_be_a_power_of_two",
     "Delay=0": "Delay_must_be_a_power_of_two_1_to_Size_2",

@@ -13,7 +13,7 @@ from tactile_depth.chip.poisson.transform.sdf_fft import latency as sdf_fft_late
 from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft
 from tactile_depth.chip.rom_files import write_direction
 from tb.stream import MANY, check_bursts, extremes, parameters, parametrize, uniform
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
 def built(size: int, width: int, coeff: int, inverse: int, **runs: Any) -> Structure:
@@ -36,7 +36,7 @@ STRUCTURES = (
     built(128, 35, 24, 0),
     built(128, 35, 24, 1),
 )
-MUTANTS = Mutants("bursts", columns_are="Size")
+PROTOCOL = {"protocol_bursts": {"Columns": "Size"}}
 REFUSED = {
     "Size=4": "Size_must_be_a_power_of_two_at_least_8",
     "Size=24": "Size_must_be_a_power_of_two_at_least_8",

@@ -8,7 +8,7 @@ import cocotb
 from formal.entries import ONE_ORDER, WORD_FREE, Proof
 from tactile_depth.chip.poisson.transform.transpose import LATENCY, transpose
 from tb.stream import check_frame_memory, parameters, parametrize, places
-from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
+from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("Columns Width MakhoulIn MakhoulOut")
 STRUCTURES = (
@@ -19,7 +19,7 @@ STRUCTURES = (
     built(8, 16, 1, 1),
     built(4, 5, 0, 1, mutants=ICARUS),
 )
-MUTANTS = Mutants("bursts", rows_are="Columns")
+PROTOCOL = {"protocol_bursts": {"Rows": "Columns"}}
 REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_4",
     "Columns=2": "Columns_must_be_a_power_of_two_at_least_4",

@@ -18,7 +18,7 @@ from tactile_depth.chip.poisson.transform.twiddle_multiply import (
 from tactile_depth.chip.rom_files import write_factors
 from tb.settings import RUN
 from tb.stream import check_bursts, extremes, parameters, parametrize, uniform
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tb.structures import ICARUS, VERILATOR, Structure
 
 MAKERS = {"twiddle": twiddle_factors, "phase": phase_factors}
 
@@ -62,7 +62,7 @@ STRUCTURES = (
     built("phase_inverse", 64, 64, 24, 27, 18, 14, 0),
     built("twiddle_inverse", 16, 8, 6, 6, 5, 4, 0, mutants=ICARUS),
 )
-MUTANTS = Mutants("bursts", columns_are="Size")
+PROTOCOL = {"protocol_bursts": {"Columns": "Size"}}
 REFUSED = {
     "Size=12": "Size_must_be_a_power_of_two_at_least_2",
     "Size=1": "Size_must_be_a_power_of_two_at_least_2",

@@ -32,6 +32,7 @@ REFUSED = {
     "RotateBit=-2": "RotateBit_must_be_minus_1_or_another_bit_of_beat_and_path",
     "RotateBit=7": "RotateBit_must_be_minus_1_or_another_bit_of_beat_and_path",
 }
+PROTOCOL = "protocol_wide_bursts"
 PROOFS = tuple(
     Proof(
         f"rotation by a bit of the path, of the beat, and none; {ROUNDING}",

@@ -28,6 +28,7 @@ REFUSED = {
     "Delay=32": "Beats_and_Delay_must_be_powers_of_two_and_Delay_1_to_Beats_2",
     "Beats=24": "Beats_and_Delay_must_be_powers_of_two_and_Delay_1_to_Beats_2",
 }
+PROTOCOL = "protocol_wide_bursts"
 PROOFS = tuple(
     Proof(
         f"{ONE_ORDER}; {WORD_FREE}",

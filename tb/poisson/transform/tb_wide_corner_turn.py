@@ -30,6 +30,7 @@ REFUSED = {
     "Paths=3": "Paths_must_be_a_power_of_two_1_to_Size_4",
     "Paths=64": "Paths_must_be_a_power_of_two_1_to_Size_4",
 }
+PROTOCOL = {"protocol_wide_bursts": {"Beats": "Size / Paths", "OutBeats": "Size / Paths / 2", "OutLead": 0}}
 PROOFS = tuple(
     Proof(
         f"{ONE_ORDER}; {WORD_FREE}",

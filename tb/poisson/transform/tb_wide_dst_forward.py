@@ -39,6 +39,7 @@ REFUSED = {
     "Words=3": "Words_must_be_a_power_of_two_2_to_Size_2",
     "Words=128": "Words_must_be_a_power_of_two_2_to_Size_2",
 }
+PROTOCOL = {"protocol_wide_bursts": {"Beats": "Size / Words"}}
 MUTANTS = Mutants(flat=False)
 PROOFS = (
     Proof(

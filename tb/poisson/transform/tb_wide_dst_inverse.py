@@ -39,6 +39,7 @@ STRUCTURES = (
     built(64, 32, 27, 0, 27, 18, 3, 24, 1),
     built(128, 8, 27, 0, 27, 18, 3, 24, 1),
 )
+PROTOCOL = {"protocol_wide_bursts": {"Beats": "2 * Size / Words", "OutBeats": "Size / Words", "OutLead": 0}}
 MUTANTS = Mutants(flat=False)
 REFUSED = {
     "Words=3": "Words_must_be_a_power_of_two_2_to_Size_2",

@@ -40,6 +40,7 @@ STRUCTURES = (
     built(256, 8, 27, 18, 1),
     built(512, 4, 27, 18, 0),
 )
+PROTOCOL = {"protocol_wide_bursts": {"Beats": "Size / Paths"}}
 MUTANTS = Mutants(flat=False)
 REFUSED = {
     "Size=4": "Size_must_be_a_power_of_two_at_least_8",

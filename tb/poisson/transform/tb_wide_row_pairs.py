@@ -28,6 +28,7 @@ REFUSED = {
     "Paths=3": "Paths_must_be_a_power_of_two_1_to_Size_4",
     "Paths=64": "Paths_must_be_a_power_of_two_1_to_Size_4",
 }
+PROTOCOL = {"protocol_wide_bursts": {"Beats": "Size / Paths"}}
 PROOFS = tuple(
     Proof(
         f"{ONE_ORDER}; sums are linear but for saturation, which is proven of td_round_saturate",

@@ -56,6 +56,7 @@ REFUSED = {
     "Beats=24": "Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2",
     "Beats=1": "Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2",
 }
+PROTOCOL = "protocol_wide_bursts"
 PROOFS = tuple(
     Proof(
         f"paths with multipliers and without; {ROUNDING}",

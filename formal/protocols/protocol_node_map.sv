@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_td_node_map: whole frames of beats in raster order. Bus and capture use the tables one at a time, neither while
+// protocol_node_map: whole frames of beats in raster order. Bus and capture use the tables one at a time, neither while
 // a change of bank is due, except for what the bus reads.
 
 `default_nettype none
 
-module protocol_td_node_map #(
+module protocol_node_map #(
   parameter int Rows      = 128,
   parameter int Columns   = 128,
   parameter int BlockLog2 = 3,
@@ -17,6 +17,8 @@ module protocol_td_node_map #(
 ) (
   input  logic                 clk,
   input  logic                 rst,
+  input  logic                 reset,  // rst, or inputs that are not allowed
+  input  logic                 live,   // there was a reset
   input  logic                 en,
   input  td_types_pkg::table_command_t table_command,
   input  logic                 table_bank,
@@ -32,6 +34,7 @@ module protocol_td_node_map #(
   output logic [15:0]          row,
   output logic [15:0]          column,
   output logic [3:0]           place,
+  output logic                 captured,  // the capture read in the clock before
   output logic                 holds,
   output logic                 counts_out_valid,
   output logic                 counts_out_data,
@@ -43,12 +46,10 @@ module protocol_td_node_map #(
 );
 
   localparam logic [NodeWidth:0] End = Words;
-  logic reset, live = 1'b0, named = 1'b0, captured = 1'b0, settled, write, read, idle, legal, known;
+  logic named = 1'b0, was_captured = 1'b0, settled, write, read, idle, legal, known;
   logic [23:0] unused_index;
-  assign reset = rst | ~holds;
   always_ff @(posedge clk) begin
-    live <= live | reset;
-    captured <= capture_read & holds;
+    was_captured <= capture_read & holds;
     if (reset || (en && in_valid && &place[1:0])) named <= table_bank;
   end
   raster_places #(.Rows(Rows), .Columns(Columns / Lanes)) u_places (.*);
@@ -65,6 +66,7 @@ module protocol_td_node_map #(
   assign counts_active = live & ~reset;
   assign counts_table_in_use = live;
   assign counts_table_answer = live & known;
+  assign captured = was_captured;
   assign counts_capture_read_words = captured;
 
 endmodule
