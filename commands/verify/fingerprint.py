@@ -30,7 +30,7 @@ Place = tuple[Path, str]  # a file and a name in it
 
 @dataclass(frozen=True)
 class Statement:
-    """Statement of Python: its code, the names in it, and its texts."""
+    """Statement of Python: its code, the names that it reads, and its texts."""
 
     code: str
     names: frozenset[str]
@@ -109,7 +109,9 @@ def read_python(file: Path, _: int) -> Source:
     for each in tree.body:
         if not isinstance(each, (ast.Import, ast.ImportFrom)):
             nodes = list(ast.walk(each))
-            names = frozenset(node.id for node in nodes if isinstance(node, ast.Name))
+            names = frozenset(
+                node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
+            )
             texts = [node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)]
             for name in defines(each) or [REST]:
                 defined[name].append(Statement(code(each), names, frozenset(texts)))
@@ -143,11 +145,15 @@ def reached(places: Iterable[Place]) -> set[str]:
 
 
 def tests_in(file: Path) -> list[Place]:
-    """Return the places of a testbench but for settings and what these alone use."""
+    """Return the places of a testbench but for settings that mutants do not depend on, and what these alone use."""
     source = read(file)
-    every = {*source.defined, *source.imported}
-    used = {name for own, of in source.defined.items() for each in of for name in each.names if name != own}
-    return [(file, name) for name in every - used - {*OTHERS, *(name for names in KINDS.values() for name in names)}]
+    left_out = {*KINDS["proof"], *OTHERS}
+
+    def used(names: Iterable[str]) -> set[str]:
+        return {used for name in names for each in source.defined.get(name, ()) for used in each.names}
+
+    alone = used(left_out) - used(source.defined.keys() - left_out)
+    return [(file, name) for name in (source.defined.keys() | source.imported.keys()) - left_out - alone]
 
 
 @cache
