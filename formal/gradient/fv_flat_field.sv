@@ -60,7 +60,7 @@ if (Meets != 0) begin : g_meets
       place_meets: assert (dut.gain_position == place);
       pixel_meets: assert ({dut.dim, dut.colours} == pixel);
     end
-    meets_dim: cover (started && follows && age == 4'(ToGain) && dut.dim && dut.colours[0]);
+    meets_dim: cover (started && follows && age == 4'(ToGain) && dut.dim && dut.colours[0][0]);
     meets_bright: cover (started && follows && age == 4'(ToGain) && !dut.dim && place[1:0] == 2'b01);
   end
 end else begin : g_leaves
@@ -73,10 +73,10 @@ end else begin : g_leaves
   logic is_dark;
   always_comb begin
     assume ((dut.colours & ~24'h010101) == '0);
-    is_dark = dut.dim || dut.gains[GainWidth-1] || dut.gains[2*GainWidth-1] || dut.gains[3*GainWidth-1];
+    is_dark = dut.dim || dut.gains[0][GainWidth-1] || dut.gains[1][GainWidth-1] || dut.gains[2][GainWidth-1];
     for (int c = 0; c < 3; c++) begin
       logic [GainWidth-1:0] product, whole;
-      product = dut.colours[8*c] ? dut.gains[c*GainWidth+:GainWidth] : '0;
+      product = dut.colours[c][0] ? dut.gains[c] : '0;
       whole = product >> Drop;
       if (product[Drop-1] && (Drop > 1 && (product & GainWidth'((1 << (Drop - 1)) - 1)) != '0 || whole[0])) begin
         result[c] = $signed((GainWidth + 10)'(whole)) + 1 - Offset;
