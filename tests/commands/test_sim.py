@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from skimage import io  # type: ignore[attr-defined]
 
-from commands.common import published, run_request
+from commands.common import published, run_request, simulator
 from commands.run import sim
 from tactile_depth.base.files import RECORD
 from tactile_depth.chip.configuration import Configuration
@@ -466,6 +466,7 @@ def test_bad_input(tmp_path: Any, refused: Any, case: Any) -> None:
 
 def test_missing_libpython(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, refused: Any) -> None:
     monkeypatch.setattr("find_libpython.find_libpython", lambda: None)
+    monkeypatch.delenv(simulator.LIBRARY, raising=False)
     message = "make sim: cocotb needs Python's shared library: run `apt-get install libpython3-dev`"
     assert refused("sim", "N=16", f"OUT={tmp_path / 'out'}") == message
 
