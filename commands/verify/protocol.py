@@ -60,27 +60,24 @@ class Rules:
         self.asked: list[str] = []  # of the inputs by the parts
 
     def stream(self, beginning: str) -> None:
-        """Add the part for a stream."""
+        """Add a part that asks of a stream that what is offered stays."""
         names = [port.name for port in self.head.of("input") if port.name.startswith(beginning)]
         word = f"{{{', '.join(name for name in names if name != f'{beginning}valid')}}}"
-        wires = f".valid({beginning}valid), .ready({beginning}ready), .word({word}), .holds({beginning}stays)"
-        self.parts.append(f"logic {beginning}stays;")
-        self.parts.append(f"offer_stays #($bits({word})) u_{beginning} (.clk, .rst, .reset, {wires});")
-        self.asked.append(f"{beginning}stays")
+        pins = {name: f"{beginning}{name}" for name in ("valid", "ready")}
+        self.part("offer_stays", {"Width": f"$bits({word})", "word": word} | pins, beginning)
 
-    def part(self, name: str, chosen: Mapping[str, str | int]) -> None:
+    def part(self, name: str, chosen: Mapping[str, str | int], label: str = "") -> None:
         """Add a module of formal/protocols/; it makes those rules that the core leaves open."""
         own, ports = header.read(PARTS[name]), {port.name for port in self.head.ports}
+        known = ports | {"reset", "live", "holds"}
         free = [each for each, text in own.parameters.items() if text.startswith("parameter")]
         values: dict[str, str | int] = {each: each for each in free if each in self.head.parameters}
-        wires: dict[str, str | int] = {
-            port.name: port.name for port in own.of("input") if port.name in ports | {"reset", "live", "holds"}
-        }
+        wires: dict[str, str | int] = {port.name: port.name for port in own.of("input") if port.name in known}
         for port in own.of("output"):
             if port.name == "holds":
-                wires["holds"] = f"{name}_holds"
-                self.parts.append(f"logic {name}_holds;")
-                self.asked.append(f"{name}_holds")
+                self.asked.append(f"{label or name}_holds")
+                wires["holds"] = self.asked[-1]
+                self.parts.append(f"logic {self.asked[-1]};")
             elif not RULE.fullmatch(port.name):
                 if PLAIN.fullmatch(port.type):
                     wires[port.name] = port.name
@@ -91,7 +88,7 @@ class Rules:
         values |= {each: value for each, value in chosen.items() if each in free}
         wires |= {each: value for each, value in chosen.items() if each not in free}
         given, wired = (", ".join(f".{each}({value})" for each, value in of.items()) for of in (values, wires))
-        self.parts.append(f"{name} {f'#({given}) ' if given else ''}u_{name} ({wired});")
+        self.parts.append(f"{name} {f'#({given}) ' if given else ''}u_{label or name} ({wired});")
 
     def row(self, names: str, value: str) -> None:
         """Add what PROTOCOL says of names."""

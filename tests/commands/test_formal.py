@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
-from commands.common.repository import cores, sources
+from commands.common.repository import cores, packages, sources
 from commands.verify import formal, protocol
+from commands.verify.mutants import yosys
 from formal.entries import Proof
 
 QUICK = ("td_axis_skid", "td_burst_counter")
@@ -46,6 +47,14 @@ def test_every_protocol_belongs_to_a_core() -> None:
     assert dict(protocol.BODY.findall(texts)) == {name: text for name, text in bodies.items() if text}
     used = {part for row in rows.values() for part in row}
     assert {part for part in protocol.PARTS if not re.search(rf"^ +{part} ", texts, re.M)} <= used | {"offer_stays"}
+
+
+def test_every_protocol_is_read(tmp_path: Path) -> None:
+    for name in CORES:
+        (tmp_path / f"protocol_{name}.sv").write_text(protocol.module(name))
+    tops = " ".join(f"--top protocol_{name}" for name in CORES)
+    files = " ".join(map(str, [*packages(), *protocol.PARTS.values(), *sorted(tmp_path.glob("*.sv"))]))
+    yosys(f"read_slang --threads 1 {tops} {files}\n", tmp_path, "read")
 
 
 def test_the_list_names_every_core() -> None:
