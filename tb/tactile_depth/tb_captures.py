@@ -27,6 +27,11 @@ async def capturing(pipeline: Pipeline, register: str) -> bool:
     return bool(REGISTERS[register].unpack(await pipeline.read(register))["busy"])
 
 
+def ahead(pipeline: Pipeline) -> list[Stream]:
+    """Return frames whose depth leaves, and stalls, while the frames behind them enter."""
+    return [pipeline.frame() for _ in range(first_depth_latency(pipeline.config) // pipeline.pixels + 1)]
+
+
 @case(Level.FORMATS, needs=lambda config: not config.flat_field)
 async def a_capture_without_a_reference_is_refused(dut: Any) -> None:
     """Start a capture of the reference in a build without a flat field: it is refused."""
@@ -48,6 +53,7 @@ async def reference(dut: Any) -> None:
     """Capture two frames after a broken one: the colours of later frames are relative to their mean."""
     pipeline = await started(dut, accepts="random")
     rng, columns = pipeline.random, pipeline.columns
+    await pipeline.send(*ahead(pipeline))
     shades = [pack([[rng.randint(90, 160) for _ in range(3)] for _ in range(pipeline.pixels)]) for _ in range(2)]
     still = [video(shade, columns) for shade in shades]
     assert await pipeline.write("REFERENCE_CAPTURE", REFERENCE_CAPTURE.pack(start=1, log2_frames=1)) == Response.OKAY
@@ -140,7 +146,7 @@ async def dark_pixels_are_held(dut: Any) -> None:
                 words[row * pipeline.columns + column] = int(pack(colour))
     await pipeline.write("DARK_LEVEL", DARK_LEVEL)
     pipeline.scoreboard.dark_level = DARK_LEVEL
-    await pipeline.send(video(words, pipeline.columns), pipeline.frame())
+    await pipeline.send(*ahead(pipeline), video(words, pipeline.columns), pipeline.frame())
     await RisingEdge(dut.clk)
     dark = (unpack([word.data for word in pipeline.into.words]) < DARK_LEVEL).all(axis=-1).sum()
     pipeline.scoreboard.counters["DARK_PIXELS"] += int(dark)

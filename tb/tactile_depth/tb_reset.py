@@ -36,7 +36,6 @@ async def resets(dut: Any, clocks: int, phase: str) -> None:
     pipeline = await started(dut)
     await pipeline.write("THRESHOLD", -5)
     await pipeline.write("CONTROL", CONTROL.pack(hold_contact=1))
-    pipeline.contact.takes = repeat(False)  # a record waits
     for name in CAPTURES:
         await pipeline.write(name, REGISTERS[name].pack(start=1, log2_frames=4))  # refused where the build has none
     first = pipeline.pixels + 1 + pipeline.random.randrange(pipeline.pixels // 2)
@@ -63,7 +62,6 @@ async def resets(dut: Any, clocks: int, phase: str) -> None:
     assert phase in pipeline.phases(), f"the test is void: the phase is {pipeline.phases()}"
     await pipeline.reset(clocks)
     pipeline.sink.stall(repeat(True))
-    pipeline.contact.takes = repeat(True)
     assert not dut.contact.value
     for register in MAP:
         fields = [field for field in register.fields if field.reset is not None]

@@ -61,7 +61,7 @@ async def registers_follow_the_pins(dut: Any, accepts: str) -> None:
 @case(Level.FORMATS, whole_rows=True)
 async def records_while_their_sink_stalls(dut: Any) -> None:
     """Stall the sink of records: registers and interrupt tell of each frame, the packets of the first and of the last
-    one wait, and those between are counted as lost."""
+    one wait, and those between are counted as lost. A reset withdraws those that wait."""
     pipeline = await started(dut)
     watch, frames, records = pipeline.contact, 4, []
     watch.takes = repeat(False)
@@ -76,6 +76,14 @@ async def records_while_their_sink_stalls(dut: Any) -> None:
     await pipeline.until(lambda: len(watch.packets) == 2)
     assert watch.packets == [records[0], records[-1]]
     watch.packets = records
+    await pipeline.check()
+    watch.takes = repeat(False)
+    for _ in range(2):
+        await pipeline.send(pipeline.frame())
+        await pipeline.drain()
+    await pipeline.reset(1)
+    watch.takes = repeat(True)
+    await pipeline.send(pipeline.frame())
     await pipeline.check()
 
 
