@@ -145,6 +145,60 @@ module tactile_depth
     .reference_command, .reference_status, .zero_command, .zero_status, .register_command, .register_answer
   );
 
+  // Refused.
+
+  localparam int FlatField      = value(Config, FlatFieldField);
+  localparam int Polynomial     = value(Config, PolynomialField);
+  localparam int Dependent      = value(Config, CorrectionsField) | value(Config, LightGainsField);
+  localparam int Options        = FlatField | Polynomial | Dependent | value(Config, ZeroOffsetField);
+  localparam int BitsPerChannel = value(Config, BitsPerChannelField);
+  localparam int GainWidth      = value(Config, GainWidthField);
+  localparam int SumWidth       = 8 + 2 * value(Config, BlockLog2Field) + value(Config, CaptureLog2Field);
+  localparam int FineBits       = value(Config, FineBitsField);
+  localparam int CorrectionUnit = value(Config, CorrectionUnitField);
+  localparam int Fraction       = value(Config, GradientFractionField);
+  localparam int Mantissas      = value(Config, DepthMantissaField) | value(Config, SlopeMantissaField);
+  localparam int DepthExponent  = value(Config, DepthExponentField);
+  localparam int SlopeExponent  = value(Config, SlopeExponentField);
+  if (Options < 0 || Options > 1) begin : g_refused_0
+    FlatField_Polynomial_Corrections_LightGains_and_ZeroOffset_are_0_or_1 u_refused ();
+  end
+  if (Dependent > Polynomial || Polynomial > FlatField) begin : g_refused_1
+    Corrections_and_LightGains_need_Polynomial_and_that_needs_FlatField u_refused ();
+  end
+  if (BitsPerChannel < 1 || BitsPerChannel > 8) begin : g_refused_2
+    BitsPerChannel_must_be_1_to_8 u_refused ();
+  end
+  if (FlatField != 0 && (GainWidth < 2 || GainWidth > 32)) begin : g_refused_3
+    GainWidth_must_be_2_to_32 u_refused ();
+  end
+  if (FlatField != 0 && SumWidth > GainWidth) begin : g_refused_4
+    a_sum_of_a_block_over_2_to_the_CaptureLog2_frames_must_fit_GainWidth u_refused ();
+  end
+  if (Polynomial != 0 && PolynomialWidth + FineBits < ColourCoeffWidth) begin : g_refused_5
+    FineBits_must_leave_a_coefficient_of_a_colour_in_the_words u_refused ();
+  end
+  if (Polynomial != 0 && (CorrectionUnit < 0
+      || CorrectionWidth + $clog2(CorrectionUnit + 1) > DeviationWidth + ColourCoeffWidth + 1))
+  begin : g_refused_6
+    a_correction_must_fit_the_sum u_refused ();
+  end
+  if (value(Config, FrameLatencyField) < 2) begin : g_refused_7
+    FrameLatency_must_be_at_least_2 u_refused ();
+  end
+  if (Fraction < 0 || Fraction > 255) begin : g_refused_8
+    GradientFraction_does_not_fit_FORMAT u_refused ();
+  end
+  if (Mantissas >>> 24 != 0) begin : g_refused_9
+    a_mantissa_does_not_fit_24_bits u_refused ();
+  end
+  if (DepthExponent < -128 || DepthExponent > 127 || SlopeExponent < -128 || SlopeExponent > 127) begin : g_refused_10
+    an_exponent_does_not_fit_8_bits u_refused ();
+  end
+  if (value(Config, PitchNmField) < 0) begin : g_refused_11
+    PitchNm_must_not_be_negative u_refused ();
+  end
+
 endmodule
 
 `default_nettype wire

@@ -2,8 +2,8 @@
 """Structures, mutants and refused parameters of a core: data in the core's testbench, for tests and commands.
 
 The testbench of a core, `tb/<unit>/tb_<core>.py`, states STRUCTURES, a sequence of `Structure`; where needed PROTOCOL
-(commands/verify/protocol.py); MUTANTS, a `Mutants`; and REFUSED, a mapping from a change of parameters to the module
-that refuses it, or to a `Refused`.
+(commands/verify/protocol.py); MUTANTS, a `Mutants`; and of a door (hdl/README.md) REFUSED, a mapping from each rule
+to changes of parameters that break it, with commas between.
 """
 
 from __future__ import annotations
@@ -91,14 +91,3 @@ class Mutants:
     outside: Sequence[str] = ()
     repeats: int = 60
     flat: bool = True
-
-
-@dataclass(frozen=True)
-class Refused:
-    """Refusal of a parameter: the module of the rule, and the tools that stop earlier, with what they report then.
-
-    `earlier` maps a tool to a part of its message in small letters: a consequence of the parameter in another place.
-    """
-
-    rule: str
-    earlier: Mapping[str, str] = field(default_factory=dict)

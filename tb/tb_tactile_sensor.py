@@ -51,7 +51,6 @@ STRUCTURES = (
     ),
 )
 MUTANTS = Mutants(flat=False)
-REFUSED = {"Camera=0": "Config_has_no_camera"}
 NO_PROOF = "camera_unit and tactile_depth in a row"
 
 

@@ -150,10 +150,6 @@ module area_average #(
     end
   end
 
-  if (Bits < 8 || Rows < 2) begin : g_refused
-    Bits_must_be_at_least_8_and_Rows_at_least_2 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -35,10 +35,6 @@ module block_weights #(
     if (en && step) left <= block_ends ? Block - (Pixel - left_now) : left_now - Pixel;
   end
 
-  if (Denominator < 1 || Numerator < Denominator) begin : g_refused
-    Numerator_must_be_at_least_Denominator_and_Denominator_at_least_1 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -9,16 +9,27 @@
 `default_nettype none
 
 module camera_unit
+  import td_camera_map_pkg::*;
   import td_config_pkg::*;
   import td_types_pkg::*;
 #(
   parameter logic [ConfigBits-1:0] Config = DefaultConfig,
-  localparam int Rows        = value(Config, RowsField),
-  localparam int Columns     = value(Config, ColumnsField),
-  localparam int Numerator   = value(Config, CameraNumeratorField),
-  localparam int Denominator = value(Config, CameraDenominatorField),
-  localparam int Format      = value(Config, CameraFormatField),
-  localparam int Phase       = value(Config, CameraPhaseField)
+  localparam int Rows           = value(Config, RowsField),
+  localparam int Columns        = value(Config, ColumnsField),
+  localparam int Numerator      = value(Config, CameraNumeratorField),
+  localparam int Denominator    = value(Config, CameraDenominatorField),
+  localparam int Format         = value(Config, CameraFormatField),
+  localparam int Phase          = value(Config, CameraPhaseField),
+  localparam int PictureColumns = value(Config, CameraPictureColumnsField),
+  localparam int PictureRows    = value(Config, CameraPictureRowsField),
+  localparam int WindowX        = value(Config, CameraWindowXField),
+  localparam int WindowY        = value(Config, CameraWindowYField),
+  localparam int BlackLevel     = value(Config, CameraBlackLevelField),
+  localparam int RedGain        = value(Config, CameraRedGainField),
+  localparam int GreenGain      = value(Config, CameraGreenGainField),
+  localparam int BlueGain       = value(Config, CameraBlueGainField),
+  localparam int WindowColumns  = (Columns * Numerator + Denominator - 1) / Denominator,
+  localparam int WindowRows     = (Rows * Numerator + Denominator - 1) / Denominator
 ) (
   input  wire                    clk,
   input  wire                    rst,
@@ -56,12 +67,9 @@ module camera_unit
   logic writable, readable;
   logic [31:0] read_data;
   camera_registers #(
-    .PictureColumns(value(Config, CameraPictureColumnsField)), .PictureRows(value(Config, CameraPictureRowsField)),
-    .WindowX(value(Config, CameraWindowXField)), .WindowY(value(Config, CameraWindowYField)),
-    .BlackLevel(value(Config, CameraBlackLevelField)), .RedGain(value(Config, CameraRedGainField)),
-    .GreenGain(value(Config, CameraGreenGainField)), .BlueGain(value(Config, CameraBlueGainField)),
-    .WindowColumns((Columns * Numerator + Denominator - 1) / Denominator),
-    .WindowRows((Rows * Numerator + Denominator - 1) / Denominator), .Format(Format), .Phase(Phase)
+    .PictureColumns(PictureColumns), .PictureRows(PictureRows), .WindowX(WindowX), .WindowY(WindowY),
+    .WindowColumns(WindowColumns), .WindowRows(WindowRows), .BlackLevel(BlackLevel), .RedGain(RedGain),
+    .GreenGain(GreenGain), .BlueGain(BlueGain), .Format(Format), .Phase(Phase)
   ) u_registers (
     .clk, .rst, .write(register_command.write), .write_offset(register_command.write_offset),
     .write_ones(register_command.write_ones), .write_mask(register_command.write_mask), .writable,
@@ -71,6 +79,31 @@ module camera_unit
   assign register_answer.writable = writable;
   assign register_answer.readable = readable;
   assign register_answer.data = read_data;
+
+  // Refused.
+
+  if (Format < 0 || Format >= CameraFormatPixelFormatCount) begin : g_refused_0
+    Format_is_a_number_of_camera_format_e u_refused ();
+  end
+  if (Phase < 0 || Phase >= CameraFormatPhaseCount) begin : g_refused_1
+    Phase_is_0_to_3 u_refused ();
+  end
+  if (Rows < 2 || Columns < 4) begin : g_refused_2
+    Rows_must_be_at_least_2_and_Columns_4 u_refused ();
+  end
+  if (Denominator < 1 || Numerator < Denominator) begin : g_refused_3
+    Numerator_must_be_at_least_Denominator_and_Denominator_at_least_1 u_refused ();
+  end
+  if (format_is_bayer(Format) != 0 && Numerator < 2 * Denominator) begin : g_refused_4
+    below_a_ratio_of_2_some_blocks_lack_a_colour u_refused ();
+  end
+  if (((PictureColumns | PictureRows | WindowX | WindowY | WindowColumns | WindowRows) >>> 13) != 0)
+  begin : g_refused_5
+    pictures_and_windows_have_up_to_8191_rows_and_columns u_refused ();
+  end
+  if ((BlackLevel >>> 12) != 0 || ((RedGain | GreenGain | BlueGain) >>> 16) != 0) begin : g_refused_6
+    BlackLevel_must_fit_12_bits_and_gains_16 u_refused ();
+  end
 
 endmodule
 

@@ -167,14 +167,6 @@ module camera_window #(
     end
   end
 
-  if (WindowColumns < 2 || WindowRows < 2 || WindowColumns >= 1 << CountWidth || WindowRows >= 1 << CountWidth)
-  begin : g_refused_0
-    WindowColumns_and_WindowRows_must_be_2_to_8191 u_refused ();
-  end
-  if (WordsPerPixel != 1 && WordsPerPixel != 2) begin : g_refused_1
-    WordsPerPixel_is_1_or_2 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

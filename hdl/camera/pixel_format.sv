@@ -156,13 +156,6 @@ module pixel_format
     assign unused_inputs = ^{in_data[23:16], in_odd_row};
   end
 
-  if (Format < 0 || Format >= CameraFormatPixelFormatCount) begin : g_refused_0
-    Format_is_a_number_of_camera_format_e u_refused ();
-  end
-  if (Phase < 0 || Phase >= CameraFormatPhaseCount) begin : g_refused_1
-    Phase_is_0_to_3 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

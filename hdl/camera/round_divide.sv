@@ -11,7 +11,7 @@
 `default_nettype none
 
 module round_divide #(
-  parameter int TotalWidth  = 36,
+  parameter int TotalWidth  = 36,  // at least Drop + 10
   parameter int WeightWidth = 8,
   parameter int Drop        = 14
 ) (
@@ -69,10 +69,6 @@ module round_divide #(
   assign up = twice > whole | (twice == whole & (more[Bits] | quotients[Bits][0]));
   always_ff @(posedge clk) begin
     if (en) mean <= clipped[Bits] | quotients[Bits] == '1 ? '1 : quotients[Bits] + Bits'(up);
-  end
-
-  if (UpperWidth < 1 || WeightWidth < 1 || Drop < 2) begin : g_refused
-    TotalWidth_must_be_at_least_10_plus_Drop_WeightWidth_at_least_1_and_Drop_at_least_2 u_refused ();
   end
 
 endmodule

@@ -11,7 +11,7 @@
 
 module beat_sums #(
   parameter int Width = 24,
-  parameter int Lanes = 8,
+  parameter int Lanes = 8,  // a power of two
   localparam int OffsetWidth = $clog2(Lanes),
   localparam int WeightWidth = Width + OffsetWidth,
   localparam int MomentWidth = WeightWidth + OffsetWidth
@@ -67,10 +67,6 @@ module beat_sums #(
   assign moment = g_node[1].turn;
   assign least_offset = g_node[1].first;
   assign greatest_offset = g_node[1].last;
-
-  if (Lanes < 2 || Lanes != (1 << $clog2(Lanes))) begin : g_refused
-    Lanes_must_be_a_power_of_two_at_least_2 u_refused ();
-  end
 
 endmodule
 

@@ -44,10 +44,6 @@ module contact_debounce #(
     end
   end
 
-  if (AreaWidth < 1 || AreaWidth > 32) begin : g_refused
-    AreaWidth_must_be_1_to_32 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

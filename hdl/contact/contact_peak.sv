@@ -151,19 +151,6 @@ module contact_peak
   assign peak_row = any_above ? 16'(highest_row) : '0;
   assign peak_column = any_above ? 16'(highest_column) : '0;
 
-  if (Width < 2 || Width > 32) begin : g_refused_0
-    Width_must_be_2_to_32 u_refused ();
-  end
-  if (Rows < 2 || Rows > 1024) begin : g_refused_1
-    Rows_must_be_2_to_1024 u_refused ();
-  end
-  if (Columns < 2 || Columns > 1024) begin : g_refused_2
-    Columns_must_be_2_to_1024 u_refused ();
-  end
-  if (Lanes < 1 || Lanes > 64 || Lanes != (1 << $clog2(Lanes)) || Columns % Lanes != 0) begin : g_refused_3
-    Lanes_must_be_a_power_of_two_up_to_64_that_divides_Columns u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -52,10 +52,6 @@ module record_packets #(
     end
   end
 
-  if (Words < 2) begin : g_refused
-    Words_must_be_at_least_2 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -50,13 +50,6 @@ module threshold_comparator #(
     end
   end
 
-  if (Width < 2 || Width > 32) begin : g_refused_0
-    Width_must_be_2_to_32 u_refused ();
-  end
-  if (Lanes < 1) begin : g_refused_1
-    Lanes_must_be_at_least_1 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -116,13 +116,6 @@ module depth_unit
   logic unused_banks;  // of other tables
   assign unused_banks = ^table_bank;
 
-  if (ZeroOffset < 0 || ZeroOffset > 1) begin : g_refused_0
-    ZeroOffset_is_0_or_1 u_refused ();
-  end
-  if (FrameLatency < 2) begin : g_refused_1
-    FrameLatency_must_be_at_least_2 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

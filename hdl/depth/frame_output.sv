@@ -52,13 +52,6 @@ module frame_output
 
   always_ff @(posedge clk) if (en) bad_q <= bad;
 
-  if (Rows < 2) begin : g_refused_0
-    Rows_must_be_at_least_2 u_refused ();
-  end
-  if (Columns < 2 || Columns != (1 << $clog2(Columns))) begin : g_refused_1
-    Columns_must_be_a_power_of_two_at_least_2 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

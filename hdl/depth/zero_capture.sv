@@ -136,10 +136,6 @@ module zero_capture
     end
   end
 
-  if (MaxLog2 > 8) begin : g_refused
-    MaxLog2_must_be_at_most_8 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

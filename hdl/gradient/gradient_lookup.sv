@@ -79,10 +79,6 @@ module gradient_lookup
     if (rst) {out_valid, valid_q} <= '0;
   end
 
-  if (BitsPerChannel < 1 || BitsPerChannel > 8) begin : g_refused
-    BitsPerChannel_must_be_1_to_8 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -195,22 +195,6 @@ module gradient_unit
     assign {slope_saturations, coefficients_in_use, coefficients_answer} = '0;
   end
 
-  if (Polynomial != 0 && FlatField == 0) begin : g_refused_0
-    Polynomial_needs_FlatField u_refused ();
-  end
-  localparam int Options = FlatField | Polynomial | Corrections | LightGains;
-  if (Options > 1 || Options < 0) begin : g_refused_1
-    FlatField_Polynomial_Corrections_and_LightGains_are_0_or_1 u_refused ();
-  end
-  if (FlatField != 0 && (GainWidth < 2 || GainWidth > 32)) begin : g_refused_2
-    GainWidth_must_be_2_to_32 u_refused ();
-  end
-  if (LightGains != 0 && Polynomial == 0) begin : g_refused_3
-    LightGains_need_Polynomial u_refused ();
-  end
-  if (Corrections != 0 && Polynomial == 0) begin : g_refused_4
-    Corrections_need_Polynomial u_refused ();
-  end
 
 endmodule
 

@@ -163,13 +163,6 @@ module light_gains
     end
   end
 
-  if (Columns < 8) begin : g_refused_0
-    Columns_must_be_at_least_8 u_refused ();
-  end
-  if (SumDrop < 1) begin : g_refused_1
-    the_sum_of_a_frame_must_have_more_fraction_bits_than_a_gain u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -151,13 +151,6 @@ module reference_capture
     end
   end
 
-  if (8 + 2 * BlockLog2 + MaxLog2 > Width) begin : g_refused_0
-    a_sum_over_2_to_the_MaxLog2_frames_must_fit_Width_bits u_refused ();
-  end
-  if (Scale < 0) begin : g_refused_1
-    GainFraction_plus_2_BlockLog2_must_be_at_least_Width u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -63,10 +63,6 @@ module cobs_decode #(
     end
   end
 
-  if (Longest < 1) begin : g_refused
-    Longest_must_be_at_least_1 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -81,10 +81,6 @@ module cobs_encode #(
     end
   end
 
-  if (Run < 2 || Run > 254) begin : g_refused
-    Run_is_2_to_254 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

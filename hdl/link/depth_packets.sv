@@ -164,19 +164,6 @@ module depth_packets
     else if (frame_take && !rst) number <= number + 32'd1;
   end
 
-  if (Rows < 2) begin : g_refused_0
-    Rows_must_be_at_least_2 u_refused ();
-  end
-  if (Columns < 2 || Columns != (1 << $clog2(Columns))) begin : g_refused_1
-    Columns_must_be_a_power_of_two_at_least_2 u_refused ();
-  end
-  if (DataWidth < 2 || DataWidth > 32) begin : g_refused_2
-    DataWidth_must_be_2_to_32 u_refused ();
-  end
-  if (Values < 2 || Values != (1 << $clog2(Values))) begin : g_refused_3
-    Values_must_be_a_power_of_two_at_least_2 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

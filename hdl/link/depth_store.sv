@@ -121,19 +121,6 @@ module depth_store
     always_ff @(posedge clk) bank_q[b] <= read_values;
   end
 
-  if (Columns < 2 || Columns != (1 << $clog2(Columns))) begin : g_refused_0
-    Columns_must_be_a_power_of_two_at_least_2 u_refused ();
-  end
-  if (Lanes < 1 || Columns % Lanes != 0) begin : g_refused_1
-    Lanes_must_divide_Columns u_refused ();
-  end
-  if (Rows < 2) begin : g_refused_2
-    Rows_must_be_at_least_2 u_refused ();
-  end
-  if (DataWidth < 2) begin : g_refused_3
-    DataWidth_must_be_at_least_2 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

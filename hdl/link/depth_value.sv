@@ -43,10 +43,6 @@ module depth_value #(
     value <= clipped ? {rounded[WideWidth-1], {15{~rounded[WideWidth-1]}}} : rounded[15:0];
   end
 
-  if (DataWidth < 2) begin : g_refused
-    DataWidth_must_be_at_least_2 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -245,6 +245,24 @@ module link_unit #(
     .out_valid, .out_ready, .out_data
   );
 
+  // Refused.
+
+  if (Rows < 2 || Rows > 4096) begin : g_refused_0
+    Rows_must_be_2_to_4096 u_refused ();
+  end
+  if (Columns < 2 || Columns > 4096 || Columns != 1 << $clog2(Columns)) begin : g_refused_1
+    Columns_must_be_a_power_of_two_2_to_4096 u_refused ();
+  end
+  if (DataWidth < 2 || DataWidth > 32) begin : g_refused_2
+    DataWidth_must_be_2_to_32 u_refused ();
+  end
+  if (Lanes < 1 || Columns % Lanes != 0) begin : g_refused_3
+    Lanes_must_divide_Columns u_refused ();
+  end
+  if (AddressWidth < 2 || AddressWidth > 16) begin : g_refused_4
+    AddressWidth_must_be_2_to_16 u_refused ();
+  end
+
 endmodule
 
 `default_nettype wire

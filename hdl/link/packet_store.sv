@@ -100,10 +100,6 @@ module packet_store #(
     end
   end
 
-  if (BankBytes < 4 || BankBytes > 1024 || BankBytes != (1 << $clog2(BankBytes))) begin : g_refused
-    BankBytes_must_be_a_power_of_two_from_4_to_1024 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

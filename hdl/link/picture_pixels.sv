@@ -101,13 +101,6 @@ module picture_pixels #(
     end
   end
 
-  if (Rows < 1 || Rows > 4096) begin : g_refused_0
-    Rows_must_be_1_to_4096 u_refused ();
-  end
-  if (Columns < 1 || Columns > 4096) begin : g_refused_1
-    Columns_must_be_1_to_4096 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -67,10 +67,6 @@ module column_mean #(
     end
   end
 
-  if (Rows < 2) begin : g_refused
-    Rows_must_be_at_least_2 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

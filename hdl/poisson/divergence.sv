@@ -73,10 +73,6 @@ module divergence
     end
   end
 
-  if (Columns < 2) begin : g_refused
-    Columns_must_be_at_least_2 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -156,16 +156,6 @@ module frame_stack #(
     end
   end
 
-  if (Columns < 2) begin : g_refused_0
-    Columns_must_be_at_least_2 u_refused ();
-  end
-  if (Rows < 2) begin : g_refused_1
-    Rows_must_be_at_least_2 u_refused ();
-  end
-  if (WordsPerRow < 1) begin : g_refused_2
-    WordsPerRow_must_be_at_least_1 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

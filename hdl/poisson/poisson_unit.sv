@@ -74,8 +74,57 @@ module poisson_unit
     );
   end
 
-  if ((Tridiagonal | Neumann) > 1 || (Tridiagonal | Neumann) < 0) begin : g_refused
+  // Refused.
+
+  localparam int Rows           = value(Config, RowsField);
+  localparam int CoeffWidth     = value(Config, CoeffWidthField);
+  localparam int StoreStyle     = value(Config, StoreStyleField);
+  localparam int ShiftWidth     = value(Config, Tridiagonal != 0 ? LastShiftWidthField : DivideShiftWidthField);
+  localparam int DownWords      = value(Config, DownWordsField);
+  localparam int DownSettled    = value(Config, Lanes > 1 ? DownSettledWidthField : SettledWidthField);
+  localparam int UpSettled      = value(Config, Lanes > 1 ? UpSettledWidthField : SettledWidthField);
+  localparam int MeanReciprocal = value(Config, MeanReciprocalField);
+  if ((Tridiagonal | Neumann) > 1 || (Tridiagonal | Neumann) < 0) begin : g_refused_0
     Tridiagonal_and_Neumann_are_0_or_1 u_refused ();
+  end
+  if (Columns < 16 || Columns > 1024 || Columns != 1 << $clog2(Columns)) begin : g_refused_1
+    Columns_must_be_a_power_of_two_16_to_1024 u_refused ();
+  end
+  if (Rows < 8 || Rows > 1024) begin : g_refused_2
+    Rows_must_be_8_to_1024 u_refused ();
+  end
+  if (Lanes < 1 || Lanes > 64 || 2 * Lanes > Columns || Lanes != 1 << $clog2(Lanes)) begin : g_refused_3
+    Lanes_must_be_a_power_of_two_up_to_64_and_half_of_Columns u_refused ();
+  end
+  if (Tridiagonal == 0 && (Rows != Columns || Lanes != 1)) begin : g_refused_4
+    the_spectral_solver_takes_square_grids_and_has_one_lane u_refused ();
+  end
+  if (DataWidth < 2 || DataWidth > 32) begin : g_refused_5
+    DataWidth_must_be_2_to_32 u_refused ();
+  end
+  if (GradientWidth < 2 || GradientWidth > 32 || CoeffWidth < 2 || CoeffWidth > 32) begin : g_refused_6
+    GradientWidth_and_CoeffWidth_must_be_2_to_32 u_refused ();
+  end
+  if (StoreStyle < 0 || StoreStyle > 2) begin : g_refused_7
+    StoreStyle_must_be_0_to_2 u_refused ();
+  end
+  if (ShiftWidth < 1 || ShiftWidth > 6) begin : g_refused_8
+    DivideShiftWidth_and_LastShiftWidth_must_be_1_to_6 u_refused ();
+  end
+  if (Tridiagonal != 0 && (DownSettled < 1 || DownSettled > 16 || UpSettled < 1 || UpSettled > 16)) begin : g_refused_9
+    SettledWidth_DownSettledWidth_and_UpSettledWidth_must_be_1_to_16 u_refused ();
+  end
+  if (Tridiagonal != 0 && Neumann != 0 && (MeanReciprocal < 1 || MeanReciprocal > 1 << (CoeffWidth - 1)))
+  begin : g_refused_10
+    MeanReciprocal_must_fit_CoeffWidth u_refused ();
+  end
+  if (Tridiagonal != 0 && Lanes == 1 && value(Config, WordsPerRowField) < 1) begin : g_refused_11
+    WordsPerRow_must_be_at_least_1 u_refused ();
+  end
+  if (Tridiagonal != 0 && Lanes > 1
+      && (DownWords < 2 || DownWords > Lanes || 8 * DownWords > Columns || DownWords != 1 << $clog2(DownWords)))
+  begin : g_refused_12
+    DownWords_must_be_a_power_of_two_2_to_Lanes_and_an_eighth_of_Columns u_refused ();
   end
 
 endmodule

@@ -129,25 +129,6 @@ module spectral_solver
     if (rst) saturations <= '0;
   end
 
-  if (value(Config, RowsField) != Columns) begin : g_refused_0
-    the_spectral_solver_takes_square_grids_Rows_must_be_Columns u_refused ();
-  end
-  if (DataWidth < 2 || DataWidth > 32) begin : g_refused_1
-    DataWidth_must_be_2_to_32 u_refused ();
-  end
-  if (GradientWidth < 2 || GradientWidth > 32 || CoeffWidth < 2 || CoeffWidth > 32) begin : g_refused_2
-    GradientWidth_and_CoeffWidth_must_be_2_to_32 u_refused ();
-  end
-  if (StoreStyle < 0 || StoreStyle > 2) begin : g_refused_3
-    StoreStyle_must_be_0_to_2 u_refused ();
-  end
-  if (DivideShiftWidth < 1 || DivideShiftWidth > 6) begin : g_refused_4
-    DivideShiftWidth_must_be_1_to_6 u_refused ();
-  end
-  if (value(Config, LanesField) != 1) begin : g_refused_5
-    the_spectral_solver_has_one_lane u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -77,13 +77,6 @@ module thomas_table #(
     always_ff @(posedge clk) if (en) coefficient <= inner_q;
   end
 
-  if (Columns < 2 || Columns != (1 << $clog2(Columns))) begin : g_refused_0
-    Columns_must_be_a_power_of_two_at_least_2 u_refused ();
-  end
-  if (Rows < 2) begin : g_refused_1
-    Rows_must_be_at_least_2 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

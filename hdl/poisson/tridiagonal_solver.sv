@@ -123,22 +123,6 @@ module tridiagonal_solver
     if (rst) saturations <= '0;
   end
 
-  if (DataWidth < 2 || DataWidth > 32) begin : g_refused_0
-    DataWidth_must_be_2_to_32 u_refused ();
-  end
-  if (GradientWidth < 2 || GradientWidth > 32 || CoeffWidth < 2 || CoeffWidth > 32) begin : g_refused_1
-    GradientWidth_and_CoeffWidth_must_be_2_to_32 u_refused ();
-  end
-  if (StoreStyle < 0 || StoreStyle > 2) begin : g_refused_2
-    StoreStyle_must_be_0_to_2 u_refused ();
-  end
-  if (SettledWidth < 1 || SettledWidth > 16 || LastShiftWidth < 1 || LastShiftWidth > 6) begin : g_refused_3
-    SettledWidth_must_be_1_to_16_and_LastShiftWidth_1_to_6 u_refused ();
-  end
-  if (Neumann != 0 && (MeanReciprocal < 1 || MeanReciprocal > 1 << (CoeffWidth - 1))) begin : g_refused_4
-    MeanReciprocal_must_fit_CoeffWidth u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -124,25 +124,6 @@ module wide_solver
     if (rst) saturations <= '0;
   end
 
-  if (DataWidth < 2 || DataWidth > 32) begin : g_refused_0
-    DataWidth_must_be_2_to_32 u_refused ();
-  end
-  if (GradientWidth < 2 || GradientWidth > 32 || CoeffWidth < 2 || CoeffWidth > 32) begin : g_refused_1
-    GradientWidth_and_CoeffWidth_must_be_2_to_32 u_refused ();
-  end
-  if (StoreStyle < 0 || StoreStyle > 2) begin : g_refused_2
-    StoreStyle_must_be_0_to_2 u_refused ();
-  end
-  if (DownSettledWidth < 1 || DownSettledWidth > 16 || UpSettledWidth < 1 || UpSettledWidth > 16) begin : g_refused_3
-    DownSettledWidth_and_UpSettledWidth_must_be_1_to_16 u_refused ();
-  end
-  if (LastShiftWidth < 1 || LastShiftWidth > 6) begin : g_refused_4
-    LastShiftWidth_must_be_1_to_6 u_refused ();
-  end
-  if (Neumann != 0 && (MeanReciprocal < 1 || MeanReciprocal > 1 << (CoeffWidth - 1))) begin : g_refused_5
-    MeanReciprocal_must_fit_CoeffWidth u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -21,8 +21,8 @@ module wide_stack #(
   parameter int Width    = 24,
   parameter int Rows     = 128,
   parameter int Columns  = 128,
-  parameter int InWords  = 2,
-  parameter int OutWords = 8,
+  parameter int InWords  = 2,  // a power of two up to Columns / 8
+  parameter int OutWords = 8,  // a power of two, InWords to Columns / 2
   parameter int Style    = 1  // of the memory, hdl/common/td_ram.sv
 ) (
   input  wire                      clk,
@@ -194,15 +194,6 @@ module wide_stack #(
     always_ff @(posedge clk) begin
       if (en) out_data[g*Group*Width+:Group*Width] <= from_last_q ? last_word : word;
     end
-  end
-
-  if (InWords < 2 || InWords != (1 << $clog2(InWords)) || OutWords < InWords || OutWords != (1 << $clog2(OutWords))
-      || Columns < 2 * OutWords || Clocks < 3 + Beats / 2 || Columns != (1 << $clog2(Columns)))
-  begin : g_refused_0
-    InWords_OutWords_Columns_must_be_rising_powers_of_two_with_2_beats_and_4_clocks_in_a_row u_refused ();
-  end
-  if (Rows < 3) begin : g_refused_1
-    Rows_must_be_at_least_3 u_refused ();
   end
 
 endmodule

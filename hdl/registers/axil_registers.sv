@@ -219,32 +219,6 @@ module axil_registers
   logic unused_pins;
   assign unused_pins = ^{s_axil_awprot, s_axil_arprot};
 
-  if (Rows < 1 || Rows > 65535) begin : g_refused_0
-    Rows_does_not_fit_GRID u_refused ();
-  end
-  if (Columns < 1 || Columns > 65535) begin : g_refused_1
-    Columns_does_not_fit_GRID u_refused ();
-  end
-  if (GradientWidth < 2 || GradientWidth > 32) begin : g_refused_2
-    GradientWidth_must_be_2_to_32 u_refused ();
-  end
-  if (BitsPerChannel < 1 || BitsPerChannel > 8) begin : g_refused_3
-    BitsPerChannel_must_be_1_to_8 u_refused ();
-  end
-  if (GradientFraction < 0 || GradientFraction > 255) begin : g_refused_4
-    GradientFraction_does_not_fit_FORMAT u_refused ();
-  end
-  if (DepthMantissa < 0 || DepthMantissa >> 24 != 0 || SlopeMantissa < 0 || SlopeMantissa >> 24 != 0)
-  begin : g_refused_5
-    a_mantissa_does_not_fit_24_bits u_refused ();
-  end
-  if (DepthExponent < -128 || DepthExponent > 127 || SlopeExponent < -128 || SlopeExponent > 127) begin : g_refused_6
-    an_exponent_does_not_fit_8_bits u_refused ();
-  end
-  if (PitchNm < 0) begin : g_refused_7
-    PitchNm_must_not_be_negative u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -111,10 +111,6 @@ module frame_guard
     end
   end
 
-  if (Rows < 2 || Columns < 2) begin : g_refused
-    Rows_and_Columns_must_be_at_least_2 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

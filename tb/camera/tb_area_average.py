@@ -53,12 +53,6 @@ STRUCTURES = (
     ),
 )
 MUTANTS = Mutants(repeats=2, flat=False)
-REFUSED = {
-    "Bits=7": "Bits_must_be_at_least_8_and_Rows_at_least_2",
-    "Rows=1": "Bits_must_be_at_least_8_and_Rows_at_least_2",
-    "Columns=3": "Columns_must_be_at_least_4_or_a_word_is_read_while_it_is_written",
-    "Numerator=7": "below_a_ratio_of_2_some_blocks_lack_a_colour",
-}
 PROOFS = tuple(
     Proof(
         "rows and columns are only counted; what is complete is proven of row_sums and block_totals",

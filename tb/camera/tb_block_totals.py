@@ -29,9 +29,6 @@ STRUCTURES = (
     built(128, 15, 4, 10, 0),
     built(8, 2, 1, 10, 1),
 )
-REFUSED = {
-    "Columns=3": "Columns_must_be_at_least_4_or_a_word_is_read_while_it_is_written",
-}
 PROOFS = tuple(
     Proof(
         "columns are only counted; totals are left to simulation where a block has several rows",

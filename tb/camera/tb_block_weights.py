@@ -26,10 +26,6 @@ STRUCTURES = (
     built(127, 16),
     built(4, 3),
 )
-REFUSED = {
-    "Denominator=0": "Numerator_must_be_at_least_Denominator_and_Denominator_at_least_1",
-    "Numerator=3": "Numerator_must_be_at_least_Denominator_and_Denominator_at_least_1",
-}
 PROTOCOL = {"begun": {"begins": "en & step & restart", "reset": "1'b0"}, "counts": "begun | restart"}
 PROOFS = tuple(
     Proof(

@@ -79,11 +79,6 @@ STRUCTURES = (
     built(arguments("yuyv", (7, 18), window=[4, 1, 9, 5])),
 )
 MUTANTS = Mutants(repeats=2, flat=False)
-REFUSED = {
-    "Format=-1": "Format_is_a_number_of_camera_format_e",
-    "Numerator=7": "below_a_ratio_of_2_some_blocks_lack_a_colour",
-    "Rows=4096": "WindowColumns_and_WindowRows_must_be_2_to_8191",
-}
 NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends"
 
 

@@ -53,13 +53,6 @@ MUTANTS = Mutants(
     ),
     flat=False,
 )
-REFUSED = {
-    "PictureColumns=8192": "pictures_and_windows_have_up_to_8191_rows_and_columns",
-    "WindowY=-1": "pictures_and_windows_have_up_to_8191_rows_and_columns",
-    "WindowRows=8192": "pictures_and_windows_have_up_to_8191_rows_and_columns",
-    "BlackLevel=4096": "BlackLevel_must_fit_12_bits_and_gains_16",
-    "BlueGain=65536": "BlackLevel_must_fit_12_bits_and_gains_16",
-}
 PROOFS = (
     Proof(
         FULL_WIDTH,

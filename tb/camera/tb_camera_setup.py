@@ -67,12 +67,10 @@ STRUCTURES = (
 )
 PROTOCOL = {"counts": "live"}
 REFUSED = {
-    "AddressBytes=3": "AddressBytes_must_be_1_or_2",
-    "QuarterClocks=3": "QuarterClocks_must_be_at_least_4_the_line_takes_three_to_be_seen",
-    "Entries=1": "MillisecondClocks_and_Entries_must_be_at_least_2_XclkHalfClocks_and_Attempts_1",
-    "Attempts=0": "MillisecondClocks_and_Entries_must_be_at_least_2_XclkHalfClocks_and_Attempts_1",
-    "DeviceId=67": "DeviceId_must_be_an_even_byte",
-    "DeviceId=256": "DeviceId_must_be_an_even_byte",
+    "AddressBytes_must_be_1_or_2": "AddressBytes=3",
+    "QuarterClocks_must_be_at_least_4_the_line_takes_three_to_be_seen": "QuarterClocks=3",
+    "MillisecondClocks_and_Entries_must_be_at_least_2_XclkHalfClocks_and_Attempts_1": "Entries=1, Attempts=0",
+    "DeviceId_must_be_an_even_byte": "DeviceId=67, DeviceId=256",
 }
 PROOFS = (
     Proof(

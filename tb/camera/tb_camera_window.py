@@ -47,11 +47,6 @@ PROTOCOL = {
     "out_row_start out_frame_start": "counts & out_valid & out_inside",
 }
 MUTANTS = Mutants(repeats=2)
-REFUSED = {
-    "WindowColumns=1": "WindowColumns_and_WindowRows_must_be_2_to_8191",
-    "WindowRows=8192": "WindowColumns_and_WindowRows_must_be_2_to_8191",
-    "WordsPerPixel=3": "WordsPerPixel_is_1_or_2",
-}
 PROOFS = tuple(
     Proof(
         "rows and columns are only counted and compared",

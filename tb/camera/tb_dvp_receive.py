@@ -24,9 +24,7 @@ STRUCTURES = (
     built(4, on=BOTH),
     built(3, on=ICARUS, mutants=ICARUS),
 )
-REFUSED = {
-    "FifoLog2=2": "FifoLog2_must_be_at_least_3_or_nearly_equal_clocks_lose_every_frame",
-}
+REFUSED = {"FifoLog2_must_be_at_least_3_or_nearly_equal_clocks_lose_every_frame": "FifoLog2=2"}
 PROTOCOL = {"counts": "live", "m_axis_tdata m_axis_tlast m_axis_tuser": "live & m_axis_tvalid"}
 PROOFS = (
     Proof(

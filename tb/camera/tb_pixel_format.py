@@ -56,10 +56,6 @@ STRUCTURES = (
     *(built(form, phase) for form in RAW for phase in range(4)),
 )
 MUTANTS = Mutants(repeats=2)
-REFUSED = {
-    "Format=10": "Format_is_a_number_of_camera_format_e",
-    "Phase=4": "Phase_is_0_to_3",
-}
 PROOFS = (
     *(
         Proof(

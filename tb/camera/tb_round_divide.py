@@ -27,11 +27,6 @@ STRUCTURES = (
 )
 PROTOCOL = {"holds": "weight != '0", "settled": {"Clocks": 10}, "counts": "settled"}
 MUTANTS = Mutants(repeats=2)
-REFUSED = {
-    "TotalWidth=9": "TotalWidth_must_be_at_least_10_plus_Drop_WeightWidth_at_least_1_and_Drop_at_least_2",
-    "WeightWidth=0": "TotalWidth_must_be_at_least_10_plus_Drop_WeightWidth_at_least_1_and_Drop_at_least_2",
-    "Drop=1": "TotalWidth_must_be_at_least_10_plus_Drop_WeightWidth_at_least_1_and_Drop_at_least_2",
-}
 PROOFS = (
     Proof(
         "a stage for each bit of the quotient, the same at every width of the divisor",

@@ -28,10 +28,6 @@ STRUCTURES = (
         0,
     ),
 )
-REFUSED = {
-    "Bayer=2": "Bayer_is_0_or_1",
-    "Numerator=7": "below_a_ratio_of_2_some_blocks_lack_a_colour",
-}
 PROTOCOL = {
     "begun": {"begins": "en & in_valid"},
     "holds": "rst | ~in_valid | begun | in_row_start",

@@ -20,9 +20,7 @@ STRUCTURES = (
     built(10, 4, on=BOTH),
     built(3, 2, on=ICARUS, mutants=ICARUS),
 )
-REFUSED = {
-    "DepthLog2=1": "DepthLog2_must_be_at_least_2",
-}
+REFUSED = {"DepthLog2_must_be_at_least_2": "DepthLog2=1"}
 PROTOCOL = {"read_data": "read_valid"}
 PROOFS = (
     Proof(

@@ -31,11 +31,10 @@ STRUCTURES = (
     built(21, 16, 3, 1, 1, 24, 1, 38),
 )
 REFUSED = {
-    "BlockLog2=0": "BlockLog2_must_be_at_least_1",
-    "Columns=96": "Columns_must_be_a_power_of_two",
-    "Columns=8": "two_blocks_a_row_and_one_a_column_are_needed",
-    "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
-    "SumWidth=27": "SumWidth_must_be_more_than_Width_plus_ColumnLog2",
+    "BlockLog2_must_be_at_least_1": "BlockLog2=0",
+    "Columns_must_be_a_power_of_two": "Columns=96",
+    "two_blocks_a_row_and_one_a_column_are_needed": "Columns=8, Rows=7",
+    "SumWidth_must_be_more_than_Width_plus_ColumnLog2": "SumWidth=27",
 }
 PROOFS = tuple(
     Proof(

@@ -17,9 +17,7 @@ STRUCTURES = (
     built(8, on=ICARUS, mutants=ICARUS),
     built(64),
 )
-REFUSED = {
-    "Words=1": "Words_must_be_at_least_2",
-}
+REFUSED = {"Words_must_be_at_least_2": "Words=1"}
 PROTOCOL = {"counts": "live", "position": "live & active"}
 PROOFS = tuple(
     Proof(

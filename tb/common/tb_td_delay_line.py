@@ -22,9 +22,7 @@ STRUCTURES = (
     built(12, 33),
     built(70, 128),
 )
-REFUSED = {
-    "Delay=0": "Delay_must_be_at_least_1",
-}
+REFUSED = {"Delay_must_be_at_least_1": "Delay=0"}
 PROOFS = tuple(
     Proof(
         why,

@@ -22,8 +22,7 @@ STRUCTURES = (
     built(15, 12),
 )
 REFUSED = {
-    "DivisorWidth=0": "DivisorWidth_must_be_at_least_1_and_QuotientWidth_at_least_2",
-    "QuotientWidth=1": "DivisorWidth_must_be_at_least_1_and_QuotientWidth_at_least_2",
+    "DivisorWidth_must_be_at_least_1_and_QuotientWidth_at_least_2": "DivisorWidth=0, QuotientWidth=1",
 }
 PROOFS = (
     Proof(

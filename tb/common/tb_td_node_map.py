@@ -63,16 +63,11 @@ STRUCTURES = (
     built(128, 8, 3, 24, 3, 1, 0),
     built(64, 64, 2, 24, 3, 1, 0),
 )
-POWERS = "Columns_and_Lanes_must_be_powers_of_two_with_Lanes_of_two_blocks_Channels_too"
-LEAST = "blocks_of_2_pixels_or_more_two_beats_and_two_blocks_a_row_and_one_block_a_column_are_needed"
 REFUSED = {
-    "BlockLog2=0": LEAST,
-    "Columns=96": POWERS,
-    "Columns=8": LEAST,
-    "Rows=7": LEAST,
-    "Lanes=3": POWERS,
-    "Lanes=128": LEAST,
-    "Lanes=16 Channels=3": POWERS,
+    "blocks_of_2_pixels_or_more_two_beats_and_two_blocks_a_row_and_one_block_a_column_are_needed": "BlockLog2=0, "
+    "Columns=8, Rows=7, Lanes=128",
+    "Columns_and_Lanes_must_be_powers_of_two_with_Lanes_of_two_blocks_Channels_too": "Columns=96, Lanes=3, "
+    "Lanes=16 Channels=3",
 }
 PROTOCOL = "protocol_node_map"
 PROOFS = tuple(

@@ -38,8 +38,8 @@ STRUCTURES = (
     built(70, 32, ULTRA, on=ICARUS),
 )
 REFUSED = {
-    "Depth=1": "Depth_must_be_at_least_2",
-    'Style=2 File="contents.hex"': "an_ultra_memory_has_no_contents_at_power_up",
+    "Depth_must_be_at_least_2": "Depth=1",
+    "an_ultra_memory_has_no_contents_at_power_up": 'Style=2 File="contents.hex"',
 }
 PROTOCOL = {
     "holds": "~(read_en & write_en & read_address == write_address)"

@@ -22,9 +22,8 @@ STRUCTURES = (
     built(40, 37, 32),
 )
 REFUSED = {
-    "Count=0": "Count_must_be_a_power_of_two",
-    "Count=3": "Count_must_be_a_power_of_two",
-    "StepWidth=33": "StepWidth_must_be_at_most_Width",
+    "Count_must_be_a_power_of_two": "Count=0, Count=3",
+    "StepWidth_must_be_at_most_Width": "StepWidth=33",
 }
 PROTOCOL = {"settled": {"Clocks": "$clog2(Count)"}, "counts": "settled"}
 PROOFS = tuple(

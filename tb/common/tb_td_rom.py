@@ -30,9 +30,7 @@ STRUCTURES = (
     built(54, 128, 0),
     built(10, 36, 1),
 )
-REFUSED = {
-    "Depth=1": "Depth_must_be_at_least_2",
-}
+REFUSED = {"Depth_must_be_at_least_2": "Depth=1"}
 PROTOCOL = {"holds": "32'(address) < Depth", "settled": {}, "counts": "settled"}
 NO_PROOF = "one read register and no other state; its contents and addresses are proven of those that use it"
 

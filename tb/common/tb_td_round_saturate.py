@@ -29,8 +29,8 @@ STRUCTURES = (
     built(8, -3, 14, on=ICARUS),
 )
 REFUSED = {
-    "Drop=46": "Drop_must_leave_a_bit_of_the_input",
-    "OutWidth=1": "OutWidth_must_be_at_least_2",
+    "Drop_must_leave_a_bit_of_the_input": "Drop=46",
+    "OutWidth_must_be_at_least_2": "OutWidth=1",
 }
 PROOFS = tuple(
     Proof(

@@ -29,7 +29,7 @@ STRUCTURES = (
     built(2, 4, 5, 1, 1, entries=3, on=ICARUS, mutants=ICARUS),
     built(3, 6, 24, 1, 0, entries=4, on=VERILATOR),
 )
-REFUSED = dict.fromkeys(("Width=33", "Words=3"), "an_entry_is_1_or_2_words_of_at_most_32_bits")
+REFUSED = {"an_entry_is_1_or_2_words_of_at_most_32_bits": "Width=33, Words=3"}
 PROOFS = tuple(
     Proof(
         "words are only copied and extended; of one word, and of two; one entry, two and three side by side",

@@ -9,7 +9,7 @@ import numpy as np
 from formal.entries import Proof
 from tactile_depth.chip.contact.beat_peak import beat_peak, latency
 from tb.stream import drive, parameters
-from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
+from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("Width Lanes")
 STRUCTURES = (
@@ -21,13 +21,6 @@ STRUCTURES = (
 )
 
 
-def refused(missing: str) -> dict[str, Any]:
-    """Return the refused parameters of a core of one beat; Verilator stops earlier, for want of a name."""
-    rule = "Lanes_must_be_a_power_of_two_at_least_2"
-    return {"Lanes=1": Refused(rule, {"verilator": f"can't find definition of '{missing}'"}), "Lanes=12": rule}
-
-
-REFUSED = refused("top_at")
 PROTOCOL = {"peak peak_offset": "any"}
 PROOFS = (Proof("comparisons are exact at any width"),)
 

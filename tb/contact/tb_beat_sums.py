@@ -10,10 +10,8 @@ import numpy as np
 from formal.entries import Proof
 from tactile_depth.chip.contact.beat_sums import BeatSums, beat_sums, latency
 from tb.contact.tb_beat_peak import STRUCTURES as STRUCTURES
-from tb.contact.tb_beat_peak import refused
 from tb.stream import drive, parameters
 
-REFUSED = refused("first")
 PROOFS = (Proof("sums are exact at any width"),)
 
 

@@ -35,15 +35,6 @@ PROTOCOL = {
     "m_event_tdata m_event_tlast": "counts & m_event_tvalid",
 }
 MUTANTS = Mutants(outside=("frame",), flat=False)
-REFUSED = {
-    "Width=1": "Width_must_be_2_to_32",
-    "Width=33": "Width_must_be_2_to_32",
-    "Rows=1": "Rows_must_be_2_to_1024",
-    "Rows=1025": "Rows_must_be_2_to_1024",
-    "Columns=1": "Columns_must_be_2_to_1024",
-    "Columns=1025": "Columns_must_be_2_to_1024",
-    "Rows=4 Columns=4": "a_frame_must_take_at_least_Latency_cycles",
-}
 PROOFS = (
     Proof(
         "rows and columns are only counted; whatever count, peak, sums and centroid come out: these have proofs",

@@ -12,7 +12,7 @@ from tactile_depth.chip.contact.contact_peak import CYCLES_TO_COUNT, ContactPeak
 from tb.cases import on_bench
 from tb.contact.depth_bench import WORD_LOW, MeasureBench
 from tb.stream import REGRESS, parametrize
-from tb.structures import ICARUS, VERILATOR, Refused, Structure, of_parameters
+from tb.structures import ICARUS, VERILATOR, Structure, of_parameters
 
 built = of_parameters("Width Rows Columns Lanes BottomFirst")
 
@@ -32,12 +32,6 @@ def structures(columns: int) -> tuple[Structure, ...]:
     )
 
 
-def refused(missing: str) -> dict[str, Any]:
-    """Return the refused parameters of such a core; Verilator stops earlier, for want of a name."""
-    rule = "Lanes_must_be_a_power_of_two_up_to_64_that_divides_Columns"
-    return {"Lanes=3": Refused(rule, {"verilator": f"can't find definition of '{missing}'"}), "Lanes=128": rule}
-
-
 def proofs(bounds: str) -> tuple[Proof, ...]:
     """Return the proofs of such a core, for both orders of rows, and for one and two depths per beat."""
     return tuple(
@@ -47,7 +41,6 @@ def proofs(bounds: str) -> tuple[Proof, ...]:
 
 
 STRUCTURES = structures(7)
-REFUSED = refused("some")
 PROTOCOL = {
     "depth_frames": {"Columns": "Columns / Lanes"},
     "counts": "live & ~reset",

@@ -10,11 +10,10 @@ from cocotb.triggers import RisingEdge
 from tactile_depth.chip.contact.contact_sums import ContactSums, cycles_to_sums
 from tb.cases import on_bench
 from tb.contact.depth_bench import MeasureBench
-from tb.contact.tb_contact_peak import proofs, refused, structures
+from tb.contact.tb_contact_peak import proofs, structures
 from tb.stream import REGRESS, parametrize
 
 STRUCTURES = structures(8)
-REFUSED = refused("first")
 PROTOCOL = {
     "depth_frames": {"Columns": "Columns / Lanes"},
     "counts": "live & ~reset",

@@ -21,10 +21,6 @@ STRUCTURES = (
     built(24, 32),
     built(32, 2),
 )
-REFUSED = {
-    "Width=33": "Width_must_be_2_to_32",
-    "Lanes=0": "Lanes_must_be_at_least_1",
-}
 PROTOCOL = {
     "begun": {"begins": "in_valid & in_frame_start"},
     "holds": "rst | ~in_valid | begun | in_frame_start",

@@ -18,10 +18,6 @@ STRUCTURES = (
     Structure({"Width": 24, "Rows": 4, "Columns": 8}, on=BOTH),
     Structure({"Width": 12, "Rows": 16, "Columns": 2}, on=BOTH, mutants=ICARUS),
 )
-REFUSED = {
-    "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
-    "Rows=1": "Rows_must_be_at_least_2",
-}
 PROTOCOL = {"counts": "live & ~reset & en", "out_data": "counts & out_valid"}
 PROOFS = (
     Proof(

@@ -58,13 +58,6 @@ STRUCTURES = (
     built(128, 17, 3, 24, 1, 32),
     built(256, 9, 3, 24, 1, 64),
 )
-REFUSED = {
-    "BlockLog2=0": "BlockLog2_must_be_at_least_1",
-    "Columns=96": "Columns_must_be_a_power_of_two",
-    "Columns=8": "two_blocks_a_row_and_one_a_column_are_needed",
-    "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
-    "MaxLog2=9": "MaxLog2_must_be_at_most_8",
-}
 PROTOCOL = {
     "raster_places": {"Columns": "Columns / Lanes"},
     "in_frame_start": "in_valid & ~rst ? &place[1:0] : in_frame_start",

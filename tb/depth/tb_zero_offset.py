@@ -61,15 +61,6 @@ STRUCTURES = (
     built(16, 9, 1, 12, 8, on=ICARUS),
     built(64, 35, 5, 16, 4),
 )
-REFUSED = {  # by td_node_map
-    **dict.fromkeys(
-        ("BlockLog2=0", "Columns=8", "Rows=7", "Lanes=128"),
-        "blocks_of_2_pixels_or_more_two_beats_and_two_blocks_a_row_and_one_block_a_column_are_needed",
-    ),
-    **dict.fromkeys(
-        ("Columns=96", "Lanes=3"), "Columns_and_Lanes_must_be_powers_of_two_with_Lanes_of_two_blocks_Channels_too"
-    ),
-}
 PROTOCOL = {
     "protocol_node_map": {
         "Select": "td_register_map_pkg::TableSelectZero",

@@ -70,9 +70,6 @@ STRUCTURES = (
     built(16, 8, 1, DEVIATION, 16),
     built(128, 8, 3, DEVIATION, 17),
 )
-REFUSED = {
-    "Offset=1": "Offset_must_be_even_it_is_subtracted_before_rounding_to_even",
-}
 PROTOCOL = {
     "protocol_node_map": {
         "Channels": 3,

@@ -44,9 +44,6 @@ STRUCTURES = (
     built(3, 12),
     built(4, 24),
 )
-REFUSED = {
-    "BitsPerChannel=0": "BitsPerChannel_must_be_1_to_8",
-}
 PROOFS = (
     Proof(
         f"{WORD_FREE}; one bit a channel has the same index",

@@ -51,10 +51,6 @@ PROTOCOL = {
     "out_position out_red out_green out_blue": "counts & out_valid",
 }
 MUTANTS = Mutants(repeats=6)
-REFUSED = {
-    "Columns=7": "Columns_must_be_at_least_8",
-    "OutFraction=1": "the_sum_of_a_frame_must_have_more_fraction_bits_than_a_gain",
-}
 PROOFS = (
     Proof(
         f"products are exact at any width; rows and columns are only counted; {ROUNDING}",

@@ -54,10 +54,6 @@ STRUCTURES = (
     built(10, 4, 5, 9, 3, 4, 3, -2),
     built(12, 4, 5, 9, 1, 4, 31, -2),
 )
-REFUSED = {
-    "CoeffWidth=40": "CoeffWidth_must_be_at_most_WordWidth_and_FineBits",
-    "CorrectionUnit=1073741824": "a_correction_must_fit_the_sum",
-}
 PROOFS = tuple(
     Proof(
         f"frames of any size; additions are exact at any width; each colour, both axes; {ROUNDING}",

@@ -45,14 +45,6 @@ STRUCTURES = (
     built(128, 8, 3, 17),
     built(16, 8, 8, 24),
 )
-REFUSED = {
-    "BlockLog2=0": "BlockLog2_must_be_at_least_1",
-    "Columns=96": "Columns_must_be_a_power_of_two",
-    "Columns=8": "two_blocks_a_row_and_one_a_column_are_needed",
-    "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
-    "MaxLog2=11": "a_sum_over_2_to_the_MaxLog2_frames_must_fit_Width_bits",
-    "GainFraction=10": "GainFraction_plus_2_BlockLog2_must_be_at_least_Width",
-}
 PROTOCOL = {
     "raster_places": {},
     "in_position": "in_valid & ~rst ? place : in_position",

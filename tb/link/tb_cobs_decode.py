@@ -18,7 +18,6 @@ STRUCTURES = (
     built(300, on=BOTH, mutants=BOTH),
     built(2, on=ICARUS),
 )
-REFUSED = {"Longest=0": "Longest_must_be_at_least_1"}
 PROTOCOL = {
     "holds": "~(in_valid & in_broken)",
     "counts": "live",

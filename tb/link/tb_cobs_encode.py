@@ -19,10 +19,6 @@ STRUCTURES = (
     built(3, on=ICARUS, mutants=ICARUS),
     built(2),
 )
-REFUSED = {
-    "Run=1": "Run_is_2_to_254",
-    "Run=255": "Run_is_2_to_254",
-}
 PROTOCOL = {"counts": "live & ~reset", "out_data": "counts & out_valid"}
 MUTANTS = Mutants(repeats=2)
 PROOFS = tuple(

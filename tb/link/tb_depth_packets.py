@@ -33,12 +33,6 @@ STRUCTURES = (
     built(6, 16, 8, 0, 32),
 )
 MUTANTS = Mutants(repeats=1, flat=False)
-REFUSED = {
-    "Rows=1": "Rows_must_be_at_least_2",
-    "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
-    "DataWidth=33": "DataWidth_must_be_2_to_32",
-    "Values=12": "Values_must_be_a_power_of_two_at_least_2",
-}
 PROOFS = (
     Proof(
         "positions are one formula for every power of two of columns; rounding is proven of depth_value, and the CRC "

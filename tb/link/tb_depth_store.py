@@ -25,12 +25,6 @@ STRUCTURES = (
     built(2, 2, 8, 1),
 )
 MUTANTS = Mutants(repeats=4, flat=False)
-REFUSED = {
-    "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
-    "Lanes=3": "Lanes_must_divide_Columns",
-    "Rows=1": "Rows_must_be_at_least_2",
-    "DataWidth=1": "DataWidth_must_be_at_least_2",
-}
 PROOFS = tuple(
     Proof(
         f"values and words are only stored, and an arbitrary one is followed; {WORD_FREE}",

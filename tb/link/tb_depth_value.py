@@ -22,7 +22,6 @@ STRUCTURES = (
     built(2),
 )
 MUTANTS = Mutants(repeats=4)
-REFUSED = {"DataWidth=1": "DataWidth_must_be_at_least_2"}
 PROOFS = (
     Proof(
         "the sum and the rounding are one formula for every width; 20 bits are rounded with every shift, and clip",

@@ -30,6 +30,13 @@ STRUCTURES = (
     built(5, 32, 15, 4, 0, on=VERILATOR),
     built(32, 16, 18, 2, 1),
 )
+REFUSED = {
+    "Rows_must_be_2_to_4096": "Rows=1, Rows=4097",
+    "Columns_must_be_a_power_of_two_2_to_4096": "Columns=1, Columns=12, Columns=8192",
+    "DataWidth_must_be_2_to_32": "DataWidth=1, DataWidth=33",
+    "Lanes_must_divide_Columns": "Lanes=3",
+    "AddressWidth_must_be_2_to_16": "AddressWidth=1, AddressWidth=17",
+}
 
 
 QUIET_CLOCKS = 300  # without a byte; a byte too many that comes later differs in the next comparison

@@ -18,7 +18,6 @@ STRUCTURES = (
     built(8, on=ICARUS, mutants=BOTH),
     built(4),
 )
-REFUSED = {f"BankBytes={size}": "BankBytes_must_be_a_power_of_two_from_4_to_1024" for size in (2, 12, 2048)}
 PROOFS = (
     Proof(
         "places are only counted; an arbitrary byte is followed",

@@ -33,12 +33,6 @@ PROTOCOL = {
     "m_axis_tdata m_axis_tlast m_axis_tuser": "counts & m_axis_tvalid",
 }
 MUTANTS = Mutants(repeats=4)
-REFUSED = {
-    "Rows=0": "Rows_must_be_1_to_4096",
-    "Rows=4097": "Rows_must_be_1_to_4096",
-    "Columns=0": "Columns_must_be_1_to_4096",
-    "Columns=4097": "Columns_must_be_1_to_4096",
-}
 PROOFS = (
     Proof(
         "rows and columns are only counted",

@@ -24,12 +24,6 @@ STRUCTURES = (
     built(16, 128),
 )
 MUTANTS = Mutants(repeats=2)
-REFUSED = {
-    "AddressWidth=1": "AddressWidth_must_be_2_to_16",
-    "AddressWidth=17": "AddressWidth_must_be_2_to_16",
-    "Accesses=1": "Accesses_must_be_2_to_128",
-    "Accesses=129": "Accesses_must_be_2_to_128",
-}
 PROOFS = (
     Proof(
         "accesses are only counted, and no value is looked at; td_ram is proven by itself",

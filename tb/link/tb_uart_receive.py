@@ -18,7 +18,7 @@ STRUCTURES = (
         {"Divider": 33},
     ),
 )
-REFUSED = {"Divider=3": "Divider_must_be_at_least_4"}
+REFUSED = {"Divider_must_be_at_least_4": "Divider=3"}
 PROTOCOL = {"counts": "live & ~reset", "out_data": "counts & out_valid"}
 PROOFS = (
     Proof(

@@ -20,6 +20,7 @@ STRUCTURES = (
         {"Divider": 33},
     ),
 )
+REFUSED = {"Divider_must_be_at_least_2": "Divider=1"}
 PROTOCOL = {"stays": "in_", "counts": "live & ~reset"}
 PROOFS = (
     Proof(

@@ -29,7 +29,6 @@ STRUCTURES = (
     # Few bits are dropped: ties are common.
     built(CHOICES | {"rows": 21, "data_width": 12, "coefficient_width": 10}, on=ICARUS, mutants=ICARUS),
 )
-REFUSED = {"Rows=1": "Rows_must_be_at_least_2"}
 PROOFS = (
     Proof(
         f"rows are only counted; {ROUNDING}",

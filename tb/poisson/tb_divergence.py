@@ -33,9 +33,6 @@ STRUCTURES = (
     built(16, 21, 1),
     built(4, 3, 1, mutants=ICARUS),
 )
-REFUSED = {
-    "Columns=1": "Columns_must_be_at_least_2",
-}
 PROOFS = tuple(
     Proof(
         "the subtractions are exact at any width; columns and rows are only counted",

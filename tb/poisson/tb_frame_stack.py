@@ -8,7 +8,7 @@ import cocotb
 from formal.entries import WORD_FREE, Proof
 from tactile_depth.chip.poisson.frame_stack import LATENCY, frame_stack
 from tb.stream import check_frame_memory, parameters, parametrize, places, sample
-from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
+from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("Columns Width Rows WordsPerRow")
 STRUCTURES = (
@@ -25,17 +25,6 @@ STRUCTURES = (
     built(16, 9, 17, 3),
     built(16, 12, 5, 6),
 )
-REFUSED = {
-    "Columns=1": Refused(
-        "Columns_must_be_at_least_2",
-        {
-            "icarus": "cast size expression must be constant and greater than zero",
-            "verilator": "size-changing cast to zero or negative size",
-        },
-    ),
-    "Rows=1": "Rows_must_be_at_least_2",
-    "WordsPerRow=0": Refused("WordsPerRow_must_be_at_least_1", {"verilator": "depth_must_be_at_least_2"}),
-}
 PROTOCOL = "protocol_bursts"
 PROOFS = tuple(
     Proof(

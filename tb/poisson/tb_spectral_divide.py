@@ -41,10 +41,6 @@ STRUCTURES = (
     built({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 40.0}),
 )
 PROTOCOL = {"protocol_bursts": {"Rows": "Columns"}}
-REFUSED = {
-    "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
-    "Columns=1": "Columns_must_be_a_power_of_two_at_least_2",
-}
 PROOFS = tuple(
     Proof(
         f"one recurrence for every size; {ROUNDING}",

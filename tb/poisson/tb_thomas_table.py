@@ -35,10 +35,6 @@ STRUCTURES = (
     built(CHOICES, on=ICARUS),
     built(CHOICES | {"columns": 32, "rows": 50, "neumann": True}),
 )
-REFUSED = {
-    "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
-    "Rows=1": "Rows_must_be_at_least_2",
-}
 PROTOCOL = {"holds": "32'(row) < Rows", "settled": {"Clocks": 5}, "counts": "settled"}
 PROOFS = (
     Proof(

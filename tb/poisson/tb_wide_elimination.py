@@ -45,11 +45,6 @@ STRUCTURES = (
     built(CHOICES | {"columns": 32, "data_width": 12, "coefficient_width": 10, "lanes": 16}, mutants=ICARUS),
     built(CHOICES | {"rows": 21, "neumann": True, "data_width": 32, "coefficient_width": 24}),
 )
-REFUSED = {
-    "Words=3": "Words_and_Columns_must_be_powers_of_two_with_at_least_8_clocks_in_a_burst",
-    "Words=32": "Words_and_Columns_must_be_powers_of_two_with_at_least_8_clocks_in_a_burst",
-    "Rows=2": "Rows_must_be_at_least_3",
-}
 PROOFS = tuple(
     Proof(
         f"the smallest burst that holds the loop of the recursion; each of two words; {ROUNDING}",

@@ -24,9 +24,6 @@ STRUCTURES = (
     built(64, 16, 7, 8, 16),
     built(128, 16, 9, 8, 64),
 )
-RULE = "InWords_OutWords_Columns_must_be_rising_powers_of_two_with_2_beats_and_4_clocks_in_a_row"
-REFUSED = {"InWords=3": RULE, "InWords=64": RULE, "OutWords=24": RULE, "OutWords=128": RULE, "Columns=96": RULE}
-REFUSED |= {"Rows=2": "Rows_must_be_at_least_3"}
 PROOFS = tuple(
     Proof(
         "rows and beats are only counted; a memory with the words of a clock, and one with a part of them; an even and "

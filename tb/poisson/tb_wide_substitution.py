@@ -48,8 +48,6 @@ STRUCTURES = (
     built(CHOICES | {"rows": 21, "data_width": 32, "coefficient_width": 24}),
     built(CHOICES | {"columns": 64, "lanes": 32}),
 )
-RULE = "Words_and_Columns_must_be_powers_of_two_and_Words_2_to_half_of_Columns"
-REFUSED = {"Words=1": RULE, "Words=3": RULE, "Words=128": RULE, "Columns=96": RULE, "Rows=2": "Rows_must_be_at_least_3"}
 PROTOCOL = "protocol_wide_pairs"
 PROOFS = tuple(
     Proof(

@@ -84,22 +84,6 @@ STRUCTURES = (
 )
 PROTOCOL = CLIENT | {"counts": "live"}
 MUTANTS = Mutants(flat=False)
-REFUSED = {
-    "Rows=0": "Rows_does_not_fit_GRID",
-    "Rows=65536": "Rows_does_not_fit_GRID",
-    "Columns=0": "Columns_does_not_fit_GRID",
-    "Columns=65536": "Columns_does_not_fit_GRID",
-    "GradientWidth=1": "GradientWidth_must_be_2_to_32",
-    "GradientWidth=33": "GradientWidth_must_be_2_to_32",
-    "BitsPerChannel=0": "BitsPerChannel_must_be_1_to_8",
-    "BitsPerChannel=9": "BitsPerChannel_must_be_1_to_8",
-    "GradientFraction=256": "GradientFraction_does_not_fit_FORMAT",
-    "DepthMantissa=16777216": "a_mantissa_does_not_fit_24_bits",
-    "SlopeMantissa=-1": "a_mantissa_does_not_fit_24_bits",
-    "DepthExponent=-129": "an_exponent_does_not_fit_8_bits",
-    "SlopeExponent=128": "an_exponent_does_not_fit_8_bits",
-    "PitchNm=-1": "PitchNm_must_not_be_negative",
-}
 PROOFS = tuple(
     Proof(
         f"{FULL_WIDTH}; each gradient model, with a camera or without, all options",

@@ -102,12 +102,6 @@ PROTOCOL = CLIENT | {
     "m_event_tdata m_event_tlast": "live & ~reset & m_event_tvalid",
 }
 MUTANTS = Mutants(flat=False)
-REFUSED = {
-    "Polynomial=1": "Polynomial_needs_FlatField",
-    "Rows=64": "the_spectral_solver_takes_square_grids_Rows_must_be_Columns",
-    "DataWidth=33": "Width_must_be_2_to_32",
-    "ZeroOffset=2": "ZeroOffset_is_0_or_1",
-}
 PROOFS = tuple(
     Cone(
         "a structural fact, the same generate blocks at every grid; narrow words, since no bit is left out",

@@ -35,10 +35,6 @@ PROTOCOL = {
     "out_bad": "counts & en & out_valid & out_frame_end",
 }
 MUTANTS = Mutants(outside=("silence",))
-REFUSED = {
-    "Rows=1": "Rows_and_Columns_must_be_at_least_2",
-    "Columns=1": "Rows_and_Columns_must_be_at_least_2",
-}
 PROOFS = tuple(
     Proof(
         "rows and columns are only counted; a count that is no power of two, and one that is",

@@ -11,11 +11,6 @@ from tactile_depth.chip.gradient.gradient_lookup import gradient_codes, gradient
 from tactile_depth.depth import reference
 from tactile_depth.sensor.sensor import Sensor
 from tactile_depth.sensor.synthetic import synthetic
-from tb.gradient.tb_gradient_lookup import REFUSED
-from tb.settings import RUN
-
-if RUN.full:  # 4 GB of table
-    REFUSED["BitsPerChannel=9"] = "BitsPerChannel_must_be_1_to_8"
 
 
 @pytest.mark.parametrize("bits", [1, 4, 6])

@@ -88,10 +88,6 @@ module mode_pairs #(
   end
   assign out_mirrored = out_start ? '0 : mirrored;
 
-  if (Size < 4 || Size != (1 << $clog2(Size))) begin : g_refused
-    Size_must_be_a_power_of_two_at_least_4 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -82,10 +82,6 @@ module row_reorder #(
     end
   end
 
-  if (Columns < 4 || Columns != (1 << $clog2(Columns))) begin : g_refused
-    Columns_must_be_a_power_of_two_at_least_4 u_refused ();
-  end
-
 endmodule
 
 `default_nettype wire

@@ -12,9 +12,9 @@
 
 module sdf_butterfly #(
   parameter int Width       = 27,
-  parameter int Size        = 128,
-  parameter int Delay       = 64,
-  parameter int RotateBlock = 0,
+  parameter int Size        = 128,  // a power of two
+  parameter int Delay       = 64,  // a power of two up to Size / 2
+  parameter int RotateBlock = 0,  // 0, or a power of two from 4 to Size
   parameter int Inverse     = 0,
   parameter int Halve       = 0
 ) (
@@ -124,17 +124,6 @@ module sdf_butterfly #(
     end
   end
   assign saturations = 2'(clipped_q[0]) + 2'(clipped_q[1]);
-
-  if (Size != (1 << $clog2(Size))) begin : g_refused_0
-    Size_must_be_a_power_of_two u_refused ();
-  end
-  if (Delay < 1 || 2 * Delay > Size || Delay != (1 << $clog2(Delay))) begin : g_refused_1
-    Delay_must_be_a_power_of_two_1_to_Size_2 u_refused ();
-  end
-  if (RotateBlock != 0 && (RotateBlock < 4 || RotateBlock > Size || RotateBlock != (1 << $clog2(RotateBlock))))
-  begin : g_refused_2
-    RotateBlock_must_be_0_or_a_power_of_two_4_to_Size u_refused ();
-  end
 
 endmodule
 

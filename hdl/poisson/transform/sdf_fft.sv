@@ -19,7 +19,7 @@ module sdf_fft #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Width      = 27,
   parameter int CoeffWidth = 18,
-  parameter int Size       = 128,
+  parameter int Size       = 128,  // a power of two, at least 8
   parameter int Inverse    = 0
 ) (
   input  wire                     clk,
@@ -89,10 +89,6 @@ module sdf_fft #(
     clipped_q <= clipped_all;
     saturations <= clipped_q[0] + clipped_q[1];
     if (rst) {clipped_q, saturations} <= '0;
-  end
-
-  if (Size < 8 || Size != (1 << Log2Size)) begin : g_refused
-    Size_must_be_a_power_of_two_at_least_8 u_refused ();
   end
 
 endmodule

@@ -16,7 +16,7 @@
 
 module transpose #(
   parameter int Width      = 24,
-  parameter int Columns    = 128,
+  parameter int Columns    = 128,  // a power of two, at least 4
   parameter int MakhoulIn  = 0,
   parameter int MakhoulOut = 1,
   parameter int Style      = 1  // of the memory, hdl/common/td_ram.sv
@@ -84,10 +84,6 @@ module transpose #(
       out_start <= 1'b0;
       out_frame_start <= 1'b0;
     end
-  end
-
-  if (Columns < 4 || Columns != (1 << $clog2(Columns))) begin : g_refused
-    Columns_must_be_a_power_of_two_at_least_4 u_refused ();
   end
 
 endmodule

@@ -15,8 +15,8 @@ module twiddle_multiply #(
   parameter int OutWidth   = 27,
   parameter int CoeffWidth = 18,
   parameter int Drop       = 17,
-  parameter int Size       = 128,
-  parameter int Block      = 128,
+  parameter int Size       = 128,  // a power of two
+  parameter int Block      = 128,  // a power of two up to Size
   parameter int RealOnly   = 0,                       // out_im is 0
   parameter     File       = "twiddle_forward_0.hex"  // Block words {-Im, Im, Re} of the factor
 ) (
@@ -123,13 +123,6 @@ module twiddle_multiply #(
     end
   end
   assign saturations = 2'(clipped_q[0]) + 2'(clipped_q[1]);
-
-  if (Size < 2 || Size != (1 << $clog2(Size))) begin : g_refused_0
-    Size_must_be_a_power_of_two_at_least_2 u_refused ();
-  end
-  if (Block < 2 || Block > Size || Block != (1 << $clog2(Block))) begin : g_refused_1
-    Block_must_be_a_power_of_two_2_to_Size u_refused ();
-  end
 
 endmodule
 

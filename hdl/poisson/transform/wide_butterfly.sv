@@ -12,10 +12,10 @@
 
 module wide_butterfly #(
   parameter int Width     = 27,
-  parameter int Paths     = 4,
-  parameter int Beats     = 32,
-  parameter int PathBit   = 0,
-  parameter int RotateBit = -1,
+  parameter int Paths     = 4,  // a power of two
+  parameter int Beats     = 32,  // a power of two
+  parameter int PathBit   = 0,  // a bit of the path number
+  parameter int RotateBit = -1,  // another bit of beat and path, -1: none
   parameter int Inverse   = 0,
   parameter int Halve     = 0,
   localparam int CountWidth = $clog2(2 * Paths + 1)
@@ -129,16 +129,6 @@ module wide_butterfly #(
       clipped_q <= '0;
       saturations <= '0;
     end
-  end
-
-  if (Paths < 2 || Paths != (1 << PathWidth) || Beats < 2 || Beats != (1 << BeatWidth)) begin : g_refused_0
-    Paths_and_Beats_must_be_powers_of_two_at_least_2 u_refused ();
-  end
-  if (PathBit < 0 || PathBit >= PathWidth) begin : g_refused_1
-    PathBit_must_be_a_bit_of_the_path_number u_refused ();
-  end
-  if (RotateBit < -1 || RotateBit == PathBit || RotateBit >= PathWidth + BeatWidth) begin : g_refused_2
-    RotateBit_must_be_minus_1_or_another_bit_of_beat_and_path u_refused ();
   end
 
 endmodule

@@ -14,9 +14,9 @@
 
 module wide_commutator #(
   parameter int Width = 27,
-  parameter int Paths = 4,
-  parameter int Beats = 32,
-  parameter int Delay = 8,
+  parameter int Paths = 4,  // a power of two
+  parameter int Beats = 32,  // a power of two
+  parameter int Delay = 8,  // a power of two up to Beats / 2
   parameter int Up    = 1
 ) (
   input  wire                    clk,
@@ -68,14 +68,6 @@ module wide_commutator #(
     assign out_b = second_q[1] ? a : late_b;
     assign {out_re[OutA*Width+:Width], out_im[OutA*Width+:Width]} = out_a;
     assign {out_re[OutB*Width+:Width], out_im[OutB*Width+:Width]} = out_b;
-  end
-
-  if (Paths < 2 || Paths != (1 << $clog2(Paths))) begin : g_refused_0
-    Paths_must_be_a_power_of_two_at_least_2 u_refused ();
-  end
-  if (Delay < 1 || 2 * Delay > Beats || Delay != (1 << $clog2(Delay)) || Beats != (1 << $clog2(Beats)))
-  begin : g_refused_1
-    Beats_and_Delay_must_be_powers_of_two_and_Delay_1_to_Beats_2 u_refused ();
   end
 
 endmodule

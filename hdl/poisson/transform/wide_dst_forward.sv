@@ -15,7 +15,7 @@
 module wide_dst_forward #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Size       = 128,
-  parameter int Words      = 2,
+  parameter int Words      = 2,  // a power of two, 2 to Size / 2
   parameter int InWidth    = 24,
   parameter int Width      = 27,   // of the arithmetic
   parameter int CoeffWidth = 18,
@@ -103,10 +103,6 @@ module wide_dst_forward #(
       clipped_q <= '0;
       saturations <= '0;
     end
-  end
-
-  if (Words < 2 || Words != (1 << $clog2(Words)) || 2 * Words > Size) begin : g_refused
-    Words_must_be_a_power_of_two_2_to_Size_2 u_refused ();
   end
 
 endmodule

@@ -21,8 +21,8 @@ module wide_fft #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Width      = 27,
   parameter int CoeffWidth = 18,
-  parameter int Size       = 128,
-  parameter int Paths      = 2,
+  parameter int Size       = 128,  // a power of two, at least 8
+  parameter int Paths      = 2,  // a power of two up to Size / 2
   parameter int Inverse    = 0,
   localparam int Log2Size = $clog2(Size),
   localparam int Stages = Log2Size + (Log2Size - 1) / 2,
@@ -177,13 +177,6 @@ module wide_fft #(
       saturations <= clipped_all;
       if (rst) saturations <= '0;
     end
-  end
-
-  if (Size < 8 || Size != (1 << Log2Size)) begin : g_refused_0
-    Size_must_be_a_power_of_two_at_least_8 u_refused ();
-  end
-  if (Paths < 1 || Paths != (1 << PathWidth) || 2 * Paths > Size) begin : g_refused_1
-    Paths_must_be_a_power_of_two_1_to_Size_2 u_refused ();
   end
 
 endmodule

@@ -22,10 +22,6 @@ STRUCTURES = (
     built(8, 4, mutants=ICARUS),
 )
 PROTOCOL = {"protocol_bursts": {"Columns": "Size"}}
-REFUSED = {
-    "Size=12": "Size_must_be_a_power_of_two_at_least_4",
-    "Size=2": "Size_must_be_a_power_of_two_at_least_4",
-}
 PROOFS = tuple(
     Proof(
         f"{ONE_ORDER}; at 8 the delay line is in memory; {WORD_FREE}",

@@ -15,10 +15,6 @@ STRUCTURES = (
     built(64, 35, 0),
 )
 PROTOCOL = "protocol_words"
-REFUSED = {
-    "Columns=12": "Columns_must_be_a_power_of_two_at_least_4",
-    "Columns=2": "Columns_must_be_a_power_of_two_at_least_4",
-}
 PROOFS = tuple(
     Proof(
         f"{ONE_ORDER}; {WORD_FREE}",

@@ -27,15 +27,6 @@ STRUCTURES = (
     built(64, 32, 64, 0, 0, 27),
 )
 PROTOCOL = {"protocol_bursts": {"Columns": "Size"}}
-REFUSED = {
-    "Size=12": "Size_must_be_a_power_of_two",
-    "Delay=0": "Delay_must_be_a_power_of_two_1_to_Size_2",
-    "Delay=128": "Delay_must_be_a_power_of_two_1_to_Size_2",
-    "Delay=6": "Delay_must_be_a_power_of_two_1_to_Size_2",
-    "RotateBlock=2": "RotateBlock_must_be_0_or_a_power_of_two_4_to_Size",
-    "RotateBlock=6": "RotateBlock_must_be_0_or_a_power_of_two_4_to_Size",
-    "RotateBlock=256": "RotateBlock_must_be_0_or_a_power_of_two_4_to_Size",
-}
 PROOFS = tuple(
     Proof(
         f"stages as they occur in a transform of 8, one with its line in memory; {ROUNDING}",

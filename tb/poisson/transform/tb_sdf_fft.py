@@ -37,10 +37,6 @@ STRUCTURES = (
     built(128, 35, 24, 1),
 )
 PROTOCOL = {"protocol_bursts": {"Columns": "Size"}}
-REFUSED = {
-    "Size=4": "Size_must_be_a_power_of_two_at_least_8",
-    "Size=24": "Size_must_be_a_power_of_two_at_least_8",
-}
 PROOFS = tuple(
     Proof(
         "the smallest transform: pair, twiddle and lone butterfly; longer ones chain more of these",

@@ -20,10 +20,6 @@ STRUCTURES = (
     built(4, 5, 0, 1, mutants=ICARUS),
 )
 PROTOCOL = {"protocol_bursts": {"Rows": "Columns"}}
-REFUSED = {
-    "Columns=12": "Columns_must_be_a_power_of_two_at_least_4",
-    "Columns=2": "Columns_must_be_a_power_of_two_at_least_4",
-}
 PROOFS = tuple(
     Proof(
         f"{ONE_ORDER}; {WORD_FREE}",

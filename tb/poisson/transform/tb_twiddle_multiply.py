@@ -63,13 +63,6 @@ STRUCTURES = (
     built("twiddle_inverse", 16, 8, 6, 6, 5, 4, 0, mutants=ICARUS),
 )
 PROTOCOL = {"protocol_bursts": {"Columns": "Size"}}
-REFUSED = {
-    "Size=12": "Size_must_be_a_power_of_two_at_least_2",
-    "Size=1": "Size_must_be_a_power_of_two_at_least_2",
-    "Block=12": "Block_must_be_a_power_of_two_2_to_Size",
-    "Block=1": "Block_must_be_a_power_of_two_2_to_Size",
-    "Block=256": "Block_must_be_a_power_of_two_2_to_Size",
-}
 PROOFS = tuple(
     Proof(
         f"the address is the burst's position; {ROUNDING}",

@@ -21,17 +21,6 @@ STRUCTURES = (
     built(12, 8, 2, 2, -1, 0, 0, on=ICARUS),
     built(12, 2, 4, 0, 1, 1, 1, on=ICARUS),
 )
-REFUSED = {
-    "Paths=1": "Paths_and_Beats_must_be_powers_of_two_at_least_2",
-    "Paths=3": "Paths_and_Beats_must_be_powers_of_two_at_least_2",
-    "Beats=1": "Paths_and_Beats_must_be_powers_of_two_at_least_2",
-    "Beats=24": "Paths_and_Beats_must_be_powers_of_two_at_least_2",
-    "PathBit=2": "PathBit_must_be_a_bit_of_the_path_number",
-    "PathBit=-1": "PathBit_must_be_a_bit_of_the_path_number",
-    "RotateBit=0": "RotateBit_must_be_minus_1_or_another_bit_of_beat_and_path",
-    "RotateBit=-2": "RotateBit_must_be_minus_1_or_another_bit_of_beat_and_path",
-    "RotateBit=7": "RotateBit_must_be_minus_1_or_another_bit_of_beat_and_path",
-}
 PROTOCOL = "protocol_wide_bursts"
 PROOFS = tuple(
     Proof(

@@ -21,13 +21,6 @@ STRUCTURES = (
     built(9, 4, 8, 2, 0, on=ICARUS, mutants=ICARUS),
     built(12, 4, 16, 8, 0),
 )
-REFUSED = {
-    "Paths=1": "Paths_must_be_a_power_of_two_at_least_2",
-    "Paths=3": "Paths_must_be_a_power_of_two_at_least_2",
-    "Delay=3": "Beats_and_Delay_must_be_powers_of_two_and_Delay_1_to_Beats_2",
-    "Delay=32": "Beats_and_Delay_must_be_powers_of_two_and_Delay_1_to_Beats_2",
-    "Beats=24": "Beats_and_Delay_must_be_powers_of_two_and_Delay_1_to_Beats_2",
-}
 PROTOCOL = "protocol_wide_bursts"
 PROOFS = tuple(
     Proof(

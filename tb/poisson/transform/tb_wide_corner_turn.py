@@ -25,11 +25,6 @@ STRUCTURES = (
     built(64, 24, 16),
     built(128, 24, 4),
 )
-REFUSED = {
-    "Size=12": "Size_must_be_a_power_of_two_at_least_8",
-    "Paths=3": "Paths_must_be_a_power_of_two_1_to_Size_4",
-    "Paths=64": "Paths_must_be_a_power_of_two_1_to_Size_4",
-}
 PROTOCOL = {"protocol_wide_bursts": {"Beats": "Size / Paths", "OutBeats": "Size / Paths / 2", "OutLead": 0}}
 PROOFS = tuple(
     Proof(

@@ -34,11 +34,6 @@ STRUCTURES = (
     built(32, 4, 9, 9, 7, 1, 6, 0, on=ICARUS),
     built(128, 4, 27, 27, 18, 0, 27, 1),
 )
-REFUSED = {
-    "Words=1": "Words_must_be_a_power_of_two_2_to_Size_2",
-    "Words=3": "Words_must_be_a_power_of_two_2_to_Size_2",
-    "Words=128": "Words_must_be_a_power_of_two_2_to_Size_2",
-}
 PROTOCOL = {"protocol_wide_bursts": {"Beats": "Size / Words"}}
 MUTANTS = Mutants(flat=False)
 PROOFS = (

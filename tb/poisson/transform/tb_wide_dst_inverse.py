@@ -41,10 +41,6 @@ STRUCTURES = (
 )
 PROTOCOL = {"protocol_wide_bursts": {"Beats": "2 * Size / Words", "OutBeats": "Size / Words", "OutLead": 0}}
 MUTANTS = Mutants(flat=False)
-REFUSED = {
-    "Words=3": "Words_must_be_a_power_of_two_2_to_Size_2",
-    "Words=128": "Words_must_be_a_power_of_two_2_to_Size_2",
-}
 PROOFS = (
     Proof(
         "the smallest transform, every core of a longer one is in it",

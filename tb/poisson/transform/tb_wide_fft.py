@@ -42,13 +42,6 @@ STRUCTURES = (
 )
 PROTOCOL = {"protocol_wide_bursts": {"Beats": "Size / Paths"}}
 MUTANTS = Mutants(flat=False)
-REFUSED = {
-    "Size=4": "Size_must_be_a_power_of_two_at_least_8",
-    "Size=24": "Size_must_be_a_power_of_two_at_least_8",
-    "Paths=0": "Paths_must_be_a_power_of_two_1_to_Size_2",
-    "Paths=128": "Paths_must_be_a_power_of_two_1_to_Size_2",
-    "Paths=3": "Paths_must_be_a_power_of_two_1_to_Size_2",
-}
 PROOFS = tuple(
     Proof(
         "the smallest transform: pair, twiddle and lone butterfly; longer ones chain more of these",

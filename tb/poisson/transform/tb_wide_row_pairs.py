@@ -23,11 +23,6 @@ STRUCTURES = (
     built(8, 9, 2, on=ICARUS, mutants=ICARUS),
     built(64, 27, 2),
 )
-REFUSED = {
-    "Size=12": "Size_must_be_a_power_of_two_at_least_8",
-    "Paths=3": "Paths_must_be_a_power_of_two_1_to_Size_4",
-    "Paths=64": "Paths_must_be_a_power_of_two_1_to_Size_4",
-}
 PROTOCOL = {"protocol_wide_bursts": {"Beats": "Size / Paths"}}
 PROOFS = tuple(
     Proof(

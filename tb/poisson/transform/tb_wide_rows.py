@@ -13,13 +13,6 @@ STRUCTURES = (
     built(8, 8, 4, on=ICARUS),
     built(64, 24, 8),
 )
-REFUSED = {
-    "Columns=12": "Columns_must_be_a_power_of_two_at_least_4",
-    "Columns=2": "Columns_must_be_a_power_of_two_at_least_4",
-    "Paths=1": "Paths_must_be_a_power_of_two_2_to_Columns_2",
-    "Paths=3": "Paths_must_be_a_power_of_two_2_to_Columns_2",
-    "Paths=128": "Paths_must_be_a_power_of_two_2_to_Columns_2",
-}
 PROOFS = tuple(
     Proof(
         f"{ONE_ORDER}; {WORD_FREE}",

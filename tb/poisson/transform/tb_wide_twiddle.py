@@ -47,15 +47,6 @@ STRUCTURES = (
     built("phase_inverse", 1, 8, 9, 9, 7, 6, 0, on=ICARUS),
     built("phase_inverse", 2, 128, 27, 27, 18, 17, 0),
 )
-REFUSED = {
-    "Ones=1 Drop=16": "Ones_must_be_0_unless_words_keep_their_format",
-    "Ones=1 OutWidth=26": "Ones_must_be_0_unless_words_keep_their_format",
-    "Ones=1 RealOnly=1": "Ones_must_be_0_unless_words_keep_their_format",
-    "Paths=3": "Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2",
-    "Paths=0": "Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2",
-    "Beats=24": "Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2",
-    "Beats=1": "Paths_and_Beats_must_be_powers_of_two_and_Beats_at_least_2",
-}
 PROTOCOL = "protocol_wide_bursts"
 PROOFS = tuple(
     Proof(
