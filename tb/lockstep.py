@@ -76,7 +76,8 @@ async def play(
     legal : callable
         Changes pins into those that the state of the model allows.
     offers : sequence of str
-        Streams in that keep what they offer: all pins stay until a clock with valid and ready, or rst.
+        Streams in that keep what they offer: all pins stay until a clock with valid and ready, or rst. Their names
+        stand before `_valid`, or before `valid`.
     """
     choices = {"rst": 0.01, **choices}
     episodes = Episodes(choices, {pin: len(getattr(dut, pin)) for pin in choices})
@@ -86,6 +87,7 @@ async def play(
     await edge
     await edge
     kept: Pins = {}
+    streams = [f"{name}_" if f"{name}_valid" in choices else name for name in offers]
     for clock in range(clocks):
         now = episodes.draw() | kept
         legal(model, now)
@@ -97,5 +99,5 @@ async def play(
                 got = read(pin)
                 wanted = f"{value % (1 << len(got)):0{len(got)}b}"
                 assert got == wanted, f"{pin} in clock {clock}: {got}, not {wanted}, with {now}"
-        waits = [name for name in offers if now[f"{name}_valid"] and not (now["rst"] or expected[f"{name}_ready"])]
-        kept = {pin: now[pin] for pin in now for name in waits if pin.startswith(f"{name}_")}
+        waits = [name for name in streams if now[f"{name}valid"] and not (now["rst"] or expected[f"{name}ready"])]
+        kept = {pin: now[pin] for pin in now for name in waits if pin.startswith(name)}
