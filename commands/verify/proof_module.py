@@ -30,8 +30,8 @@ def module(core: Core) -> str:
     body, line = text[front.end() :], text.count("\n", 0, front.end()) + 1
     words = re.findall(r"(?<!\.)\b\w+", code(body))
     assigned = re.findall(r"^assign (\w+) =", body, re.M)
-    own = [each.strip() for each in code(front[1]).split(";")[:-1]]
-    own_inputs = [each for each in own if each.startswith("input")]
+    own = header.entries(code(front[1]).replace(";", ","))
+    own_inputs = [each for each in own if " = " not in each]
     values = {each.split(" = ")[0].split()[-1]: each for each in own if each not in own_inputs}
     parameters = values | head.parameters | values  # what the core derives comes last
     inputs = [f"input {port.type} {port.name}" for port in head.of("input") if port.name not in assigned]

@@ -5,12 +5,8 @@
 // Whatever block_totals completes (`complete` is free): that it does so with a block's last pixel, and no break in the
 // same slot, is proven of row_sums and block_totals, and of camera_window.
 
-parameter int Rows = 3;
-parameter int Columns = 4;
-localparam int Numerator = 1;
-localparam int Denominator = 1;
-localparam int Bits = 8;
-localparam int Bayer = 0;
+parameter int Rows = 3, Columns = 4;
+localparam int Numerator = 1, Denominator = 1, Bits = 8, Bayer = 0;
 
 assign allowed = 1'b1;
 
@@ -18,8 +14,7 @@ assign in_samples = '0;
 assign in_colour = '0;
 assign in_gains = '0;
 
-localparam int Break = 18;
-localparam int Mean = 12;
+localparam int Break = 18, Mean = 12;
 logic complete;
 logic [Break-1:0] breaks;
 logic [Mean-1:0] means;
@@ -60,8 +55,8 @@ end
 // Protocol: pixels of the window in raster order, from a frame's start on; a break comes without a pixel and ends
 // its frame. The colours of the word that a break makes do not count.
 module protocol_area_average;
-  localparam int Across = (Columns * Numerator + Denominator - 1) / Denominator;
-  localparam int Height = (Rows * Numerator + Denominator - 1) / Denominator;
+  localparam int Across = (Columns * Numerator + Denominator - 1) / Denominator,
+      Height = (Rows * Numerator + Denominator - 1) / Denominator;
   logic pixel_right, last_column, last_row;
   logic [15:0] row = '0, column = '0;
   logic [1:0] origin = '0;  // colour of the frame's first pixel

@@ -2,10 +2,7 @@
 // fv_black_level: out is the sample less the black level, beside the gains, both of those that stood beside the frame's
 // first pixel; pixels, marks and breaks leave an enabled clock later.
 
-parameter int Bits = 10;
-parameter int Channels = 1;
-parameter int GainsWidth = 48;
-
+parameter int Bits = 10, Channels = 1, GainsWidth = 48;
 
 logic valid, abort, held;
 logic [3:0] marks;

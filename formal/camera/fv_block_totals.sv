@@ -5,11 +5,7 @@
 // beginning of the frame and takes the difference of what it has at the ends of two blocks, modulo the width of a total.
 // ram_check watches the memory.
 
-parameter int Columns = 4;
-parameter int Numerator = 5;
-parameter int Denominator = 2;
-parameter int Width = 1;
-parameter int Bayer = 1;
+parameter int Columns = 4, Numerator = 5, Denominator = 2, Width = 1, Bayer = 1;
 parameter int Totals = 0;  // 1: totals too
 input logic [1:0] pick;
 

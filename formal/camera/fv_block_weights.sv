@@ -3,8 +3,7 @@
 //
 // The specification counts how far the axis has come, modulo the length of a block; the core counts what is left of it.
 
-parameter int Numerator = 15;
-parameter int Denominator = 4;
+parameter int Numerator = 15, Denominator = 4;
 
 logic [15:0] begin_q, begins, ends;  // of the pixel, from the beginning of a block
 logic known = 1'b0;                  // an axis has begun

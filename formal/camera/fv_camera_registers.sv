@@ -4,14 +4,8 @@
 //
 // Nothing is assumed of the port, the front end, the set-up or reset.
 
-parameter int PictureColumns = 13'h1555;
-parameter int PictureRows = 13'h0AAA;
-parameter int WindowX = 13'h1234;
-parameter int WindowY = 13'h0765;
-parameter int BlackLevel = 12'hABC;
-parameter int RedGain = 16'h1357;
-parameter int GreenGain = 16'h2468;
-parameter int BlueGain = 16'hFEDC;
+parameter int PictureColumns = 13'h1555, PictureRows = 13'h0AAA, WindowX = 13'h1234, WindowY = 13'h0765,
+    BlackLevel = 12'hABC, RedGain = 16'h1357, GreenGain = 16'h2468, BlueGain = 16'hFEDC;
 localparam int Phase = 2;
 
 localparam logic [31:0] FormatWord = 32'h00000a26;  // RAW10, GBRG, 10 bits

@@ -7,14 +7,8 @@
 // Bus 1: a transmission is a start, the bits of its entry with a released ninth in each byte, and a stop; SIO_D changes
 // while SIO_C is low, but for start and stop; each level lasts a quarter or more. A reset or restart may break it off.
 
-parameter int Bus = 0;
-parameter int AddressBytes = 1;
-parameter int Entries = 5;
-parameter int QuarterClocks = 4;
-parameter int MillisecondClocks = 2;
-parameter int Attempts = 2;
-localparam int DeviceId = 66;
-localparam int XclkHalfClocks = 2;
+parameter int Bus = 0, AddressBytes = 1, Entries = 5, QuarterClocks = 4, MillisecondClocks = 2, Attempts = 2;
+localparam int DeviceId = 66, XclkHalfClocks = 2;
 input logic [EntryWidth-1:0] chosen;
 
 localparam logic [2:0] Fetch = 3'd0, Decode = 3'd1, Wait = 3'd2, Send = 3'd3;
@@ -79,8 +73,7 @@ if (Bus == 0) begin : g_list
     end
   end
 end else begin : g_lines
-  localparam int Longest = 18 + 9 * AddressBytes;
-  localparam int CountWidth = $clog2(Longest + 2);
+  localparam int Longest = 18 + 9 * AddressBytes, CountWidth = $clog2(Longest + 2);
   localparam logic [7:0] Id = 8'(DeviceId);
   logic [9*AddressBytes-1:0] address;
   if (AddressBytes == 1) begin : g_one

@@ -5,10 +5,8 @@
 // The specification is an automaton on pictures that counts words, not rows, columns and bytes. Nothing is assumed of the
 // source and of en. Settings are small and may change in every clock; a picture has those of the clock before its start.
 
-parameter int WordsPerPixel = 1;
-parameter int PixelPairs = 0;
-localparam int WindowColumns = 2;
-localparam int WindowRows = 2;
+parameter int WordsPerPixel = 1, PixelPairs = 0;
+localparam int WindowColumns = 2, WindowRows = 2;
 localparam int Bits = 3;  // of a setting
 input logic [3:0][Bits-1:0] chosen;
 
@@ -72,8 +70,8 @@ always_ff @(posedge clk) begin
     leaves <= pixel;
     breaks <= fault;
     marks <= {
-      row >= y && row < y + count_t'(WindowRows) && column >= x && column < x + count_t'(WindowColumns), row[0], column[0],
-      column == x, column == x && row == y
+      row >= y && row < y + count_t'(WindowRows) && column >= x && column < x + count_t'(WindowColumns), row[0],
+      column[0], column == x, column == x && row == y
     };
     if (word && half) low <= s_data[7:0];
     data <= WordsPerPixel == 2 ? {8'd0, s_data[7:0], low} : s_data;

@@ -3,8 +3,7 @@
 //
 // YUYV: BT.601 of the pixel's own luma and its pair's chroma, rounded half to even.
 
-parameter int Format = CameraFormatYuyv;
-parameter int Phase = 0;
+parameter int Format = CameraFormatYuyv, Phase = 0;
 
 logic held;
 kept #(.Width(Channels * Width + 4)) u_kept (

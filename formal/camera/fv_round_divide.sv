@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_round_divide: the mean is the nearest integer, ties to even, clipped to 0..255; 10 enabled clocks later.
 
-parameter int TotalWidth = 13;
-parameter int WeightWidth = 2;
-parameter int Drop = 3;
+parameter int TotalWidth = 13, WeightWidth = 2, Drop = 3;
 
-localparam int Latency = 10;
-localparam int Wide = TotalWidth + WeightWidth + Drop + 2;
+localparam int Latency = 10, Wide = TotalWidth + WeightWidth + Drop + 2;
 
 typedef logic signed [Wide-1:0] wide_t;
 

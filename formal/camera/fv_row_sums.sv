@@ -4,13 +4,9 @@
 // The specification adds up whole pixels from the beginning of the row and takes the difference of what it has at the
 // ends of two blocks, modulo the width of a sum; the core sums block by block.
 
-parameter int Numerator = 5;
-parameter int Denominator = 2;
-parameter int Width = 1;
-parameter int Bayer = 1;
+parameter int Numerator = 5, Denominator = 2, Width = 1, Bayer = 1;
 
 localparam int Lanes = Bayer != 0 ? 2 : 3;
-
 
 // Where the pixel ends, from the beginning of its block; its part in the block.
 logic [BlockWidth:0] begin_q, begins, ends;

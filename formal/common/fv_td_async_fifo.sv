@@ -6,14 +6,11 @@
 // new value or that before the last edge of its clock, each bit and each step by itself: the delay of a wire below one
 // period, and a register that catches it in motion. One arbitrary word is followed: `pick` is free.
 
-parameter int Width = 1;
-parameter int DepthLog2 = 2;
-input logic [DepthLog2:0] written_late;
-input logic [DepthLog2:0] fetched_late;
+parameter int Width = 1, DepthLog2 = 2;
+input logic [DepthLog2:0] written_late, fetched_late;
 input logic pick;
 
-localparam int Depth = 1 << DepthLog2;
-localparam int CountWidth = DepthLog2 + 2;
+localparam int Depth = 1 << DepthLog2, CountWidth = DepthLog2 + 2;
 
 // Words, modulo 2^CountWidth: fewer are inside.
 

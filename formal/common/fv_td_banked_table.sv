@@ -4,8 +4,7 @@
 //
 // An arbitrary address is watched.
 
-parameter int Width = 1;
-parameter int Depth = 3;
+parameter int Width = 1, Depth = 3;
 input logic [AddressWidth-1:0] chosen;
 
 always_comb assume (32'(chosen) < Depth);

@@ -4,18 +4,11 @@
 // its block and to no other; what does nothing but add does so to all. No sum is read before it was written, or in the
 // clock that writes it.
 
-parameter int Rows = 3;
-parameter int Columns = 4;
-parameter int Width = 2;
-parameter int SumWidth = 5;
-parameter int Signed = 1;
-parameter int ColumnLog2 = 1;
+parameter int Rows = 3, Columns = 4, Width = 2, SumWidth = 5, Signed = 1, ColumnLog2 = 1;
 localparam int BlockLog2 = 1;
 input logic [BlockWidth-1:0] chosen;
 
-localparam int Wide = 1 << ColumnLog2;
-localparam int Blocks = (Rows / 2) * (Columns / Wide);
-localparam int ToSum = 5;
+localparam int Wide = 1 << ColumnLog2, Blocks = (Rows / 2) * (Columns / Wide), ToSum = 5;
 
 logic [SumWidth-1:0] sums;
 assign read_sums = sums;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_td_divide: done exactly Latency clocks after the last start; with it the quotient and the remainder, or overflow.
 
-parameter int DivisorWidth = 3;
-parameter int QuotientWidth = 4;
+parameter int DivisorWidth = 3, QuotientWidth = 4;
 parameter int Latency = 5;  // models/tactile_depth/chip/common/td_divide.py
-
 
 logic [Latency-1:0] due;  // bit n: done is due in n clocks
 logic [NumeratorWidth-1:0] numerator_q, product;

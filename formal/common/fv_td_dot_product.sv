@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_td_dot_product: a0 b0 + a1 b1, exact, of the operands of an arbitrary enabled clock, 4 enabled clocks later.
 
-parameter int AWidth = 3;
-parameter int BWidth = 2;
+parameter int AWidth = 3, BWidth = 2;
 input logic pick;
 
 localparam int Latency = 4;

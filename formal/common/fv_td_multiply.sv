@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_td_multiply: the exact product of the operands of every enabled clock stands until the next one.
 
-parameter int AWidth = 5;
-parameter int BWidth = 3;
+parameter int AWidth = 5, BWidth = 3;
 
 logic taken = 1'b0, held = 1'b0;
 logic signed [AWidth-1:0] a_q;

@@ -7,36 +7,20 @@
 //
 // One channel is looked at: all are one generate.
 
-parameter int Rows = 5;
-parameter int Columns = 8;
-parameter int BlockLog2 = 1;
-parameter int Lanes = 2;
-parameter int Latency = 10;
-parameter int Along = 0;
-parameter int Width = 1;
-parameter int Signed = 0;
-parameter int Channels = 1;
-localparam int LaneWidth = Lanes > 1 ? $clog2(Lanes) : 1;
-localparam int DataWidth = 1;
+parameter int Rows = 5, Columns = 8, BlockLog2 = 1, Lanes = 2, Latency = 10, Along = 0, Width = 1, Signed = 0,
+    Channels = 1;
+localparam int LaneWidth = Lanes > 1 ? $clog2(Lanes) : 1, DataWidth = 1;
 input logic [LaneWidth-1:0] choose;  // the pixel of each beat that is followed
 
-localparam int Channel = Channels / 2;
-localparam int ChannelLog2 = $clog2(Channels);
-localparam int Block = 1 << BlockLog2;
-localparam int NodeColumns = Columns / Block;
-localparam int NodeRows = Rows / Block;
-localparam int Nodes = NodeRows * NodeColumns;
-localparam int NumberWidth = $clog2(Nodes);
-localparam int IndexWidth = NumberWidth + ChannelLog2;
-localparam int Tables = Lanes < Block ? 1 : 2;
+localparam int Channel = Channels / 2, ChannelLog2 = $clog2(Channels), Block = 1 << BlockLog2,
+    NodeColumns = Columns / Block, NodeRows = Rows / Block, Nodes = NodeRows * NodeColumns, NumberWidth = $clog2(Nodes),
+    IndexWidth = NumberWidth + ChannelLog2, Tables = Lanes < Block ? 1 : 2;
 localparam int Beats = Columns / Lanes;                     // of a row
-localparam int BeatsOfBlock = Lanes < Block ? Block / Lanes : 1;
-localparam int Ahead = BeatsOfBlock > 1 ? BeatsOfBlock / 2 : 1;
+localparam int BeatsOfBlock = Lanes < Block ? Block / Lanes : 1, Ahead = BeatsOfBlock > 1 ? BeatsOfBlock / 2 : 1;
 localparam int Words = NodeColumns / Side;                  // of a row
 localparam int ToFirst = 6, ToNext = 7;                     // from a beat to the sums of a row's first word, of the next
 localparam int ToUse = 3;                                   // to the clock from which on the bank of its frame is in use
-localparam int Share = 2 * Block;
-localparam int SumWidth = Width + BlockLog2 + 1;
+localparam int Share = 2 * Block, SumWidth = Width + BlockLog2 + 1;
 
 table_answer_t expected_answer;
 
@@ -183,8 +167,8 @@ if (Along == 0) begin : g_down
   end
 end else begin : g_along
   // As the first part has it: a sum of two nodes is no larger than a whole of the largest word.
-  localparam int Highest = Signed != 0 ? (1 << (Width - 1)) - 1 : (1 << Width) - 1;
-  localparam int Lowest = Signed != 0 ? -(1 << (Width - 1)) : 0;
+  localparam int Highest = Signed != 0 ? (1 << (Width - 1)) - 1 : (1 << Width) - 1,
+      Lowest = Signed != 0 ? -(1 << (Width - 1)) : 0;
   for (genvar s = 0; s < Side; s++) begin : g_sum
     always_comb assume (whole_of(column_sums[s]) >= Share * Lowest && whole_of(column_sums[s]) <= Share * Highest);
   end
@@ -193,8 +177,7 @@ end else begin : g_along
   endfunction
 
   // The sums of the row so far, and the chosen pixel of the beat between them.
-  localparam int ScaledWidth = SumWidth + BlockLog2 + 1;
-  localparam int Behind = Latency - ToNext;
+  localparam int ScaledWidth = SumWidth + BlockLog2 + 1, Behind = Latency - ToNext;
   logic [NodeColumns*SumWidth-1:0] sums, sums_q;
   logic [LaneWidth-1:0] chosen;
   logic [3:0] beat_7;

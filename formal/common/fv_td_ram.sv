@@ -3,9 +3,7 @@
 //
 // One arbitrary address is watched. What the protocol asks is proven of every core that uses a ram (ram_check).
 
-parameter int Width = 1;
-parameter int Depth = 6;
-parameter int Style = 1;
+parameter int Width = 1, Depth = 6, Style = 1;
 input logic [AddressWidth-1:0] chosen;
 
 always_comb assume (u_protocol.allowed && 32'(chosen) < Depth);

@@ -2,9 +2,7 @@
 // fv_td_ramp: an arbitrary word of the ramp is the first and so many steps, log2(Count) enabled clocks after both came; with
 // en low it stands.
 
-parameter int Width = 6;
-parameter int StepWidth = 4;
-parameter int Count = 4;
+parameter int Width = 6, StepWidth = 4, Count = 4;
 input logic [Levels:0] chosen;
 
 // What came n enabled clocks ago is in field n.

@@ -5,15 +5,11 @@
 // nearer than half a step, or at half a step and is even. There is exactly one such integer for every input, so what
 // holds of an arbitrary integer, should it be the one, holds of all inputs.
 
-parameter int InWidth = 48;
-parameter int Drop = 17;
-parameter int OutWidth = 27;
+parameter int InWidth = 48, Drop = 17, OutWidth = 27;
 localparam int IntegerWidth = InWidth - Drop + 1;
 input logic signed [IntegerWidth-1:0] asked;  // an arbitrary integer
 
-localparam int Up = Drop < 0 ? -Drop : 0;
-localparam int Down = Drop > 0 ? Drop : 0;
-localparam int Wide = InWidth + Up + OutWidth + 4;
+localparam int Up = Drop < 0 ? -Drop : 0, Down = Drop > 0 ? Drop : 0, Wide = InWidth + Up + OutWidth + 4;
 localparam logic signed [Wide-1:0] One = 1;
 localparam logic signed [Wide-1:0] Step = One <<< Down;
 localparam logic signed [Wide-1:0] Largest = (One <<< (OutWidth - 1)) - One;

@@ -4,12 +4,7 @@
 // word extended to 32 bits, stands on the bus while the bus named the table in the clock before; otherwise zeros.
 // Whatever the bus says.
 
-parameter int Select = 2;
-parameter int IndexWidth = 2;
-parameter int Width = 2;
-parameter int Words = 2;
-parameter int Entries = 1;
-parameter int Signed = 1;
+parameter int Select = 2, IndexWidth = 2, Width = 2, Words = 2, Entries = 1, Signed = 1;
 
 logic started = 1'b0;
 logic own, rst_q, reads_q, known;  // known: an entry was read

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_beat_peak: the peak of every beat, Latency clocks later, compared with a loop over the depths of the beat.
 
-parameter int Width = 2;
-parameter int Lanes = 4;
+parameter int Width = 2, Lanes = 4;
 parameter int Latency = 2;  // models/tactile_depth/chip/contact/beat_peak.py
 
 logic [Latency-1:0] known = '0;

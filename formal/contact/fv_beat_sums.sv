@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_beat_sums: sums of every beat, Latency clocks later. Each is compared with a loop over the depths of the beat.
 
-parameter int Width = 2;
-parameter int Lanes = 4;
+parameter int Width = 2, Lanes = 4;
 parameter int Latency = 2;  // models/tactile_depth/chip/contact/beat_sums.py
 
 always_comb assume (u_protocol.allowed);

@@ -2,10 +2,8 @@
 // fv_centroid: done exactly Latency clocks after the last start, with both means to the nearest, ties to even. Ties need a
 // weight of 32, which only the simulation has.
 
-parameter int PositionWidth = 2;
-parameter int WeightWidth = 3;
+parameter int PositionWidth = 2, WeightWidth = 3;
 parameter int Latency = 16;  // models/tactile_depth/chip/contact/centroid.py
-
 
 logic [Latency-1:0] due;
 logic [MomentWidth-1:0] columns, rows;

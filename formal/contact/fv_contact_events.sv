@@ -5,11 +5,8 @@
 //
 // Sums, decision, centroid and packets are proven of the cores in it.
 
-parameter int Width = 2;
-parameter int Rows = 4;
-parameter int Columns = 8;
+parameter int Width = 2, Rows = 4, Columns = 8;
 parameter int Latency = 28;  // models/tactile_depth/chip/contact/contact_events.py
-
 
 // When a record is due, and what it says of its frame.
 logic [Latency-1:0] due;

@@ -4,13 +4,8 @@
 //
 // `touching` takes any value in any clock; thresholds stay the same within a frame.
 
-parameter int Width = 2;
-parameter int Rows = 2;
-parameter int Columns = 3;
-parameter int Lanes = 1;
-parameter int BottomFirst = 0;
-input logic signed [Width:0] on_level;
-input logic signed [Width:0] off_level;
+parameter int Width = 2, Rows = 2, Columns = 3, Lanes = 1, BottomFirst = 0;
+input logic signed [Width:0] on_level, off_level;
 input logic [3:0] chosen;
 
 localparam int Pixels = Rows * Columns;

@@ -2,11 +2,7 @@
 // fv_contact_sums: sums 2 + log2(Lanes) clocks after the last beat of each frame: area, weight and moments of the depths above
 // the threshold, by multiplication; limits enclose an arbitrary depth above it, and are attained.
 
-parameter int Width = 2;
-parameter int Rows = 2;
-parameter int Columns = 3;
-parameter int Lanes = 1;
-parameter int BottomFirst = 0;
+parameter int Width = 2, Rows = 2, Columns = 3, Lanes = 1, BottomFirst = 0;
 input logic [3:0] chosen;
 
 localparam int Pixels = Rows * Columns;

@@ -9,7 +9,6 @@
 parameter int Width = 1;
 input logic pick;
 
-
 // What is given to the output: as long as its two places and the frame allow.
 logic drops, refused, moves, room, given, leaves;  // `drops`: of the frame that is, or would be, present
 logic fresh;

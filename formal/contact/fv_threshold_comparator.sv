@@ -3,9 +3,7 @@
 // While hold is high it does not fall. Otherwise it is high from such a depth on until the clock after the first depth of
 // the next frame, so it falls in the clock after hold is cleared if this frame has had no depth above the threshold.
 
-parameter int Width = 24;
-parameter int Lanes = 1;
-
+parameter int Width = 24, Lanes = 1;
 
 logic signed [31:0] of_frame, in_force;  // threshold when the frame began; that which counts now
 assign in_force = in_valid & in_frame_start ? threshold : of_frame;

@@ -3,12 +3,9 @@
 // each row and frame_end on its last; a bad one, or one that does not begin when due, does not leave at all; out_of_step is high
 // exactly where bursts and frames do not begin as they should. Whatever bursts come, and whenever frames are due.
 
-parameter int Width = 1;
-parameter int Rows = 3;
-parameter int Columns = 4;
+parameter int Width = 1, Rows = 3, Columns = 4;
 
-localparam int Pixels = Rows * Columns;
-localparam int CountWidth = $clog2(Pixels + 1);
+localparam int Pixels = Rows * Columns, CountWidth = $clog2(Pixels + 1);
 
 logic [CountWidth-1:0] left;  // words of the frame after this clock's
 logic present, good, good_q;

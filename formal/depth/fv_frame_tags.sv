@@ -2,11 +2,8 @@
 // fv_frame_tags: an arbitrary tag is due exactly Latency enabled clocks after it was pushed, unchanged, and nothing
 // else is ever due; held is high just while there are tags.
 
-parameter int Width = 1;
-parameter int Latency = 10;
-parameter int Pixels = 4;
+parameter int Width = 1, Latency = 10, Pixels = 4;
 input logic pick;
-
 
 logic [Latency-1:0] pushed;
 logic followed_due;

@@ -7,12 +7,7 @@
 // so to all. With several lanes the first part is so for beats one clock after they came, and the depths of a beat that
 // belong to one block are added up: then what is proven of one lane is so for their sum.
 
-parameter int Rows = 3;
-parameter int Columns = 4;
-parameter int Width = 4;
-parameter int MaxLog2 = 1;
-parameter int Sums = 0;
-parameter int Lanes = 1;
+parameter int Rows = 3, Columns = 4, Width = 4, MaxLog2 = 1, Sums = 0, Lanes = 1;
 localparam int BlockLog2 = 1;
 input logic [NodeWidth-1:0] chosen;
 

@@ -5,19 +5,12 @@
 // left, whatever follows it. The map is told where frames begin; a zero offset that was written, by the bus or the
 // capture, reads back.
 
-parameter int Rows = 3;
-parameter int Columns = 4;
-parameter int Width = 2;
-parameter int Lanes = 1;
-parameter int Latency = 11;
+parameter int Rows = 3, Columns = 4, Width = 2, Lanes = 1, Latency = 11;
 localparam int BlockLog2 = 1;
 input logic choose;  // the beat that is followed
 
-localparam int Nodes = (Rows / 2) * (Columns / 2);
-localparam int ToZero = Latency - 1;
-localparam int ToOut = Latency;
-localparam int Highest = (1 << (Width - 1)) - 1;
-localparam int Lowest = -Highest - 1;
+localparam int Nodes = (Rows / 2) * (Columns / 2), ToZero = Latency - 1, ToOut = Latency,
+    Highest = (1 << (Width - 1)) - 1, Lowest = -Highest - 1;
 
 table_answer_t expected_answer;
 

@@ -8,14 +8,7 @@
 // Assumed: places in raster order; of each colour the lowest bits alone differ from zero (products of any width are
 // exact).
 
-parameter int Meets = 0;
-parameter int Rows = 3;
-parameter int Columns = 4;
-parameter int GainWidth = 3;
-parameter int Drop = 2;
-parameter int Offset = 0;
-parameter int OutWidth = 1;
-parameter int Flat = 1;
+parameter int Meets = 0, Rows = 3, Columns = 4, GainWidth = 3, Drop = 2, Offset = 0, OutWidth = 1, Flat = 1;
 localparam int BlockLog2 = 1;
 input logic choose;  // the pixel that is followed
 
@@ -64,9 +57,8 @@ if (Meets != 0) begin : g_meets
     meets_bright: cover (started && follows && age == 4'(ToGain) && !dut.dim && place[1:0] == 2'b01);
   end
 end else begin : g_leaves
-  localparam int ToOut = 3;
-  localparam int Lowest = Offset == 0 ? 0 : -(1 << (OutWidth - 1));
-  localparam int Highest = Offset == 0 ? (1 << OutWidth) - 1 : (1 << (OutWidth - 1)) - 1;
+  localparam int ToOut = 3, Lowest = Offset == 0 ? 0 : -(1 << (OutWidth - 1)),
+      Highest = Offset == 0 ? (1 << OutWidth) - 1 : (1 << (OutWidth - 1)) - 1;
 
   logic signed [GainWidth+9:0] result[3];
   logic [2:0] clips;

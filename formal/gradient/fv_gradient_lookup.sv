@@ -6,8 +6,7 @@
 // Assumed, as axil_registers and frame_guard have it: nothing is written while a change-over is due, or with a read; the
 // first pixels of two frames do not follow each other.
 
-parameter int Width = 1;
-parameter int BitsPerChannel = 1;
+parameter int Width = 1, BitsPerChannel = 1;
 
 // The accesses that reach the table, and the answer to them (fv_td_table_port).
 logic table_write, table_read;

@@ -6,24 +6,17 @@
 // In a second part (Moves 1), with deviations of any value in place of those of the ratios: the move that the last
 // pixel takes off is the rule of the header, applied to all rows of that frame but the last, whatever the gaps.
 
-parameter int Moves = 0;
-parameter int Rows = 2;
-parameter int Columns = 8;
-parameter int RatioWidth = 4;
-parameter int RatioFraction = 2;
-parameter int GainWidth = 5;
-parameter int OutWidth = 6;
-parameter int OutFraction = 4;
+parameter int Moves = 0, Rows = 2, Columns = 8, RatioWidth = 4, RatioFraction = 2, GainWidth = 5, OutWidth = 6,
+    OutFraction = 4;
 
 wire [15:0] row = u_protocol.row, column = u_protocol.column;
 assign allowed = !in_valid || in_position == u_protocol.place;
 
 // Part 1.
 
-localparam int GainFraction = GainWidth - 1;
-localparam int Drop = RatioFraction + GainFraction - OutFraction;
-localparam int Least = 1 << (GainWidth - 2), Most = (1 << GainWidth) - 1;
-localparam int Lowest = -(1 << (OutWidth - 1)), Highest = (1 << (OutWidth - 1)) - 1;
+localparam int GainFraction = GainWidth - 1, Drop = RatioFraction + GainFraction - OutFraction,
+    Least = 1 << (GainWidth - 2), Most = (1 << GainWidth) - 1,
+    Lowest = -(1 << (OutWidth - 1)), Highest = (1 << (OutWidth - 1)) - 1;
 
 logic first, last, commits, in_frame, bad;
 logic [3*RatioWidth-1:0] ratios;

@@ -12,22 +12,13 @@
 // The polynomial is evaluated as the pixel reaches the core's register of it, by the same differences; the words are
 // taken at once, when the frame begins. The steps of the induction say what each register of the core holds meanwhile.
 
-parameter int Polynomial = 0;
-parameter int WordWidth = 2;
-parameter int FineBits = 1;
-parameter int CoeffWidth = 2;
-parameter int CorrectionUnit = 3;
+parameter int Polynomial = 0, WordWidth = 2, FineBits = 1, CoeffWidth = 2, CorrectionUnit = 3;
 localparam int Width = CoeffWidth + 1;  // twice the lowest coefficient does not fit
-localparam int DeviationWidth = 2;
-localparam int CorrectionWidth = 2;
-localparam int Drop = 0;
+localparam int DeviationWidth = 2, CorrectionWidth = 2, Drop = 0;
 input logic signed [1:0] deviation;
 
-localparam int Latency = 12;
-localparam int Colour = Polynomial % 3;
-localparam int Axis = Polynomial / 3;
-localparam int Total = WordWidth + FineBits;
-localparam int ProductWidth = CoeffWidth + 2;
+localparam int Latency = 12, Colour = Polynomial % 3, Axis = Polynomial / 3, Total = WordWidth + FineBits,
+    ProductWidth = CoeffWidth + 2;
 localparam int Exact = ProductWidth + 2;  // bits of a sum
 localparam int ToValue = 5 + Colour;  // enabled clocks from the first in which a pixel waits to its coefficient
 

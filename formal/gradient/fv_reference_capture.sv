@@ -6,13 +6,8 @@
 //
 // Of the three colours, red; the quotients are left to simulation.
 
-parameter int Rows = 3;
-parameter int Columns = 4;
-parameter int MaxLog2 = 1;
-parameter int Sums = 0;
-localparam int Width = 8 + 2 + MaxLog2;
-localparam int BlockLog2 = 1;
-localparam int GainFraction = Width;
+parameter int Rows = 3, Columns = 4, MaxLog2 = 1, Sums = 0;
+localparam int Width = 8 + 2 + MaxLog2, BlockLog2 = 1, GainFraction = Width;
 input logic [NodeWidth-1:0] chosen;
 
 localparam int Clocks = Nodes * (6 + 3 * (Width + 3)) + 2;  // from the last pixel to done

@@ -7,7 +7,6 @@
 
 parameter int Longest = 5;
 
-
 logic begun, broken, is_code, first, after_full;
 logic [7:0] place, next_code;  // of the next byte, and of the next code
 logic [3:0] bytes;             // of the piece, up to Longest + 1

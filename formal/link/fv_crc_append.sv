@@ -5,7 +5,6 @@
 // The specification of the CRC is not reflected: it takes the bits of a byte from the lowest, and its highest bit is
 // the lowest of the core's.
 
-
 function automatic logic [31:0] with_byte(input logic [31:0] remainder, input logic [7:0] data);
   logic [31:0] out;
   out = remainder;

@@ -7,16 +7,11 @@
 // The value at an arbitrary address is any constant, and so is one bit of an arbitrary byte of the record. 16-bit values
 // are compared with a depth_value of the bench, which takes what was read.
 
-parameter int Rows = 3;
-parameter int Columns = 2;
-parameter int DataWidth = 10;
-parameter int BottomFirst = 1;
-parameter int Values = 2;
+parameter int Rows = 3, Columns = 2, DataWidth = 10, BottomFirst = 1, Values = 2;
 input logic [PlaceWidth-1:0] pick;
 input logic signed [DataWidth-1:0] pick_value;
 input logic [5:0] pick_byte;
 input logic pick_bit;
-
 
 // The store: what it answers.
 logic [PlaceWidth-1:0] watched;

@@ -5,10 +5,7 @@
 //
 // One bit of an arbitrary value and of an arbitrary word of the record is followed.
 
-parameter int Rows = 2;
-parameter int Columns = 2;
-parameter int DataWidth = 2;
-parameter int Lanes = 1;
+parameter int Rows = 2, Columns = 2, DataWidth = 2, Lanes = 1;
 input logic [PlaceWidth-1:0] pick;
 input logic [3:0] pick_word;
 

@@ -4,8 +4,7 @@
 
 parameter int DataWidth = 20;
 
-localparam int SumWidth = DataWidth + 2;
-localparam int Shifts = 17;
+localparam int SumWidth = DataWidth + 2, Shifts = 17;
 
 always_comb assume (u_protocol.allowed);
 

@@ -7,7 +7,6 @@
 
 input logic pick;
 
-
 // x^32 + .. + 1, the highest power on the left; a right packet leaves the remainder C704DD7B.
 localparam logic [31:0] Polynomial = 32'h04C11DB7;
 localparam logic [31:0] Right = 32'hC704DD7B;

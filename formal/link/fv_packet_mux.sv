@@ -5,7 +5,6 @@
 // Packets may have any length. A packet passes from the clock after it was chosen to that in which its last byte
 // leaves.
 
-
 logic [3:0] valid, ready, turn, owner;  // a bit for each stream; whose packet begins, or passes
 logic passes, leaves, behind_record, stalled, stalled_last, whole;
 logic [7:0] stalled_data;

@@ -5,13 +5,11 @@
 //
 // Packets may have any length. The specification counts bytes of the packet and pixels of the picture.
 
-parameter int Rows = 3;
-parameter int Columns = 3;
+parameter int Rows = 3, Columns = 3;
 
 localparam int Pixels = Rows * Columns;
 localparam logic [3:0] Header = 4'd8;   // bytes in front of the pixels
 localparam logic [3:0] Longest = 4'd10; // the last byte of a pixel; the next one has the number of its first
-
 
 // The place of the next pixel and the number of its picture are the header of a packet that goes on.
 logic takes, begins, goes_on, wanted, differs, moved;

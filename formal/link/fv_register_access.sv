@@ -6,9 +6,7 @@
 // What comes out of the memory is free, but that a word stays until the next is read: td_ram is proven by itself. Here
 // each value read goes to the word of its access, and each word leaves from there.
 
-parameter int AddressWidth = 4;
-parameter int Accesses = 2;
-
+parameter int AddressWidth = 4, Accesses = 2;
 
 // A request as it comes.
 logic takes, begun, write, known, idle_request, same, closed;

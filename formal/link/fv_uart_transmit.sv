@@ -6,7 +6,6 @@
 
 parameter int Divider = 4;
 
-
 logic sending;
 logic [7:0] age;   // clocks
 logic [9:0] bits;  // of the byte, the first lowest

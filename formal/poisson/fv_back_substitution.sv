@@ -4,23 +4,13 @@
 // frame before, and none from power-up, enters: the specification has none, and the memory begins with any contents.
 // Rounding is proven of td_round_saturate.
 
-parameter int Rows = 3;
-parameter int Columns = 8;
-parameter int Words = 16;
-localparam int PositionWidth = $clog2(Columns);
-localparam int InWidth = 2;
-localparam int Width = 3;
-localparam int CoeffWidth = 3;
-localparam int Drop = -1;
-localparam int SettledWidth = 2;
-localparam int TableWords = Words;
+parameter int Rows = 3, Columns = 8, Words = 16;
+localparam int PositionWidth = $clog2(Columns), InWidth = 2, Width = 3, CoeffWidth = 3, Drop = -1, SettledWidth = 2,
+    TableWords = Words;
 input logic [PositionWidth-1:0] chosen;
 
-localparam int RowWidth = $clog2(Rows + 1);
-localparam int Latency = 8;
-localparam int LastShiftWidth = 1;
-localparam int Aligned = InWidth - Drop + CoeffWidth - 1;
-localparam int ExactWidth = (Aligned > Width + CoeffWidth ? Aligned : Width + CoeffWidth) + 1;
+localparam int RowWidth = $clog2(Rows + 1), Latency = 8, LastShiftWidth = 1, Aligned = InWidth - Drop + CoeffWidth - 1,
+    ExactWidth = (Aligned > Width + CoeffWidth ? Aligned : Width + CoeffWidth) + 1;
 
 logic active, last_row, present;  // present: the word of the column
 logic [PositionWidth-1:0] position, column;  // column: chosen in the first clock, then constant

@@ -4,15 +4,9 @@
 // Rounding is proven of td_round_saturate.
 
 parameter int Rows = 3;
-localparam int Width = 3;
-localparam int CoeffWidth = 3;
-localparam int MomentDrop = 1;
-localparam int MeanReciprocal = 2;
-localparam int MeanDrop = 1;
+localparam int Width = 3, CoeffWidth = 3, MomentDrop = 1, MeanReciprocal = 2, MeanDrop = 1;
 
-localparam int MomentWidth = Width + 2 * $clog2(Rows) + 2;
-localparam int ToMean = 6;
-
+localparam int MomentWidth = Width + 2 * $clog2(Rows) + 2, ToMean = 6;
 
 // The sum in one step, when d is there, and then its way through the roundings.
 logic [ToMean-1:0] old;  // old[n]: in_next was n + 1 enabled clocks ago

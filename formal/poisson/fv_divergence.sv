@@ -6,9 +6,7 @@
 // In the first row the line is read before it has been written; that what is read there changes nothing is shown by f
 // itself, with a memory of any contents.
 
-parameter int Width = 2;
-parameter int Columns = 4;
-parameter int Neumann = 0;
+parameter int Width = 2, Columns = 4, Neumann = 0;
 localparam int ColumnWidth = $clog2(Columns);
 input logic [ColumnWidth-1:0] chosen;
 
@@ -16,7 +14,6 @@ wire [ColumnWidth-1:0] column = u_protocol.column;
 logic [ColumnWidth-1:0] watched;  // watched: chosen in the first clock, then constant
 logic first_row, first_column, last_row, last_column;
 assign {last_column, last_row, first_column, first_row} = in_position;
-
 
 int gx, gy, left, above;
 assign gx = Neumann != 0 && last_column ? 0 : 32'(in_gx);

@@ -4,25 +4,12 @@
 // the last row of column 0 is minus the mean. No word of the frame before, and none from power-up, enters: the
 // specification has none, and the memories begin with any contents. Rounding is proven of td_round_saturate.
 
-parameter int Rows = 3;
-parameter int Columns = 8;
-parameter int Neumann = 0;
-parameter int Words = 16;
-localparam int PositionWidth = $clog2(Columns);
-localparam int Width = 3;
-localparam int CoeffWidth = 3;
-localparam int OutWidth = 2;
-localparam int StoreDrop = 1;
-localparam int SettledWidth = 2;
-localparam int LastShiftWidth = 1;
-localparam int MomentDrop = 1;
-localparam int MeanReciprocal = 2;
-localparam int MeanDrop = 1;
-localparam int TableWords = Words;
+parameter int Rows = 3, Columns = 8, Neumann = 0, Words = 16;
+localparam int PositionWidth = $clog2(Columns), Width = 3, CoeffWidth = 3, OutWidth = 2, StoreDrop = 1,
+    SettledWidth = 2, LastShiftWidth = 1, MomentDrop = 1, MeanReciprocal = 2, MeanDrop = 1, TableWords = Words;
 input logic [PositionWidth-1:0] chosen;
 
-localparam int RowWidth = $clog2(Rows + 1);
-localparam int Latency = 9;
+localparam int RowWidth = $clog2(Rows + 1), Latency = 9;
 localparam int MeanLatency = 12;  // from f to the mean that it is in
 localparam int MomentWidth = Width + 2 * $clog2(Rows) + 2;
 

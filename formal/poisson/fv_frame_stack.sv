@@ -3,16 +3,11 @@
 // clocks behind its own first word, the others without a pause behind it; frame_start with the first. Any gaps between
 // bursts, any en, any frame number, and frames that begin before the last one is whole.
 
-parameter int Width = 1;
-parameter int Rows = 3;
-parameter int Columns = 4;
-parameter int WordsPerRow = 1;
+parameter int Width = 1, Rows = 3, Columns = 4, WordsPerRow = 1;
 input logic pick;
 
 localparam int Clocks = Rows * Columns;  // in which a frame leaves
-localparam int PositionWidth = $clog2(Columns);
-localparam int RowWidth = $clog2(Rows + 1);
-localparam int PlaceWidth = $clog2(Clocks);
+localparam int PositionWidth = $clog2(Columns), RowWidth = $clog2(Rows + 1), PlaceWidth = $clog2(Clocks);
 
 logic active, last_row;
 logic [PositionWidth-1:0] position;

@@ -4,15 +4,10 @@
 // leaves is M 2^S of the ROM word; square.hex says which, for every p and t. Rounding is proven of td_round_saturate.
 
 parameter int Columns = 4;
-localparam int Width = 10;
-localparam int CoeffWidth = 8;
-localparam int ShiftWidth = 1;
-localparam int Drop = 0;
+localparam int Width = 10, CoeffWidth = 8, ShiftWidth = 1, Drop = 0;
 input logic pick;
 
-localparam int PositionWidth = $clog2(Columns);
-localparam int RowWidth = $clog2(Columns + 1);
-localparam int Latency = 6;
+localparam int PositionWidth = $clog2(Columns), RowWidth = $clog2(Columns + 1), Latency = 6;
 
 assign in_data = Width'(1);
 logic started, active;

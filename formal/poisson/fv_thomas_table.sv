@@ -3,12 +3,7 @@
 // which says for every row and position which word that is: base + min(row, settled), in the last row one of its own
 // with its shift.
 
-parameter int Rows = 6;
-parameter int Columns = 4;
-parameter int Words = 12;
-parameter int CoeffWidth = 5;
-parameter int SettledWidth = 3;
-parameter int LastShiftWidth = 2;
+parameter int Rows = 6, Columns = 4, Words = 12, CoeffWidth = 5, SettledWidth = 3, LastShiftWidth = 2;
 input logic pick;
 
 localparam int Latency = 5;

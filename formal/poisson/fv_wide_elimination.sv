@@ -6,32 +6,18 @@
 // mean are proven of column_mean. No word of the frame before, and none from power-up, enters: the specification has
 // none, and the memories begin with any contents. Rounding is proven of td_round_saturate.
 
-parameter int Rows = 3;
-parameter int Columns = 16;
-parameter int Words = 2;
+parameter int Rows = 3, Columns = 16, Words = 2;
 parameter int Word = 0;  // the one followed
-parameter int Neumann = 0;
-parameter int TableWords = 16;
-localparam int Clocks = Columns / Words;
-localparam int PositionWidth = $clog2(Clocks);
-localparam int Width = 3;
-localparam int CoeffWidth = 3;
-localparam int OutWidth = 2;
-localparam int StoreDrop = 1;
-localparam int SettledWidth = 2;
-localparam int LastShiftWidth = 1;
-localparam int MomentDrop = 1;
-localparam int MeanReciprocal = 2;
-localparam int MeanDrop = 1;
+parameter int Neumann = 0, TableWords = 16;
+localparam int Clocks = Columns / Words, PositionWidth = $clog2(Clocks), Width = 3, CoeffWidth = 3, OutWidth = 2,
+    StoreDrop = 1, SettledWidth = 2, LastShiftWidth = 1, MomentDrop = 1, MeanReciprocal = 2, MeanDrop = 1;
 input logic [PositionWidth-1:0] chosen;
 
 localparam int ToStart = 9;
 localparam int ToWords = 11;  // from a start to the first words out
 localparam int MeanLatency = 12;  // from a start to the mean that its word is in
-localparam int MomentWidth = Width + 2 * $clog2(Rows) + 2;
-localparam int RowWidth = $clog2(Rows + 1);
-localparam int CountWidth = $clog2(4 * Words + 3);
-localparam int LineWidth = Words * (LastShiftWidth + CoeffWidth);
+localparam int MomentWidth = Width + 2 * $clog2(Rows) + 2, RowWidth = $clog2(Rows + 1),
+    CountWidth = $clog2(4 * Words + 3), LineWidth = Words * (LastShiftWidth + CoeffWidth);
 
 wire active = u_protocol.active, last_row = u_protocol.last_row;
 wire [PositionWidth-1:0] position = u_protocol.position;
@@ -181,9 +167,7 @@ bind dut.u_row_above ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
 // Protocol: bursts of Columns / Words clocks as protocol_bursts allows them; words leave 2 enabled clocks behind the
 // starts going out. out_last counts in the last row of a frame, out_ahead in all but the first.
 module protocol_wide_elimination;
-  localparam int Clocks = Columns / Words;
-  localparam int PositionWidth = $clog2(Clocks);
-  localparam int RowWidth = $clog2(Rows + 1);
+  localparam int Clocks = Columns / Words, PositionWidth = $clog2(Clocks), RowWidth = $clog2(Rows + 1);
   logic active;  // a clock of a burst comes in 2 enabled clocks, with this position in it
   logic [PositionWidth-1:0] position;
   logic [RowWidth-1:0] row;  // of the burst in its frame

@@ -3,28 +3,18 @@
 // last row first; the first words out Latency enabled clocks behind those of the last row, and no pause in a frame;
 // starts, frame_start and alone 6 clocks before. Any gaps between bursts, any en, and frames that begin afresh.
 
-parameter int Width = 1;
-parameter int Rows = 3;
-parameter int Columns = 16;
-parameter int InWords = 2;
-parameter int OutWords = 4;
-localparam int InWidth = $clog2(InWords);
-localparam int PositionWidth = $clog2(Columns / InWords);
-localparam int RowWidth = $clog2(Rows + 1);
+parameter int Width = 1, Rows = 3, Columns = 16, InWords = 2, OutWords = 4;
+localparam int InWidth = $clog2(InWords), PositionWidth = $clog2(Columns / InWords), RowWidth = $clog2(Rows + 1);
 input logic choose_last;  // the word followed is one of in_last
 input logic [RowWidth-1:0] choose_row;
 input logic [PositionWidth-1:0] choose_position;
 input logic [InWidth-1:0] choose_word;  // of a clock
 
-localparam int OutWidth = $clog2(OutWords);
-localparam int Clocks = Columns / InWords;
-localparam int Beats = Columns / OutWords;
-localparam int Pairs = (Rows + 1) / 2;
-localparam int Latency = Clocks - Beats / 2 + 2;
+localparam int OutWidth = $clog2(OutWords), Clocks = Columns / InWords, Beats = Columns / OutWords,
+    Pairs = (Rows + 1) / 2, Latency = Clocks - Beats / 2 + 2;
 localparam int ToStart = Latency + 2 - 6;  // clocks from the start of the last row to the first start
 localparam int Longest = Latency + Pairs * 2 * Beats + 1;  // to the last word, and one more
-localparam int AgeWidth = $clog2(Longest);
-localparam int BeatWidth = $clog2(Beats);
+localparam int AgeWidth = $clog2(Longest), BeatWidth = $clog2(Beats);
 
 wire active = u_protocol.active, last_row = u_protocol.last_row;
 wire [PositionWidth-1:0] position = u_protocol.position;
@@ -148,10 +138,8 @@ bind td_ram ram_check #(.Depth(Depth), .Defined(0), .Covered(0)) u_check (.*);
 // Protocol: bursts of Columns / InWords clocks as protocol_bursts allows them, no faster in all than a frame of them
 // leaves; pairs of rows going out, 6 enabled clocks behind their starts.
 module protocol_wide_stack;
-  localparam int Clocks = Columns / InWords;
-  localparam int Beats = Columns / OutWords;
-  localparam int PositionWidth = $clog2(Clocks);
-  localparam int RowWidth = $clog2(Rows + 1);
+  localparam int Clocks = Columns / InWords, Beats = Columns / OutWords, PositionWidth = $clog2(Clocks),
+      RowWidth = $clog2(Rows + 1);
   logic active;
   logic [PositionWidth-1:0] position;
   logic [RowWidth-1:0] row;

@@ -5,26 +5,18 @@
 // not count. No word of the frame before, and none from power-up, enters: the specification has none. Rounding is
 // proven of td_round_saturate.
 
-parameter int Rows = 3;
-parameter int Columns = 4;
-parameter int Words = 2;
+parameter int Rows = 3, Columns = 4, Words = 2;
 parameter int Word = 0;  // the one followed
 parameter int TableWords = 4;
-localparam int Beats = Columns / Words;
-localparam int PositionWidth = $clog2(2 * Beats);
-localparam int InWidth = 2;
-localparam int Width = 3;
-localparam int CoeffWidth = 3;
-localparam int Drop = -1;
-localparam int SettledWidth = 3;
+localparam int Beats = Columns / Words, PositionWidth = $clog2(2 * Beats), InWidth = 2, Width = 3, CoeffWidth = 3,
+    Drop = -1, SettledWidth = 3;
 input logic [PositionWidth-1:0] chosen;
 
 localparam int ToStart = 6;
 localparam int ToWords = 8;  // from a start to the first words out
-localparam int Aligned = InWidth - Drop + CoeffWidth - 1;
-localparam int ExactWidth = (Aligned > Width + CoeffWidth ? Aligned : Width + CoeffWidth) + 1;
-localparam int PairWidth = $clog2((Rows + 1) / 2 + 1);
-localparam int CountWidth = $clog2(Words + 1);
+localparam int Aligned = InWidth - Drop + CoeffWidth - 1,
+    ExactWidth = (Aligned > Width + CoeffWidth ? Aligned : Width + CoeffWidth) + 1,
+    PairWidth = $clog2((Rows + 1) / 2 + 1), CountWidth = $clog2(Words + 1);
 
 logic active, present;  // present: the beat followed
 logic [PositionWidth-1:0] position, column;  // column: chosen in the first clock, then constant

@@ -6,24 +6,16 @@
 // alone. The registers of the specification change by
 // what was seen on the ports alone.
 
-parameter int Polynomial = 0;
-parameter int Corrections = 0;
-parameter int Camera = 0;
-parameter int DepthMantissa = 24'hABCDEF;
-parameter int DepthExponent = -41;
-parameter int SlopeMantissa = 24'h812345;
-parameter int SlopeExponent = 3;
-parameter int PitchNm = 63400;
+parameter int Polynomial = 0, Corrections = 0, Camera = 0, DepthMantissa = 24'hABCDEF, DepthExponent = -41,
+    SlopeMantissa = 24'h812345, SlopeExponent = 3, PitchNm = 63400;
 localparam logic [ConfigBits-1:0] Config = configuration();
 
 assign allowed = 1'b1;
 
-localparam int GradientWords = Polynomial != 0 && Corrections == 0 ? 0 : 1 << 3 * BitsPerChannel;
-localparam int CoefficientWords = Polynomial != 0 ? PolynomialWords : 0;
-localparam int ZeroWords = 4 * 8;
-localparam int ReferenceWords = 4 * ZeroWords;
-localparam int Tables = TableSelectSelectCount;
-localparam int IndexWidth = $clog2(GradientWords > ReferenceWords ? GradientWords : ReferenceWords);
+localparam int GradientWords = Polynomial != 0 && Corrections == 0 ? 0 : 1 << 3 * BitsPerChannel,
+    CoefficientWords = Polynomial != 0 ? PolynomialWords : 0, ZeroWords = 4 * 8, ReferenceWords = 4 * ZeroWords,
+    Tables = TableSelectSelectCount,
+    IndexWidth = $clog2(GradientWords > ReferenceWords ? GradientWords : ReferenceWords);
 localparam logic [1:0] Okay = 2'b00;
 localparam logic [1:0] SlaveError = 2'b10;
 

@@ -6,11 +6,9 @@
 //   Idle    between frames                      Open    `count` pixels of a frame taken, nothing wrong
 //   Broken  a fault in the frame: filled up     Dropped between frames behind a fault: words go until a start
 
-parameter int Rows = 3;
-parameter int Columns = 4;
+parameter int Rows = 3, Columns = 4;
 
-localparam int Pixels = Rows * Columns;
-localparam int CountWidth = $clog2(Pixels + 1);
+localparam int Pixels = Rows * Columns, CountWidth = $clog2(Pixels + 1);
 localparam logic [CountWidth-1:0] One = 1;
 localparam logic [CountWidth-1:0] Whole = Pixels;
 

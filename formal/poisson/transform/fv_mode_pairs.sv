@@ -3,13 +3,10 @@
 // beside the mode whose number adds up to Size with its own; mode 0 has 0 beside it. start and frame_start with the
 // first of a burst.
 
-parameter int Width = 1;
-parameter int Size = 8;
+parameter int Width = 1, Size = 8;
 input logic pick;
 
-localparam int PositionWidth = $clog2(Size);
-localparam int Latency = Size / 2 + 2;
-localparam int AgeWidth = PositionWidth + 2;
+localparam int PositionWidth = $clog2(Size), Latency = Size / 2 + 2, AgeWidth = PositionWidth + 2;
 
 logic started, active;
 logic [PositionWidth-1:0] position;

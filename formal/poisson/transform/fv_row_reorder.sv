@@ -2,9 +2,7 @@
 // fv_row_reorder: an arbitrary word leaves at its place, unchanged; a burst 2 enabled clocks behind the last word of
 // its row; frame_start with the burst of a frame's first row. Any gaps, any en, and frames that begin inside a row.
 
-parameter int Width = 1;
-parameter int Columns = 8;
-parameter int ToBurst = 1;
+parameter int Width = 1, Columns = 8, ToBurst = 1;
 input logic pick;
 
 localparam int PositionWidth = $clog2(Columns);

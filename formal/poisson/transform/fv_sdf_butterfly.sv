@@ -3,16 +3,10 @@
 // b, Delay + 2 enabled clocks behind them, turned, halved and saturated as the header says; start, frame_start and the
 // count of clipped values with it. Rounding itself is proven of td_round_saturate.
 
-parameter int Width = 2;
-parameter int Size = 8;
-parameter int Delay = 4;
-parameter int RotateBlock = 0;
-parameter int Inverse = 0;
-parameter int Halve = 0;
+parameter int Width = 2, Size = 8, Delay = 4, RotateBlock = 0, Inverse = 0, Halve = 0;
 input logic pick;
 
-localparam int PositionWidth = $clog2(Size);
-localparam int AgeWidth = $clog2(2 * Delay + 3);
+localparam int PositionWidth = $clog2(Size), AgeWidth = $clog2(2 * Delay + 3);
 
 logic started, active;
 logic [PositionWidth-1:0] position;

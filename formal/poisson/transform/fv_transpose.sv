@@ -3,10 +3,7 @@
 // clocks behind the first word of the last row, the others behind it without a pause; frame_start with the first. Any
 // gaps between bursts, any en, any frame number, and frames that begin before the last one is whole.
 
-parameter int Width = 1;
-parameter int Columns = 4;
-parameter int MakhoulIn = 0;
-parameter int MakhoulOut = 0;
+parameter int Width = 1, Columns = 4, MakhoulIn = 0, MakhoulOut = 0;
 input logic pick;
 
 localparam int IndexWidth = $clog2(Columns);

@@ -3,19 +3,12 @@
 // clocks later; start and frame_start likewise. The words are 1 or j, so that what leaves is the factor itself, and
 // every field of it is seen; the exact product is proven of td_dot_product, rounding of td_round_saturate.
 
-parameter int Size = 8;
-parameter int Block = 4;
-parameter int RealOnly = 0;
-localparam int CoeffWidth = 5;
-localparam int OutWidth = 8;
-localparam int InWidth = 2;
-localparam int Drop = 0;
+parameter int Size = 8, Block = 4, RealOnly = 0;
+localparam int CoeffWidth = 5, OutWidth = 8, InWidth = 2, Drop = 0;
 localparam File = "factors.hex";
-input logic turned;
-input logic pick;
+input logic turned, pick;
 
-localparam int PositionWidth = $clog2(Size);
-localparam int Latency = 7;
+localparam int PositionWidth = $clog2(Size), Latency = 7;
 
 assign in_re = turned ? 2'd0 : 2'd1;
 assign in_im = turned ? 2'd1 : 2'd0;

@@ -3,16 +3,9 @@
 // difference in that of b, rotated, halved and saturated as the header says; start, frame_start and the count of
 // clipped values of the beat with it. Rounding itself is proven of td_round_saturate.
 
-parameter int Width = 2;
-parameter int Paths = 4;
-parameter int Beats = 2;
-parameter int PathBit = 0;
-parameter int RotateBit = -1;
-parameter int Inverse = 0;
-parameter int Halve = 0;
+parameter int Width = 2, Paths = 4, Beats = 2, PathBit = 0, RotateBit = -1, Inverse = 0, Halve = 0;
 
-localparam int PathWidth = $clog2(Paths);
-localparam int BeatWidth = $clog2(Beats);
+localparam int PathWidth = $clog2(Paths), BeatWidth = $clog2(Beats);
 
 logic started, active;
 logic [BeatWidth-1:0] beat;
@@ -21,8 +14,7 @@ wide_timing #(.Beats(Beats), .Latency(2)) u_timing (.*);
 logic [Paths*Width-1:0] re, im;  // expected
 logic [2*Paths-1:0] clipped;
 for (genvar path = 0; path < Paths; path++) begin : g_path
-  localparam int A = path & ~(1 << PathBit);
-  localparam int B = path | (1 << PathBit);
+  localparam int A = path & ~(1 << PathBit), B = path | (1 << PathBit);
   logic signed [Width-1:0] a_re, a_im, b_re, b_im;
   logic signed [Width+1:0] turned_re, turned_im, sum_re, sum_im;
   logic rotate;

@@ -2,20 +2,14 @@
 // fv_wide_commutator: an arbitrary word of an arbitrary path leaves unchanged at its position, which has another path
 // and beat behind the core; start and frame_start Delay enabled clocks behind those that came in.
 
-parameter int Width = 1;
-parameter int Paths = 4;
-parameter int Beats = 4;
-parameter int Delay = 2;
-parameter int Up = 1;
+parameter int Width = 1, Paths = 4, Beats = 4, Delay = 2, Up = 1;
 localparam int PathWidth = $clog2(Paths);
 input logic pick;
 input logic [PathWidth-1:0] chosen;
 
-localparam int BeatWidth = $clog2(Beats);
-localparam int PositionWidth = PathWidth + BeatWidth;
+localparam int BeatWidth = $clog2(Beats), PositionWidth = PathWidth + BeatWidth;
 localparam int Low = $clog2(Delay) + (Up != 0 ? 0 : 1);  // lowest bit of the position in the path number, before
-localparam int Behind = $clog2(Delay) + (Up != 0 ? 1 : 0);
-localparam int LeftWidth = $clog2(Delay + Beats + 1);
+localparam int Behind = $clog2(Delay) + (Up != 0 ? 1 : 0), LeftWidth = $clog2(Delay + Beats + 1);
 
 logic started, active;
 logic [BeatWidth-1:0] beat;

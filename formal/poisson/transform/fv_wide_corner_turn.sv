@@ -2,18 +2,12 @@
 // fv_wide_corner_turn: an arbitrary word of an arbitrary row and path leaves unchanged at its place in its row, which
 // counts unless it is row b and row a came alone. Rows leave as in row_pair_timing.
 
-parameter int Width = 1;
-parameter int Size = 8;
-parameter int Paths = 2;
+parameter int Width = 1, Size = 8, Paths = 2;
 localparam int PathWidth = Paths > 1 ? $clog2(Paths) : 1;
-input logic pick;
-input logic row_b;
+input logic pick, row_b;
 input logic [PathWidth-1:0] chosen;
 
-localparam int Beats = Size / Paths;
-localparam int BeatWidth = $clog2(Beats);
-localparam int Latency = Beats + 4;
-localparam int SlotWidth = $clog2(2 * Paths);
+localparam int Beats = Size / Paths, BeatWidth = $clog2(Beats), Latency = Beats + 4, SlotWidth = $clog2(2 * Paths);
 
 logic started, active;
 logic [BeatWidth-1:0] beat;

@@ -4,17 +4,13 @@
 // row b negated in the real part of k, and in the imaginary part of N - k. The other words of the burst are 0. Mode 0
 // has no partner, and row b beside a row alone counts as 0. By sums this holds of every burst. Latency Beats / 2 + 2.
 
-parameter int Width = 2;
-parameter int Size = 8;
-parameter int Paths = 2;
+parameter int Width = 2, Size = 8, Paths = 2;
 input logic pick;  // free: the burst that begins is followed
 input logic [$clog2(2*Size)-1:0] where;  // free and constant: row, beat and word followed
 
-localparam int WordWidth = $clog2(2 * Paths);
-localparam int PositionWidth = $clog2(Size);
+localparam int WordWidth = $clog2(2 * Paths), PositionWidth = $clog2(Size);
 localparam int Beats = Size / Paths;  // of a burst
-localparam int BeatWidth = $clog2(Beats);
-localparam int Latency = Beats / 2 + 2;
+localparam int BeatWidth = $clog2(Beats), Latency = Beats / 2 + 2;
 
 logic started, active;
 logic [BeatWidth-1:0] beat;

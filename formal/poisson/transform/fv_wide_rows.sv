@@ -2,14 +2,10 @@
 // fv_wide_rows: an arbitrary word leaves at its place, unchanged, in a burst that begins 2 enabled clocks behind the
 // last word of its row; start and frame_start with that word. Any gaps, any en, and frames that begin inside a row.
 
-parameter int Width = 1;
-parameter int Columns = 8;
-parameter int Paths = 2;
+parameter int Width = 1, Columns = 8, Paths = 2;
 input logic pick;
 
-localparam int PositionWidth = $clog2(Columns);
-localparam int Beats = Columns / Paths;
-localparam int BeatWidth = $clog2(Beats);
+localparam int PositionWidth = $clog2(Columns), Beats = Columns / Paths, BeatWidth = $clog2(Beats);
 
 protocol_words #(.Columns(Columns)) u_protocol (
   .clk, .rst, .en, .in_valid, .in_frame_start, .out_start, .holds(allowed)

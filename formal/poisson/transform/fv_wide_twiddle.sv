@@ -3,21 +3,12 @@
 // path and beat in the ROM stands in its path, rounded and saturated; start, frame_start and the clip count of the beat
 // with it. A path of Ones has the same product as with multipliers. Rounding is proven of td_round_saturate.
 
-parameter int Paths = 2;
-parameter int Beats = 2;
-parameter int RealOnly = 0;
-parameter int Ones = 0;
-localparam int Width = 3;
-localparam int CoeffWidth = 3;
-localparam int InWidth = Width;
-localparam int OutWidth = Width;
-localparam int Drop = CoeffWidth - 1;
+parameter int Paths = 2, Beats = 2, RealOnly = 0, Ones = 0;
+localparam int Width = 3, CoeffWidth = 3, InWidth = Width, OutWidth = Width, Drop = CoeffWidth - 1;
 localparam logic [Paths-1:0] Ones = Ones[Paths-1:0];
 localparam File = "factors.hex";
 
-localparam int BeatWidth = $clog2(Beats);
-localparam int Latency = 5;
-localparam int SumWidth = Width + CoeffWidth + 1;
+localparam int BeatWidth = $clog2(Beats), Latency = 5, SumWidth = Width + CoeffWidth + 1;
 
 logic started, active;
 logic [BeatWidth-1:0] beat;
