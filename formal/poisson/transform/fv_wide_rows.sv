@@ -7,10 +7,6 @@ input logic pick;
 
 localparam int PositionWidth = $clog2(Columns), Beats = Columns / Paths, BeatWidth = $clog2(Beats);
 
-protocol_words #(.Columns(Columns)) u_protocol (
-  .clk, .rst, .en, .in_valid, .in_frame_start, .out_start, .holds(allowed)
-);
-
 // Place in the row.
 logic of_first_row, of_first_row_q, row_end;
 logic [PositionWidth-1:0] position, next_position;
