@@ -15,7 +15,7 @@ Pins = dict[str, int]
 
 WORD: Sequence[int] = ()  # a choice: any word of the width of the pin
 CLOCKS = 50_000 if RUN.full else 6_000
-RATES = (0, 0.03, 0.3, 0.7, 0.97, 1)
+RATES = (0, 0, 0.03, 0.3, 0.7, 0.97, 1, 1)
 
 
 class Episodes:
@@ -23,20 +23,22 @@ class Episodes:
 
     def __init__(self, choices: Mapping[str, Any], widths: Pins) -> None:
         self.chance, self.choices, self.widths = random.Random(cocotb.RANDOM_SEED), choices, widths
-        self.now, self.left = dict.fromkeys(choices, 0), 0
+        self.now, self.rates, self.left = dict.fromkeys(choices, 0), dict.fromkeys(choices, 0.0), 0
         self.words = [pin for pin in choices if choices[pin] is WORD]
 
     def draw(self) -> Pins:
         """Return the pins of the next clock."""
         chance = self.chance
         if not self.left:
-            self.left = chance.choice((10, 40, 150, 600))
-            calm = chance.random() < 0.4  # words stay
-            self.rates = {pin: chance.choice(RATES) for pin in self.choices}
+            calm = chance.random() < 0.4  # words stay, what is rare hardly occurs, the rest nearly always
+            self.left = chance.choice((150, 600, 1500) if calm else (10, 40, 150, 600))
             for pin, choice in self.choices.items():
-                if not isinstance(choice, float):
+                word, rates = not isinstance(choice, float), RATES
+                if word:
                     self.now[pin] = self.word(pin)
-                    self.rates[pin] *= not calm
+                if calm:
+                    rates = RATES[:1] if word else RATES[-3:] if choice > 0.5 else RATES[:3]
+                self.rates[pin] = chance.choice(rates)
         self.left -= 1
         for pin, choice in self.choices.items():
             if isinstance(choice, float):
@@ -47,9 +49,10 @@ class Episodes:
 
     def word(self, pin: str) -> int:
         """Return a value of a pin, often the first; any word is often at a limit, or one away from another pin's."""
-        chance, width, values = self.chance, self.widths[pin], self.choices[pin]
+        chance, values = self.chance, self.choices[pin]
         if values is not WORD:
             return chance.choice((values[0], chance.choice(values)))
+        width = self.widths[pin]
         other = self.now[chance.choice(self.words)]
         near = chance.choice((0, -1, 1 << chance.randrange(width), chance.getrandbits(width), other))
         return (near + chance.choice((-1, 0, 0, 1))) % (1 << width)
@@ -74,16 +77,17 @@ async def play(
         What each input may be: a float is the highest probability of a bit, a sequence the values, the usual one
         first, WORD any word.
     legal : callable
-        Changes pins into those that the state of the model allows.
+        Changes pins into those that the state of the model allows, and takes out the choices that are no pins.
     offers : sequence of str
         Streams in that keep what they offer: all pins stay until a clock with valid and ready, or rst. Their names
         stand before `_valid`, or before `valid`.
     """
     choices = {"rst": 0.01, **choices}
-    episodes = Episodes(choices, {pin: len(getattr(dut, pin)) for pin in choices})
+    driven = [pin for pin in choices if hasattr(dut, pin)]
+    episodes = Episodes(choices, {pin: len(getattr(dut, pin)) for pin in driven})
     edge, write, read = RisingEdge(dut.clk), pins.Driver(dut), pins.text_by_name(dut)
     pins.start_clock(dut.clk)
-    write(**dict.fromkeys(choices, 0) | {"rst": 1})
+    write(**dict.fromkeys(driven, 0) | {"rst": 1})
     await edge
     await edge
     kept: Pins = {}

@@ -11,11 +11,9 @@ from tactile_depth.chip.link.framing import RUN, cobs_decode, cobs_encode
 def decoded(piece: bytes) -> bytes | None:
     """Return what the model makes of a piece, None if it is bad."""
     model = CobsDecode()
-    model.clock(0)
-    data = bytes(out.byte for byte in piece if (out := model.clock(byte)).byte is not None)
-    end = model.clock(0)
-    assert end.ends == bool(piece)
-    return None if end.bad else data
+    seen = [model.clock(in_valid=1, in_data=byte) for byte in (0, *piece, 0)] + [model.clock()]
+    assert seen[-1]["out_end"] == bool(piece)
+    return None if seen[-1].get("out_bad") else bytes(out["out_data"] for out in seen if out["out_valid"])
 
 
 bytes_without_zero = st.lists(st.integers(1, 255), max_size=20).map(bytes)

@@ -3,26 +3,11 @@
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import Final
 
 from tactile_depth.chip.link.framing import LONGEST_ON_LINE, RUN
 
 LONGEST_PIECE: Final = LONGEST_ON_LINE - 2
-
-
-class Decoded(NamedTuple):
-    """Outputs of the decoder in a clock: a byte, or the end of a piece, or nothing.
-
-    Attributes
-    ----------
-    byte : int or None
-    ends, bad : bool
-        A piece ends; it is bad.
-    """
-
-    byte: int | None = None
-    ends: bool = False
-    bad: bool = False
 
 
 class CobsDecode:
@@ -32,6 +17,11 @@ class CobsDecode:
     ----------
     longest : int
         Bytes of the longest piece.
+
+    Attributes
+    ----------
+    piece : list of int or None
+        Bytes that came of it, None for a broken one; None before the first delimiter.
     """
 
     def __init__(self, longest: int = LONGEST_PIECE) -> None:
@@ -40,32 +30,30 @@ class CobsDecode:
 
     def reset(self) -> None:
         """Advance by one clock edge in reset."""
-        self._piece: list[int | None] | None = None  # its bytes, None for a broken one; None before the first delimiter
+        self.piece: list[int | None] | None = None
         self._next_code = 0  # place of the next code in the piece, broken bytes not counted
         self._place = 0
         self._zero_due = False
+        self._out = {"out_valid": 0, "out_end": 0}
 
-    def clock(self, data: int | None, broken: bool = False) -> Decoded:
-        """Advance by one clock edge and return the outputs behind it.
-
-        `data` is the byte that came, None for none; `broken` is set for a byte that could not be received.
-        """
-        if data == 0:
-            piece, inside = self._piece, self._place != self._next_code
+    def clock(self, *, rst: int = 0, in_valid: int = 0, in_data: int = 0, in_broken: int = 0) -> dict[str, int]:
+        """Advance by one clock edge; return the outputs before it, but those that do not count."""
+        out, self._out = self._out, {"out_valid": 0, "out_end": 0}
+        if rst:
             self.reset()
-            self._piece = []
-            return Decoded(ends=True, bad=inside or None in piece or len(piece) > self._longest) if piece else Decoded()
-        if self._piece is None:
-            return Decoded()
-        if broken:
-            self._piece.append(None)
-        if data is None:
-            return Decoded()
-        self._piece.append(data)
-        self._place += 1
-        if self._place <= self._next_code:
-            return Decoded(data)
-        byte = 0 if self._zero_due else None
-        self._next_code += data
-        self._zero_due = data <= RUN
-        return Decoded(byte)
+        elif in_valid and not in_data:
+            piece, inside = self.piece, self._place != self._next_code
+            self.reset()
+            self.piece = []
+            if piece:
+                self._out |= {"out_end": 1, "out_bad": inside or None in piece or len(piece) > self._longest}
+        elif self.piece is not None and (in_valid or in_broken):
+            self.piece.append(None if in_broken else in_data)
+            self._place += in_valid
+            if in_valid and self._place <= self._next_code:
+                self._out |= {"out_valid": 1, "out_data": in_data}
+            elif in_valid:
+                self._out |= {"out_valid": 1, "out_data": 0} if self._zero_due else {}
+                self._next_code += in_data
+                self._zero_due = in_data <= RUN
+        return out
