@@ -50,8 +50,7 @@ def module(core: Core) -> str:
         lines.append(f"protocol_{core.name} #({', '.join(given)}) u_protocol ({wires});")
     if {"started", "allowed"} & {*words} and not re.search(r"^logic [^;]*\b(?:started|allowed)\b", body, re.M):
         lines += ["logic allowed, started;", "assumed u_assumed (.*);"]
-        lines += (
-            [] if re.search(r"^assign allowed\b|\(allowed\)", body, re.M) else ["assign allowed = u_protocol.allowed;"]
-        )
+        if not re.search(r"^assign allowed\b|\(allowed\)", body, re.M):
+            lines.append("assign allowed = u_protocol.allowed;")
     lines += [f'`line {line} "{core.proof.relative_to(ROOT)}" 0', f"{body}endmodule", "`default_nettype wire\n"]
     return "\n".join(lines)
