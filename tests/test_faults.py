@@ -38,9 +38,9 @@ def built(name: str, choices: dict[str, Any], **runs: Any) -> Structure:
 STRUCTURES = (
     built(SMALLEST, {"columns": 16, "rows": 8, "solver": "tridiagonal", "neumann": True}, on=BOTH),
     built("spectral-16", {"columns": 16}, on=VERILATOR),
-    built("spectral-16-neumann", {"columns": 16, "neumann": True}, late=BOTH),
-    built("tridiagonal-16", {"columns": 16, "solver": "tridiagonal"}, late=BOTH),
-    built("tridiagonal-16-neumann", {"columns": 16, "solver": "tridiagonal", "neumann": True}, late=BOTH),
+    built("spectral-16-neumann", {"columns": 16, "neumann": True}),
+    built("tridiagonal-16", {"columns": 16, "solver": "tridiagonal"}),
+    built("tridiagonal-16-neumann", {"columns": 16, "solver": "tridiagonal", "neumann": True}),
 )
 STRIDE = 32
 SMALLEST_STRIDE = {"verilator": 1, "icarus": 8} if RUN.full else {"verilator": 16, "icarus": 40}
