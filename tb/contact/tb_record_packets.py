@@ -21,7 +21,7 @@ STRUCTURES = (
 PROTOCOL = {"counts": "live & ~reset", "m_event_tdata m_event_tlast": "counts & m_event_tvalid"}
 PROOFS = (
     Proof(
-        "words are sent alike; three of them to a packet",
+        "words are sent alike; as many to a packet as in use",
     ),
 )
 
