@@ -49,10 +49,148 @@ always_comb begin
 end
 
 // What makes the proof end.
-wide_corner_turn_steps #(.Width(Width), .Size(Size), .Paths(Paths)) u_steps (
-  .*, .coming_left(u_timing.u_protocol.left), .active_q(u_timing.active_q), .beat_q(u_timing.beat_q),
-  .picked(pick & active & (~following | watched))
-);
+// Steps of the proof: of each burst on its way, by the clocks since its start, where the writer and the reader of the core
+// are, and that the word followed stands in its memory until it is read. All together follow from themselves in one
+// clock, so induction ends.
+if (1) begin : g_steps
+  wire [BeatWidth:0] coming_left = u_timing.u_protocol.left;  // of the protocol: beats of the burst that are to come
+  wire [1:0] active_q = u_timing.active_q;
+  wire [1:0][BeatWidth-1:0] beat_q = u_timing.beat_q;
+  wire picked = pick & active & (~following | watched);  // the word present is followed from now on
+  localparam int Longest = 2 * Beats + 4;
+
+  function automatic logic [Longest-1:0] from_to(input int from, input int to);  // bits from .. to - 1
+    from_to = '0;
+    for (int n = 0; n < Longest; n++) from_to[n] = n >= from && n < to;
+  endfunction
+
+  // starts[n]: a burst began n + 1 enabled clocks ago; it has a row b; it is the first of a frame.
+  logic [Longest-1:0] starts, seconds, frames;
+  logic follows_b;
+  logic [PathWidth-1:0] of_path;
+  logic [BeatWidth-1:0] of_beat;
+  always_ff @(posedge clk) begin
+    if (en) begin
+      starts <= {starts[Longest-2:0], in_start};
+      seconds <= {seconds[Longest-2:0], in_start & ~in_alone};
+      frames <= {frames[Longest-2:0], in_frame_start};
+      if (picked) {follows_b, of_path, of_beat} <= {row_b, path, beat};
+    end
+    if (rst) {starts, seconds, frames} <= '0;
+  end
+
+  always_comb begin
+    if (started) begin
+      alike: assert ((starts & frames) == frames && (starts & seconds) == seconds);
+      timing_alike: assert (u_timing.start_q[Beats+3:0] == starts[Beats+3:0]
+          && u_timing.frame_start_q == frames[Beats+3:0]
+          && u_timing.second_q == seconds[Beats+Beats/2+3:0]);
+      count: assert (dut.u_write.running == (coming_left != '0) && (coming_left == '0
+          || dut.u_write.count == BeatWidth'((BeatWidth + 1)'(Beats) - coming_left)));
+      burst: assert (32'(coming_left) < Beats && (coming_left == '0) == ((starts & from_to(0, Beats - 1)) == '0));
+      late: assert (dut.active_q == active_q
+          && active_q == {(starts & from_to(1, Beats + 1)) != '0, (starts & from_to(0, Beats)) != '0});
+      if (active_q[0]) late_beat: assert (dut.position_q == beat_q[0]);
+      if (active_q[1]) words_beat: assert (dut.beat == beat_q[1]);
+      last: assert (dut.last_q == starts[Beats:Beats-1]);
+      read_starts: assert (dut.read_start == starts[Beats+1]);
+      read_runs: assert (dut.u_read.running
+          == ((starts & from_to(Beats + 2, 2 * Beats + 1)) != '0));
+      if ((starts & from_to(1, Longest)) != '0)
+        bank: assert (dut.write_bank_q == (dut.write_bank ^ starts[0]));
+      rows_begin: assert (dut.row_start_q
+          == (starts[Beats+3:Beats+2] | seconds[Beats+Beats/2+3:Beats+Beats/2+2])
+          && dut.frame_row_q == frames[Beats+3:Beats+2]);
+    end
+  end
+
+  // By the clocks since the start of a burst.
+  logic [Longest-1:0] banks;  // in which it stands
+  for (genvar n = 0; n < Longest; n++) begin : g_age
+    assign banks[n] = dut.write_bank ^ (^(starts & from_to(0, n)));
+    always_comb begin
+      if (started && starts[n]) begin
+        apart: assert ((starts & from_to(n + 1, n + Beats)) == '0);
+        if (n < Beats - 1) in_burst: assert (32'(coming_left) == Beats - 1 - n);
+        for (int i = 0; i < 2; i++) if (n >= i && n < Beats + i) assert (32'(beat_q[i]) == n - i);
+        if (n < Beats) written: assert (dut.alone_q == ~seconds[n]
+            && dut.frame_start_q == frames[n]);
+        if (n >= Beats && n < 2 * Beats) turns: assert (dut.next_alone == ~seconds[n]
+            && dut.next_frame_start == frames[n]);
+        if (n > Beats && n <= 2 * Beats) reader: assert (dut.read_alone == ~seconds[n]
+            && dut.read_frame_start == frames[n]
+            && dut.read_bank == banks[n]
+            && (n == Beats + 1 || 32'(dut.u_read.count) == n - Beats - 1));
+      end
+    end
+  end
+
+  // The word followed: when it is read, counted from the first read of its burst, and where it stands.
+  logic [31:0] of_position, of_sample, read_time, age;
+  logic second_half, in_bank;
+  logic [BeatWidth-1:0] write_beat;
+  logic [2*Paths*Width-1:0] next_out;
+  logic [Width-1:0] entry;
+  assign of_position = 32'(of_path) * Beats + 32'(of_beat);
+  assign second_half = of_position >= Size / 2;
+  assign of_sample = second_half ? 2 * (Size - 1 - of_position) + 1 : 2 * of_position;
+  assign read_time = (follows_b ? Beats / 2 : 0) + of_sample / (2 * Paths);
+  assign age = Beats + 3 + read_time - 32'(left);
+  assign write_beat = of_beat ^ {BeatWidth{second_half}};
+  assign in_bank = banks[$clog2(Longest)'(age)];
+  for (genvar w = 0; w < Paths; w++) begin : g_out
+    for (genvar half = 0; half < 2; half++) begin : g_half
+      assign next_out[(2*w+half)*Width+:Width] = dut.read[half][w*Width+:Width];
+    end
+  end
+  logic [1:0][1:0][Paths-1:0][Width-1:0] entries;  // in each half: with Paths 1 of each row, else of each memory
+  logic [PathWidth-1:0] memory;
+  assign entry = Paths == 1 ? entries[second_half][follows_b][0] : entries[second_half][0][memory];
+  if (Paths == 1) begin : g_single
+    assign memory = '0;
+    for (genvar half = 0; half < 2; half++) begin : g_entry
+      for (genvar r = 0; r < 2; r++) begin : g_row
+        assign entries[half][r] = dut.g_single.g_half[half].g_row[r].u_ram.g_distributed
+            .words[{in_bank, write_beat[BeatWidth-2:0]}];
+        for (genvar n = 2; n < Longest; n++) begin : g_age
+          for (genvar b = half * Beats / 2; b < (half + 1) * Beats / 2 && b < n - 1; b++) begin : g_beat
+            localparam logic [BeatWidth-2:0] At = (BeatWidth - 1)'(half == 0 ? b : Beats - 1 - b);
+            always_comb if (started && starts[n]) was_written: assert (dut.g_single.g_half[half]
+                .g_row[r].u_ram.u_check.written[{banks[n], At}]);
+          end
+        end
+      end
+    end
+  end else begin : g_paths
+    localparam int Turned = BeatWidth < PathWidth ? BeatWidth : PathWidth;
+    logic [PathWidth-1:0] in_half, turn;
+    assign in_half = second_half ? PathWidth'(Paths - 1) - of_path : of_path;
+    assign turn = PathWidth'(write_beat[Turned-1:0]) << (PathWidth - Turned);
+    assign memory = (in_half | (follows_b ? PathWidth'(Paths / 2) : '0)) ^ turn;
+    for (genvar half = 0; half < 2; half++) begin : g_entry
+      assign entries[half][1] = '0;
+      for (genvar w = 0; w < Paths; w++) begin : g_memory
+        assign entries[half][0][w] = dut.g_paths.g_half[half].g_memory[w].u_ram.g_distributed
+            .words[{in_bank, write_beat}];
+        for (genvar n = 2; n < Longest; n++) begin : g_age
+          for (genvar b = 0; b < Beats && b < n - 1; b++) begin : g_beat
+            localparam logic [BeatWidth-1:0] At = BeatWidth'(half == 0 ? b : Beats - 1 - b);
+            always_comb if (started && starts[n]) was_written: assert (dut.g_paths.g_half[half]
+                .g_memory[w].u_ram.u_check.written[{banks[n], At}]);
+          end
+        end
+      end
+    end
+  end
+  always_comb begin
+    if (started && following) begin
+      in_time: assert (age >= 32'(of_beat) + 2 && age < Longest && starts[$clog2(Longest)'(age)]);
+      own_slot: assert (slot == SlotWidth'(of_sample));
+      if (left >= 8'd2) stands: assert (entry == value);
+      if (left == 8'd1) was_read: assert (next_out[slot*Width+:Width] == value);
+    end
+  end
+end
 
 bind td_ram ram_check #(.Depth(Depth)) u_check (
   .clk, .write_en, .write_address, .read_en, .read_address
