@@ -46,8 +46,8 @@ A result has a fingerprint of all that it depends on. That of a proof: the RTL o
 below it, its bench and what that uses of `formal/`, PROOFS. That of mutants: the same RTL, the testbench, the protocol,
 STRUCTURES, MUTANTS, and each definition of `tb/` and of the models that these reach: a change of code that all
 testbenches use, as much of `tb/stream.py`, makes all mutants *changed*; comments, docstrings and layout change nothing.
-*Sources* compares with the day when this page was written; `make sign-off CHECK=1` compares with today's. *Few* are
-less than 100 mutants of a structure that has more. Results without a fingerprint, of before, count as changed.
+*Sources* compares with the day when this page was written, `make sign-off CHECK=1` with today. *Few* are less than 100
+mutants of a structure that has more.
 
 *Open* mutants, which no step settled in time, count as holes; [mutation.md](../mutation.md) lists some. The score is
 killed / (mutants - equivalent). The stages of [verification.md](../verification.md) follow: V2 needs a proof that
@@ -148,7 +148,9 @@ def row(core: str, results: Mapping[str, Result]) -> tuple[str, ...]:
         cells += ["-"] * 3
     proven = proof is not None and shown("proof", proof) == "hold" and "proof" not in left
     stage = ("V3" if score == 100 and "mutants" not in left else "V2") if proven else "-"
-    return *cells, ", ".join(f"{kind} {why}" for kind, why in left.items()) or "same", stage
+    whys = [f"{kind} {why}" for kind, why in left.items()]
+    both = len(left) == len(KINDS) and len({*left.values()}) == 1
+    return *cells, left["proof"] if both else ", ".join(whys) or "same", stage
 
 
 def document() -> str:
