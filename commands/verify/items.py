@@ -14,6 +14,7 @@ from tb.settings import RunSettings
 
 # A command leaves no state for the next run of pytest.
 OPTIONS = (f"--rootdir={ROOT}", *["-p", "no:cacheprovider", "--dist", "worksteal", "--no-summary", "--timeout=3600"])
+LINT = "tests/commands/test_lint.py::test_nothing_is_found"
 STATUS = {
     pytest.ExitCode.OK: variables.EQUAL,
     pytest.ExitCode.TESTS_FAILED: variables.MISMATCH,

@@ -33,7 +33,6 @@ from tb.settings import RunSettings
 
 GRIDS = (16, 128, 512)
 TOP = "tactile_depth"
-ITEMS = "tests/commands/test_lint.py::test_nothing_is_found"
 FOLDER = repository.ROOT / "build" / "lint"
 BIN = Path(sys.executable).parent
 TIMEOUT_S = 300
@@ -254,7 +253,7 @@ def checks() -> list[Check]:
 def main(cores: repository.Cores | tuple[()] = ()) -> int:
     for simulator in simulation.SIMULATORS:
         simulation.check(simulator)
-    return items.run([ITEMS], table, marks="lint", workers=2, settings=RunSettings(cores=tuple(cores)))[0]
+    return items.run([items.LINT], table, marks="lint", workers=2, settings=RunSettings(cores=tuple(cores)))[0]
 
 
 def table(outcomes: Sequence[items.Item]) -> str:
