@@ -4,14 +4,14 @@
 //
 // The specification counts the clocks since the byte was taken.
 
-parameter int Divider = 4;
+parameter int Divider = 33;
 
 logic sending;
-logic [7:0] age;   // clocks
+logic [11:0] age;  // clocks
 logic [9:0] bits;  // of the byte, the first lowest
 always_ff @(posedge clk) begin
-  age <= age + 8'd1;
-  if (age == 8'(10 * Divider - 1)) sending <= 1'b0;
+  age <= age + 12'd1;
+  if (age == 12'(10 * Divider - 1)) sending <= 1'b0;
   if (!sending) begin
     sending <= in_valid;
     age <= '0;
@@ -23,7 +23,12 @@ end
 always_comb begin
   if (started) begin
     taken_when_free: assert (in_ready == !sending);
-    bit_of_its_time: assert (line == (sending ? bits[4'(age / 8'(Divider))] : 1'b1));
-    at_once: cover (in_valid && in_ready && age == 8'(10 * Divider));
+    bit_of_its_time: assert (line == (sending ? bits[4'(age / 12'(Divider))] : 1'b1));
+    if (sending) begin  // the core counts down, the bits and their clocks
+      in_step: assert (dut.left <= 4'd10 && 32'(dut.count) < Divider
+          && 32'(age) == (11 - 32'(dut.left)) * Divider - 1 - 32'(dut.count));
+      as_shifted: assert ({dut.rest, line} == 10'({10'h3FF, bits} >> (4'd10 - dut.left)));
+    end
+    at_once: cover (in_valid && in_ready && age == 12'(10 * Divider));
   end
 end

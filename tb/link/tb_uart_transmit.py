@@ -22,10 +22,9 @@ STRUCTURES = (
 )
 REFUSED = {"Divider_must_be_at_least_2": "Divider=1"}
 PROTOCOL = {"stays": "in_", "counts": "live & ~reset"}
-PROOFS = (
-    Proof(
-        "clocks of a bit are only counted",
-    ),
+PROOFS = tuple(
+    Proof("a count of bits and of their clocks, of the size in use and of all of 8 bits", {"Divider": divider}, steps=1)
+    for divider in (33, 256)
 )
 
 
