@@ -19,7 +19,6 @@ from pathlib import Path
 
 from commands.common import repository, wrapper
 from commands.common import simulator as simulation
-from commands.hardware import fpga
 from commands.hardware import yosys as yosys_runner
 from commands.verify import items
 from tactile_depth.chip.camera.register_lists import pins, write_list
@@ -216,6 +215,8 @@ def board_sources() -> list[Path]:
 
 def wrappers_of_boards() -> list[Path]:
     """Write the wrappers that each board instantiates, without and with a camera, and return their paths."""
+    from commands.hardware import fpga  # it imports scipy, which takes as long as all checks of a core
+
     fields = [default_parameters() | {"Camera": camera} for camera in (0, 1)]
     return [
         wrapper.write(FOLDER, name, each) for name, board in fpga.BOARDS.items() if board.camera_top for each in fields

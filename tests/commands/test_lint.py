@@ -208,9 +208,8 @@ def test_a_core_is_checked_alone() -> None:
 CHECKS = lint.core_checks(RUN.cores) if RUN.cores else lint.checks()
 # For `make lint` and `make regress` alone: larger grids of a structure, cores by themselves in Yosys, which sees them
 # inside the outermost ones, and types in testbenches and tests.
-LARGER = {
-    s.name for s in lint.structures() if s.config and s.config.columns > lint.GRIDS[0] and not s.config.flat_field
-}
+DESIGNS = () if RUN.cores else lint.structures()
+LARGER = {s.name for s in DESIGNS if s.config and s.config.columns > lint.GRIDS[0] and not s.config.flat_field}
 
 
 def marks(check: lint.Check) -> list[pytest.MarkDecorator]:
