@@ -15,7 +15,8 @@ Pins = dict[str, int]
 
 WORD: Sequence[int] = ()  # a choice: any word of the width of the pin
 CLOCKS = 50_000 if RUN.full else 6_000
-RATES = (0, 0, 0.03, 0.3, 0.7, 0.97, 1, 1)
+RESET = 8  # clocks of the first one, in which all other inputs are low
+RATES: Sequence[float] = (0, 0, 0.03, 0.3, 0.7, 0.97, 1, 1)
 
 
 class Episodes:
@@ -88,8 +89,8 @@ async def play(
     edge, write, read = RisingEdge(dut.clk), pins.Driver(dut), pins.text_by_name(dut)
     pins.start_clock(dut.clk)
     write(**dict.fromkeys(driven, 0) | {"rst": 1})
-    await edge
-    await edge
+    for _ in range(RESET):
+        await edge
     kept: Pins = {}
     streams = [f"{name}_" if f"{name}_valid" in choices else name for name in offers]
     for clock in range(clocks):

@@ -7,7 +7,7 @@
 // Stream in: bytes under valid and ready, last with the last of a packet. It takes bytes until a piece is whole, then
 // sends the piece. Stream out: bytes of the line under valid and ready. Memory: the bytes of a piece. Latency: the
 // first byte is offered 1 cycle after the piece is whole; then a byte leaves in each cycle with ready.
-// Model: cobs_encode and to_line of models/tactile_depth/chip/link/framing.py.
+// Cycle-accurate model: models/tactile_depth/chip/link/cobs_encode.py.
 
 `default_nettype none
 

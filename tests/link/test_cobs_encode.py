@@ -1,25 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""cobs_encode: RTL against the framing of the host."""
+"""cobs_encode: the model against the framing of the host."""
 
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tactile_depth.chip.link.framing import RUN, cobs_encode
-from tb.link.tb_cobs_encode import cases, on_line
+from tactile_depth.chip.link.cobs_encode import CobsEncode
+from tactile_depth.chip.link.framing import DELIMITER, RUN, cobs_encode
+
+runs = st.sampled_from((0, 1, 5, RUN - 1, RUN, RUN + 1, 2 * RUN)).map(lambda length: b"\7" * length)
 
 
-@given(st.binary(min_size=1, max_size=40))
-def test_short_runs_are_those_of_cobs(packet: bytes) -> None:
-    assert on_line(packet, RUN) == b"\0" + cobs_encode(packet) + b"\0"
-    encoded, data = on_line(packet, 3)[1:-1], b""
-    assert 0 not in encoded
-    while encoded:
-        code, encoded = encoded[0], encoded[1:]
-        block, encoded = encoded[: code - 1], encoded[code - 1 :]
-        data += block + (b"" if code == 4 or not encoded else b"\0")
-    assert data == packet
-
-
-def test_the_rules_of_the_page_give_the_bytes_of_the_host() -> None:
-    for packet in cases(RUN):
-        assert on_line(packet, RUN)[1:-1] == cobs_encode(packet)
+@given(st.lists(st.one_of(runs, st.binary(max_size=9)), max_size=3).map(DELIMITER.join).filter(len))
+def test_the_line_is_that_of_the_host(packet: bytes) -> None:
+    model, line = CobsEncode(), b""
+    for place, byte in enumerate(packet):
+        model.clock(in_valid=1, in_data=byte, in_last=place == len(packet) - 1)
+        while (out := model.clock())["out_valid"]:
+            line += bytes((out["out_data"],))
+    assert line == DELIMITER + cobs_encode(packet) + DELIMITER
