@@ -5,6 +5,7 @@ The structure of the core stands in its bench (tb/structures.py).
 """
 
 import json
+import re
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -169,9 +170,12 @@ def instance(core: str, folder: Path, selector: str = SELECTOR) -> str:
 
 
 def wrapper(core: str, folder: Path, selector: str = SELECTOR) -> str:
-    """Return a module with the ports of the core around the netlist and the selecting register, if any."""
+    """Return a module with the ports of the core around the netlist and the selecting register, if any.
+
+    A port that the netlist drives has no value at power-up of its own.
+    """
     selecting = f"  logic [11:0] {selector} = 12'd0;\n" if selector else ""
-    head = header.read(repository.cores()[core].hdl).text
+    head = re.sub(r"^( *output .*\w) = [^,\n]*", r"\1", header.read(repository.cores()[core].hdl).text, flags=re.M)
     return f"{head}\n{selecting}{instance(core, folder, selector)}\nendmodule\n"
 
 
