@@ -30,8 +30,9 @@ STATES_OF_A_BOARD = 8
 QUICK_CLOCKS = 1000
 BENCHES = {core.benches[0] for core in repository.cores().values() if len(core.benches) == 1}
 SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")
-settings.register_profile("no deadline", deadline=None)  # a test of a model must not fail on a busy machine
-settings.load_profile("no deadline")
+# A test of a model must not fail on a busy machine; `make regress` tries more.
+settings.register_profile("tests", deadline=None, max_examples=100 if RUN.full else 25)
+settings.load_profile("tests")
 
 
 def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:

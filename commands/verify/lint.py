@@ -105,16 +105,31 @@ def output_of(command: Sequence[str | Path]) -> str:
     return text or (f"exit status {result.returncode}" if result.returncode else "")
 
 
+def of_files(command: Sequence[str | Path]) -> str:
+    """Return what `output_of` does for a tool that reads nothing but the files that its command names.
+
+    It runs again after a change of the files, the command or the tool, and after findings.
+    """
+    tool = Path(shutil.which(command[0]) or command[0])
+    inputs = [tool.stat().st_mtime_ns, *map(str, command)]
+    clean = FOLDER / "clean" / simulation.state(inputs, [word for word in command if isinstance(word, Path)])
+    text = "" if clean.exists() else output_of(command)
+    if not text:
+        clean.parent.mkdir(parents=True, exist_ok=True)
+        clean.touch()
+    return text
+
+
 def verilator(structure: Structure, files: Sequence[Path]) -> str:
     parameters = [f"-G{name}={value}" for name, value in structure.parameters.items()]
     options = ["--lint-only", "-Wall", "--quiet", "--top-module", structure.top, *parameters]
-    return output_of([simulation.VERILATOR, *options, repository.HDL / "verilator.vlt", *files])
+    return of_files([simulation.VERILATOR, *options, repository.HDL / "verilator.vlt", *files])
 
 
 def icarus(structure: Structure, files: Sequence[Path]) -> str:
     top = structure.top
     parameters = [f"-P{top}.{name}={value}" for name, value in structure.parameters.items()]
-    return output_of(["iverilog", "-g2012", "-Wall", "-t", "null", "-s", top, *parameters, *files])
+    return of_files(["iverilog", "-g2012", "-Wall", "-t", "null", "-s", top, *parameters, *files])
 
 
 def slang(tops: Sequence[str], parameters: dict[str, str], files: Sequence[Path]) -> str:
