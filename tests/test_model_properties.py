@@ -11,12 +11,9 @@ from scipy.fft import dctn, dstn
 from scipy.linalg import solve_banded
 
 from tactile_depth.chip import latency
-from tactile_depth.chip.common.td_axis_skid import CAPACITY, AxisSkid
 from tactile_depth.chip.common.td_rom import rom
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.threshold_comparator import ThresholdComparator
-from tactile_depth.chip.depth.frame_output import Clock, frame_output
-from tactile_depth.chip.depth.frame_tags import FrameTags
 from tactile_depth.chip.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.chip.limits import COLUMNS
 from tactile_depth.chip.poisson.back_substitution import back_substitution
@@ -352,19 +349,6 @@ def test_counters_only_grow_and_stay_at_the_top(saturations: Any, start: Any) ->
 # Streams.
 
 
-@given(st.lists(st.tuples(st.none() | WORDS, st.booleans()), max_size=60))
-def test_a_slice_neither_loses_nor_repeats_nor_reorders(clocks: Any) -> None:
-    skid, taken, left = AxisSkid(), [], []
-    for word, ready in clocks:
-        if word is not None and skid.ready:
-            taken.append(word)
-        if skid.valid and ready:
-            left.append(skid.words[0])
-        skid.clock(word, ready)
-        assert len(skid.words) <= CAPACITY
-        assert [*left, *skid.words] == taken
-
-
 HEIGHT, WIDTH = 2, 3
 GOOD = [Word(100 + i, int(i % WIDTH == WIDTH - 1), int(i == 0)) for i in range(HEIGHT * WIDTH)]
 ANY_WORD = st.builds(Word, WORDS, st.integers(0, 1), st.integers(0, 1))
@@ -383,44 +367,6 @@ def test_whatever_arrives_whole_frames_leave_and_the_next_good_one_is_right(stre
     assert not result.frames[-1].bad
     # A broken frame has one fault; the others are of words between frames.
     assert sum(frame.bad for frame in result.frames) == sum(name != "start_missing" for name in result.faults)
-
-
-@given(st.lists(st.tuples(st.booleans(), st.integers(0, 5)), max_size=5))
-def test_good_frames_leave_whole_and_in_step(frames: Any) -> None:
-    inputs, wanted = [], []
-    for index, (bad, gap) in enumerate(frames):
-        for row in range(HEIGHT):
-            for column in range(WIDTH):
-                first = row == column == 0
-                data = 10 * index + row * WIDTH + column
-                inputs.append(Clock(column == 0, first, data, first, bad and first))
-                if not bad:
-                    wanted.append((data, int(column == WIDTH - 1), int(first)))
-        inputs += [Clock(False, False, 0, False, False)] * gap
-    result = frame_output(inputs, HEIGHT, WIDTH)
-    assert result.beats == wanted
-    assert not result.out_of_step
-    assert len(result.ends) == len(frames)
-
-
-@given(st.lists(st.tuples(st.booleans(), st.booleans(), st.booleans(), st.booleans()), max_size=60))
-def test_whatever_the_solver_does_rows_end_where_they_should(clocks: Any) -> None:
-    result = frame_output([Clock(start, first, 0, due, bad) for start, first, due, bad in clocks], HEIGHT, WIDTH)
-    since = 0
-    for _, last, user in result.beats:
-        since = 0 if user else since + 1
-        assert last == (since % WIDTH == WIDTH - 1)
-        assert since < HEIGHT * WIDTH
-
-
-@given(st.lists(st.none() | WORDS, max_size=40), st.integers(1, 9))
-def test_a_tag_is_due_so_many_clocks_after_it_was_pushed(pushed: Any, delay: Any) -> None:
-    tags, due = FrameTags(delay), []
-    for tag in [*pushed, *[None] * delay]:
-        due.append(tags.due)
-        tags.clock(tag)
-    assert due == ([None] * delay + pushed)[: len(due)]
-    assert tags.held == (tags.due is not None)
 
 
 @given(st.lists(st.lists(st.integers(-50, 50), min_size=1, max_size=6), min_size=1, max_size=6), st.integers(-60, 60))

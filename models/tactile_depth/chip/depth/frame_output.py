@@ -1,60 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/depth/frame_output.sv: turns the solver's output into the beats of good frames."""
+"""Cycle-accurate model of hdl/depth/frame_output.sv."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field
-from typing import NamedTuple
 
-
-class Clock(NamedTuple):
-    """Inputs in one enabled cycle; `bad` matters only if `due` is set."""
-
-    start: bool
-    frame_start: bool
-    data: int
-    due: bool
-    bad: bool
-
-
-@dataclass
 class FrameOutput:
-    """Output and marks.
+    """Place in a frame.
 
     Attributes
     ----------
-    beats : list of tuple of int
-        Data, row_end, frame_start.
-    clocks : list of int
-        Enabled cycle of each beat, counted from 0.
-    ends : list of int
-        Enabled cycles of the last words of frames, good or bad.
-    out_of_step : list of int
-        Enabled cycles in which the start of a burst or of a frame was missing or unexpected.
+    place : int
+        Place of the next word in its frame; behind the last one until a frame is due.
+    bad : bool
+        The frame does not leave.
     """
 
-    beats: list[tuple[int, int, int]] = field(default_factory=list)
-    clocks: list[int] = field(default_factory=list)
-    ends: list[int] = field(default_factory=list)
-    out_of_step: list[int] = field(default_factory=list)
+    def __init__(self, rows: int, columns: int) -> None:
+        self.columns, self.size = columns, rows * columns
+        self.place, self.bad = self.size, False
 
-
-def frame_output(inputs: Iterable[Clock], rows: int, columns: int) -> FrameOutput:
-    """Return beats and marks for the inputs of successive enabled cycles after a reset."""
-    out, position, bad = FrameOutput(), rows * columns, False
-    for clock, word in enumerate(inputs):
-        if word.due:
-            position, bad = 0, word.bad or not word.frame_start
-        active = position < rows * columns
-        column = position % columns
-        if (word.start, word.frame_start) != (active and column == 0, word.due):
-            out.out_of_step.append(clock)
-        if active:
-            if not bad:
-                out.beats.append((word.data, int(column == columns - 1), int(word.due)))
-                out.clocks.append(clock)
-            position += 1
-            if position == rows * columns:
-                out.ends.append(clock)
-    return out
+    def clock(
+        self, *, rst: int, en: int, in_start: int, in_frame_start: int, in_data: int, in_due: int, in_bad: int
+    ) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        place, bad = (0, in_bad or not in_frame_start) if in_due else (self.place, self.bad)
+        active, column = place < self.size, place % self.columns
+        row_end, frame_end = column == self.columns - 1, place == self.size - 1
+        valid = active and not bad
+        if rst:
+            self.place = self.size
+        elif en:
+            self.place, self.bad = place + active, bad
+        return {
+            "active": active,
+            "out_of_step": in_start != (active and column == 0) or in_frame_start != in_due,
+            "out_valid": valid,
+            "out_position": active and in_due << 2 | row_end << 1 | frame_end,
+            "out_data": in_data if valid else None,
+        }
