@@ -14,22 +14,15 @@ class FrameTags:
     now: int = 0
     due_clock: dict[int, int] = field(default_factory=dict)
 
-    @property
-    def due(self) -> int | None:
-        """Tag that is due in this cycle; None without one."""
-        return self.due_clock.get(self.now)
-
-    @property
-    def held(self) -> bool:
-        return bool(self.due_clock)
-
-    def clock(self, pushed: int | None) -> None:
-        """Advance by one clock edge with en set; `pushed` is the new tag, None without one."""
-        self.due_clock.pop(self.now, None)
-        if pushed is not None:
-            self.due_clock[self.now + self.latency] = pushed
-        self.now += 1
-
-    def reset(self) -> None:
-        """Advance by one clock edge in reset."""
-        self.due_clock.clear()
+    def clock(self, *, rst: int, en: int, push: int, tag: int) -> dict[str, int]:
+        """Advance by one clock edge; return the outputs before it."""
+        due = self.due_clock.get(self.now)
+        out = {"due": due is not None, "due_tag": due or 0, "held": bool(self.due_clock)}
+        if en:
+            self.due_clock.pop(self.now, None)
+            if push:
+                self.due_clock[self.now + self.latency] = tag
+            self.now += 1
+        if rst:
+            self.due_clock.clear()
+        return out
