@@ -26,27 +26,15 @@ class AxisSkid:
     words: deque[int] = field(default_factory=deque)
     starting: bool = True
 
-    @property
-    def ready(self) -> bool:
-        return not self.starting and len(self.words) < CAPACITY
-
-    @property
-    def valid(self) -> bool:
-        return bool(self.words)
-
-    def clock(self, word: int | None, taken: bool) -> None:
-        """Advance by one clock edge.
-
-        `word` is offered on the input (None: no word); the sink takes the output if it is valid and `taken` is set.
-        """
-        offered = word if self.ready else None
-        if taken and self.words:
-            self.words.popleft()
-        if offered is not None:
-            self.words.append(offered)
-        self.starting = False
-
-    def reset(self) -> None:
-        """Advance by one clock edge in reset."""
-        self.words.clear()
-        self.starting = True
+    def clock(self, *, rst: int, s_valid: int, s_data: int, m_ready: int) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        words, ready = self.words, not self.starting and len(self.words) < CAPACITY
+        out = {"s_ready": ready, "m_valid": bool(words), "m_data": words[0] if words else None}
+        if m_ready and words:
+            words.popleft()
+        if s_valid and ready:
+            words.append(s_data)
+        self.starting = bool(rst)
+        if rst:
+            words.clear()
+        return out
