@@ -26,11 +26,11 @@ def test_a_camera_gets_its_list(name: str) -> None:
     checks = {entry.address: entry.data for entry in camera.entries if entry.kind == Kind.CHECK}
     device = SccbCamera(camera.device_id, camera.address_bytes, dict(checks))
     sio_d = 1
-    while not (core.outputs.done or core.outputs.failed):
-        core.edge(sio_d)
-        own = int(not core.outputs.sio_d_low)
-        sio_d = own & device.follow(int(core.outputs.sio_c), own & device.line)
-    assert core.outputs.done
+    while core.state not in ("done", "failed"):
+        core.clock(sio_d=sio_d)
+        sio_c, low = core.levels
+        sio_d = int(not low) & device.follow(int(sio_c), int(not low) & device.line)
+    assert core.state == "done"
     assert device.registers == checks | last_values(camera)
 
 

@@ -39,19 +39,6 @@ class Entry(NamedTuple):
         return self.kind << 24 | self.address << 8 | self.data
 
 
-class Outputs(NamedTuple):
-    """Pins of the core after a clock edge; `found` is None before anything was read."""
-
-    power_down: bool
-    reset_n: bool
-    sio_c: bool
-    sio_d_low: bool
-    done: bool
-    failed: bool
-    entry: int
-    found: int | None
-
-
 def bits_of(data: Sequence[int]) -> list[int]:
     """Return the bits of a transmission's bytes, highest first, each byte with its released ninth bit."""
     return [bit for byte in data for bit in [*(byte >> place & 1 for place in range(7, -1, -1)), 1]]
@@ -73,7 +60,7 @@ class CameraSetup:
     Attributes
     ----------
     entries : sequence of Entry
-    address_bytes, device_id, quarter_clocks, millisecond_clocks, attempts : int
+    address_bytes, device_id, quarter_clocks, millisecond_clocks, attempts, xclk_half_clocks : int
         Parameters of the core.
     state : str
         fetch, decode, wait, send, done or failed.
@@ -81,7 +68,7 @@ class CameraSetup:
         Transmission of an entry: 0 write, 1 put the address, 2 read back.
     symbols : list
         What is left of a transmission; empty between two of them.
-    clock, quarter : int
+    left, quarter : int
         Clocks left of a quarter; quarter of a symbol.
     line : list of int
         SIO_D in its two registers, the older second.
@@ -95,12 +82,13 @@ class CameraSetup:
     quarter_clocks: int = 250
     millisecond_clocks: int = 100_000
     attempts: int = 4
+    xclk_half_clocks: int = 2
     state: str = "fetch"
     entry: int = 0
     attempt: int = 0
     step: int = 0
     symbols: list[str | int] = field(default_factory=list)
-    clock: int = 0
+    left: int = 0
     quarter: int = 0
     line: list[int] = field(default_factory=lambda: [1, 1])
     caught: list[int] = field(default_factory=list)
@@ -109,14 +97,26 @@ class CameraSetup:
     reset_n: bool = False
     levels: tuple[bool, bool] = (True, False)
     found: int | None = None
+    xclk: int = 0
+    xclk_left: int = 0
 
-    @property
-    def outputs(self) -> Outputs:
-        done, failed = self.state == "done", self.state == "failed"
-        return Outputs(self.power_down, self.reset_n, *self.levels, done, failed, self.entry, self.found)
-
-    def edge(self, sio_d: int, restart: bool = False) -> None:
-        """Advance by a clock edge; `sio_d` is the level of the line before it, `restart` a reset or a restart."""
+    def clock(self, *, sio_d: int, rst: int = 0, restart: int = 0) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        out: dict[str, int | None] = {
+            "xclk": self.xclk,
+            "power_down": self.power_down,
+            "reset_n": self.reset_n,
+            **dict(zip(("sio_c", "sio_d_low"), self.levels, strict=True)),
+            "done": self.state == "done",
+            "failed": self.state == "failed",
+            "entry": self.entry,
+            "found": self.found,
+        }
+        self.xclk_left -= 1
+        if self.xclk_left < 0:
+            self.xclk, self.xclk_left = 1 - self.xclk, self.xclk_half_clocks - 1
+        if rst:
+            self.xclk, self.xclk_left = 0, 0
         sent = self._bus_edge(sio_d)
         match self.state:
             case "fetch":
@@ -129,9 +129,10 @@ class CameraSetup:
                 self.waiting -= 1
             case "send" if sent:
                 self._follow()
-        if restart:
+        if rst or restart:
             self.state, self.entry, self.attempt, self.symbols = "fetch", 0, 0, []
             self.power_down, self.reset_n = True, False
+        return out
 
     def _bus_edge(self, sio_d: int) -> bool:
         """Advance the transmission; return True as its last clock passes."""
@@ -140,10 +141,10 @@ class CameraSetup:
         self.levels = levels_of(self.symbols[0], self.quarter) if self.symbols else (True, False)
         if not self.symbols:
             return False
-        if self.clock:
-            self.clock -= 1
+        if self.left:
+            self.left -= 1
             return False
-        self.clock = self.quarter_clocks - 1
+        self.left = self.quarter_clocks - 1
         if self.quarter == 2 and self.symbols != [STOP]:
             self.caught = [*self.caught[-8:], seen]
         self.quarter = (self.quarter + 1) % 4
@@ -166,7 +167,7 @@ class CameraSetup:
         address = list(entry.address.to_bytes(2, "big"))[-self.address_bytes :]
         data = [[self.device_id, *address, entry.data], [self.device_id, *address], [self.device_id | READ, 0xFF]][step]
         self.step, self.symbols = step, [START, *bits_of(data), STOP]
-        self.clock, self.quarter = self.quarter_clocks - 1, 0
+        self.left, self.quarter = self.quarter_clocks - 1, 0
 
     def _follow(self) -> None:
         """Go on after a transmission."""
