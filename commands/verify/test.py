@@ -19,6 +19,7 @@ from tb.settings import RunSettings
 OPTIONS = ("--dist", "worksteal", "-p", "no:benchmark")
 REPORTS = ("--junitxml=build/junit.xml", "--override-ini=junit_family=xunit1", "--durations=10", "--durations-min=20")
 WIDE = {"COLUMNS": "200"}  # so that the summary shows the whole message
+KEPT = {"PYTHONDONTWRITEBYTECODE": ""}  # or each process would rewrite the assertions of all tests again
 WORKERS = str(len(os.sched_getaffinity(0)) + 1)  # one more than cores, because tests of lines and signals wait
 WITH_LINT = "not regress and not codes and not netlist"
 
@@ -49,7 +50,7 @@ def settings(cores: Sequence[str]) -> dict[str, str]:
 
 def all_succeed(processes: Sequence[Sequence[str]], environment: Mapping[str, str]) -> bool:
     """Run processes one after the other up to the first failure, and return whether all of them succeeded."""
-    everything = {**os.environ, **WIDE, **environment}
+    everything = {**os.environ, **WIDE, **KEPT, **environment}
     return all(
         subprocess.run(process, cwd=repository.ROOT, env=everything, check=False).returncode == 0
         for process in processes
