@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""packet_decode against unpack: every kind, lengths about the limits, fields, stalls, resets."""
+"""packet_decode in every clock, against unpack."""
 
-import random
+from functools import cache
+from itertools import product
 from typing import Any
 
 import cocotb
-from cocotb.triggers import ClockCycles, RisingEdge
 
 from formal.entries import Proof
-from tactile_depth.chip.link.framing import LONGEST_BODY
-from tactile_depth.chip.link.packets import SELECT, TO_DEVICE, Ask, Kind, Picture, Read, Select, Write, unpack
-from tb.axis import profile
-from tb.cases import on_bench
-from tb.pins import Driver, by_name
-from tb.stream import parametrize, start_clock
+from tactile_depth.chip.link.packets import TO_DEVICE, Kind, Select, unpack
+from tb.lockstep import CLOCKS, WORD, Pins, play
 from tb.structures import BOTH, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=BOTH),)
@@ -25,173 +21,97 @@ PROOFS = (
 )
 
 
-LENGTHS = {  # of kind and fields: about the limits, and near each power of two
-    Kind.ASK: (1, 2, 3),
-    Kind.SELECT: (1, 2, 3, 4, 6),
-    Kind.READ: (1, 2, 3, 4, 5, 6, 7, 10, 18, 34, 66, 130, 257, 258, 259, 260),
-    Kind.WRITE: (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 20, 32, 68, 134, 260, 518, 770, 772, 773, 774, 775, 776),
-    Kind.PICTURE: (1, 2, 8, 9, 10, 11, 12, 13, 14, 15, 18, 33, 66, 129, 258, 513, 777, 778, 779, 780),
-}
-OTHERS = tuple(kind for kind in range(256) if kind not in TO_DEVICE)
-SOURCE = ("in_valid", "in_data", "in_last", "in_length", "in_length_mod3")
-Event = tuple[Any, ...]
+LIMITS = (  # lengths at the limits of the kinds, and near each power of two
+    *(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 18, 20, 32, 33, 34, 66, 68, 129, 130, 134),
+    *(257, 258, 259, 260, 513, 518, 770, 772, 773, 774, 775, 776, 777, 778, 779, 780),
+)
+SHORTEST = (1, 3, 4, 8, 12)  # good length of each kind to the device
+SENDS = (Kind.READ, Kind.WRITE, Kind.PICTURE)
 
 
-def expected(body: bytes) -> Event:
-    """Return what a packet to the device causes, none for an unknown one.
-
-    With `bad`, the second entry is set if its fields show it; otherwise kind and length do.
-    """
-    if body[0] not in TO_DEVICE:
-        return ()
-    packet = unpack(body)
-    match packet:
-        case Ask():
-            return ("ask",)
-        case Select():
-            return "select", int(packet.depth_format), packet.shift
-        case Read() | Write():
-            return "request", int(isinstance(packet, Write)), body[1:]
-        case Picture():
-            return "picture", body[1:]
-    return "bad", body[0] == Kind.SELECT and len(body) == SELECT.size
+@cache
+def judge(kind: int, length: int) -> str:
+    """Return what a packet is by kind and length: unknown, wrong, or good."""
+    if kind not in TO_DEVICE:
+        return "unknown"
+    return "wrong" if unpack(bytes((kind, *bytes(length - 1)))) is None else "good"
 
 
-class Bench:
-    """Source of packets as packet_store is one, both sinks, and a check of every output in every clock.
+class Decode:
+    """The packet whose bytes come: how many were taken, its length, and those that were taken of a select."""
 
-    Attributes
-    ----------
-    seen : set of str
-        What happened.
-    """
+    def __init__(self) -> None:
+        self.reset()
 
-    def __init__(self, dut: Any, offers: str, accepts: str, resets: float) -> None:
-        self.dut, self.resets = dut, resets
-        self.drive, self.read = Driver(dut), by_name(dut)
-        self.random = random.Random(cocotb.RANDOM_SEED)
-        self.offers, self.request, self.picture = profile(offers), profile(accepts, 1), profile(accepts, 2)
-        self.pulse: Event = ()  # due in this clock
-        self.judged = False  # the kind was offered in the clock before
-        self.seen: set[str] = set()
+    def reset(self) -> None:
+        self.kind = self.place = self.length = 0
+        self.judged = False
+        self.fields = b""
+        self.pulse = {"bad": 0, "ask": 0, "select": 0}
 
-    async def start(self) -> None:
-        """Start the clock and reset."""
-        dut = self.dut
-        self.drive(rst=1, **dict.fromkeys((*SOURCE, "request_ready", "picture_ready"), 0))
-        start_clock(dut.clk)
-        self.edge = RisingEdge(dut.clk)
-        await ClockCycles(dut.clk, 3)
-
-    async def clock(self, word: tuple[int, ...] | None, event: Event, place: int) -> tuple[bool, bool]:
-        """Offer a byte, or none; return whether it was taken, and whether the clock was in a reset.
-
-        `event` is what its packet causes, `place` that of the byte in the packet.
-        """
-        read, reset = self.read, self.random.random() < self.resets
-        ready = {"request": int(next(self.request)), "picture": int(next(self.picture))}
-        offered = word or [self.random.randint(0, 1) for _ in SOURCE[1:]]
-        self.drive(rst=reset, **dict(zip(SOURCE, (word is not None, *offered), strict=True)))
-        self.drive(**{f"{name}_ready": value for name, value in ready.items()})
-        await self.edge
-        self.check_pulses()
-        kind = event[0] if event else ""
-        for name in ready:
-            valid = read(f"{name}_valid")
-            assert valid == int(word is not None and kind == name and place > 0), f"{name}_valid at byte {place}"
-            if valid and word is not None:
-                assert read(f"{name}_data") == word[0], f"{name}_data at byte {place}"
-                assert read(f"{name}_last") == word[1], f"{name}_last at byte {place}"
-                assert name == "picture" or read("request_write") == event[1]
-        judged, self.judged = self.judged, word is not None and place == 0 and not self.judged and not reset
-        if word is None:
-            self.pulse = ()
-            return False, reset
-        taken = int(judged) if place == 0 else ready.get(kind, 1)
-        last = bool(word[1])
-        selects = event[0] == "select" if event else False
-        drops = place == 0 and not (kind in ("select", *ready) or (kind == "bad" and event[1]))
-        assert read("in_ready") == taken, f"in_ready at byte {place}"
-        assert not taken or read("in_drop") == drops, f"in_drop at byte {place}"
-        due = taken and (drops or (last and (selects or kind == "bad")))
-        self.pulse = event if due and not reset else ()
-        return bool(taken), reset
-
-    def check_pulses(self) -> None:
-        """Compare the pulses with the one that is due."""
-        due = self.pulse[0] if self.pulse else ""
-        for name in ("bad", "ask", "select"):
-            assert self.read(name) == (name == due), f"{name}: due is {due or 'nothing'}"
-        if due == "select":
-            assert (self.read("select_format"), self.read("select_shift")) == self.pulse[1:]
-
-    async def send(self, body: bytes) -> None:
-        """Send a packet up to the byte with which the rest is dropped, or to a reset."""
-        event = expected(body)
-        for place, byte in enumerate(body):
-            word = (byte, int(place == len(body) - 1), len(body), len(body) % 3)
-            while not next(self.offers):
-                if (await self.clock(None, event, place))[1]:
-                    return
-            taken = False
-            while not taken:
-                taken, reset = await self.clock(word, event, place)
-                if reset:
-                    return
-            if self.read("in_drop"):
-                break
-        self.seen.add(event[0] if event else "unknown")
-
-    async def finish(self) -> None:
-        """Check the pulse of the last packet."""
-        for _ in range(3):
-            await self.clock(None, (), 0)
+    def clock(self, *, rst: int, in_valid: int, in_data: int, in_last: int, in_length: int, **ready: int) -> Pins:
+        """Advance by one clock edge; return the outputs before it, but those that do not count."""
+        kind = self.kind
+        out = self.pulse | {"request_valid": 0, "picture_valid": 0}
+        self.pulse = {"bad": 0, "ask": 0, "select": 0}
+        if kind in SENDS and in_valid:
+            name = "picture" if kind == Kind.PICTURE else "request"
+            out |= {f"{name}_valid": 1, f"{name}_data": in_data, f"{name}_last": in_last}
+            out |= {"request_write": kind == Kind.WRITE} if name == "request" else {}
+            taken = ready[f"{name}_ready"]
+        else:
+            taken = in_valid and (self.judged or bool(kind))
+        self.judged = bool(in_valid and not kind and not self.judged)
+        drops = 0
+        if taken and not kind:
+            verdict = judge(in_data, in_length)
+            drops = verdict != "good" or in_data == Kind.ASK
+            self.pulse |= {"bad": verdict == "wrong", "ask": bool(verdict == "good" and drops)}
+            self.kind, self.length, self.fields = in_data, in_length, b""
+        elif taken and kind == Kind.SELECT:
+            self.fields += bytes((in_data,))
+            if in_last:
+                select = unpack(bytes((kind, *self.fields)))
+                self.pulse["bad" if select is None else "select"] = 1
+                if isinstance(select, Select):
+                    self.pulse |= {"select_format": select.depth_format, "select_shift": select.shift}
+        if in_valid:
+            out["in_ready"] = taken
+        if taken:
+            out |= {} if rst else {"in_drop": drops}
+            self.place += 1
+            if drops or in_last:
+                self.kind = self.place = 0
+        if rst:
+            self.reset()
+        return out
 
 
-def body(kind: int, length: int, chance: random.Random) -> bytes:
-    """Return a packet with random fields; those of a select are good."""
-    if kind == Kind.SELECT:
-        return bytes((kind, chance.randrange(4), chance.randrange(17), *chance.randbytes(length)))[:length]
-    return bytes((kind, *chance.randbytes(length - 1)))
+def legal(model: Decode, pins: Pins) -> None:
+    """Offer packets as packet_store does; one begins where no kind waits to be judged."""
+    packet: Any = pins.pop("packet")
+    if not pins["in_valid"]:
+        return
+    if model.place:
+        pins["in_length"] = model.length
+    elif not model.judged:
+        pins["in_data"], pins["in_length"] = packet
+    pins["in_last"] = model.place == pins["in_length"] - 1
+    pins["in_length_mod3"] = pins["in_length"] % 3
 
 
-@on_bench(Bench, resets=0.0)
-@parametrize(offers=["none", "random"], accepts=["none", "random"])
-async def lengths(bench: Bench) -> None:
-    """Give packets of every kind, with lengths about the limits, in any order."""
-    packets = [body(kind, length, bench.random) for kind, some in LENGTHS.items() for length in some]
-    packets += [body(kind, bench.random.choice([1, 3, 8, 10, 12]), bench.random) for kind in OTHERS]
-    bench.random.shuffle(packets)
-    for packet in packets:
-        await bench.send(packet)
-    assert bench.seen == {"ask", "select", "request", "picture", "bad", "unknown"}, "the test is void"
-
-
-@on_bench(Bench, offers="none", accepts="none", resets=0.0)
-async def wrong_lengths(bench: Bench) -> None:
-    """Give packets of each kind with every length that it cannot have."""
-    for kind in TO_DEVICE:
-        for length in range(1, LONGEST_BODY + 1):
-            packet = body(kind, length, bench.random)
-            if expected(packet) == ("bad", False):
-                await bench.send(packet)
-    assert bench.seen == {"bad"}
-
-
-@on_bench(Bench, offers="none", accepts="none", resets=0.0)
-async def selects(bench: Bench) -> None:
-    """Give selects with each format, and each bit of both fields."""
-    fields = {*range(20), *(1 << bit for bit in range(8)), 31, 255}
-    for field in sorted(fields):
-        for packet in ((Kind.SELECT, field, 16), (Kind.SELECT, 1, field), (Kind.SELECT, 3 - field % 4, field)):
-            await bench.send(bytes(packet))
-
-
-@on_bench(Bench, offers="random", accepts="random", resets=0.02)
-async def reset(bench: Bench) -> None:
-    """Reset at any time: the next packet begins with its kind."""
-    for _ in range(300):
-        kind = bench.random.choice(TO_DEVICE)
-        await bench.send(
-            body(kind, bench.random.choice([length for length in LENGTHS[kind] if length < 20]), bench.random)
-        )
+@cocotb.test()
+async def packets(dut: Any) -> None:
+    shortest = dict(zip(TO_DEVICE, SHORTEST, strict=True))
+    odd = [(kind ^ (1 << bit), length) for kind, length in shortest.items() for bit in range(8)]
+    choices = {
+        "packet": [(Kind.SELECT, 3), *20 * [*shortest.items()], *3 * [*product(TO_DEVICE, LIMITS)], *3 * odd],
+        "in_valid": 1.0,
+        "in_data": [1, *4 * [*range(20)], *range(256)],
+        "in_length": WORD,
+        "in_last": 1.0,
+        "in_length_mod3": WORD,
+        "request_ready": 1.0,
+        "picture_ready": 1.0,
+    }
+    await play(dut, Decode(), choices, legal, offers=["in"], clocks=4 * CLOCKS)
