@@ -30,7 +30,7 @@ class FrameOutput:
         if rst:
             self.place = self.size
         elif en:
-            self.place, self.bad = place + active, bad
+            self.place, self.bad = place + active, bool(bad)
         return {
             "active": active,
             "out_of_step": in_start != (active and column == 0) or in_frame_start != in_due,
