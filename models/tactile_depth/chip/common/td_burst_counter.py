@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/common/td_burst_counter.sv."""
+"""Cycle-accurate model of hdl/common/td_burst_counter.sv."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 
+class BurstCounter:
+    """Position of the next word of a burst of `words`, None behind the last one."""
 
-def burst_counter(starts: Iterable[bool], size: int) -> list[int | None]:
-    """Return the position of the word in each cycle, None without a word; a start within a burst restarts at 0."""
-    positions: list[int | None] = []
-    position: int | None = None
-    for start in starts:
-        running = position is not None and position < size - 1
-        position = 0 if start else position + 1 if running and position is not None else None
-        positions.append(position)
-    return positions
+    def __init__(self, words: int) -> None:
+        self.words = words
+        self.next: int | None = None
+
+    def clock(self, *, rst: int, en: int, start: int) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        position = 0 if start else self.next
+        if en:
+            self.next = None if position in (None, self.words - 1) else position + 1
+        if rst:
+            self.next = None
+        return {"position": position, "active": position is not None}
