@@ -2,14 +2,16 @@
 """Bus of the tables at a core with a td_table_port, as table_access drives it; other tables are accessed meanwhile."""
 
 import random
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import cocotb
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.chip.common.td_table_port import WORD_BITS, answered
+from tactile_depth.chip.common.td_banked_table import BankedTable
+from tactile_depth.chip.common.td_table_port import INDEX_BITS, WORD_BITS, answered
 from tb import pins, structs
+from tb.lockstep import Pins
 
 TO_TABLE = 1  # cycles from an access on the bus to the table
 READ_CLOCKS = 3  # cycles from a read on the bus to the entry
@@ -19,6 +21,30 @@ def signed(word: int, width: int) -> int:
     """Return the lower `width` bits of a word, signed."""
     word &= (1 << width) - 1
     return word - (word >> width - 1 << width)
+
+
+def at_power_up(words: Sequence[int]) -> Sequence[int | None]:
+    """Return the words of a memory behind the first edge: pins of Verilator are random at first, and may write one."""
+    return [None if cocotb.SIM_NAME == "Verilator" else word for word in words]
+
+
+def choices(select: int) -> dict[str, Any]:
+    """Return the choices for a bus on which the table `select` is named more often than the others; see `pack`."""
+    words = dict.fromkeys(("table_high", "table_low"), range(1 << WORD_BITS))
+    members = {"table_write": 1.0, "table_read": 1.0, "table_select": (select, *range(4))}
+    return {"table_command": (0,), **members, "table_index": range(1 << INDEX_BITS), **words}
+
+
+def pack(pins: Pins) -> None:
+    """Put the members of the bus into its pin."""
+    names = [name for name in pins if name.startswith("table_") and name not in ("table_command", "table_bank")]
+    members = {name.removeprefix("table_"): pins.pop(name) for name in names}
+    pins["table_command"] = structs.pack("table_command_t", members)
+
+
+def change_over(table: BankedTable, pins: Pins, writes: bool) -> None:
+    """Let table_bank change with `commit`, if no change-over is due and nothing is written now."""
+    pins["table_bank"] = table.wanted ^ (pins.pop("commit") and table.settled(table.wanted) and not writes)
 
 
 class TableBus:
@@ -62,9 +88,9 @@ class TableBus:
     def check(self, index: int, *words: int) -> None:
         """Compare the answer with the words of an entry, lower word first."""
         entry = sum((int(word) & (1 << self.width) - 1) << place * self.width for place, word in enumerate(words))
-        got = structs.of(self.dut.table_answer, "table_answer_t")
+        got = pins.unsigned(self.dut.table_answer)()
         want = answered(entry, self.width, self.words, self.signed)
-        assert got == want, f"entry {index} reads {got}, not {want}"
+        assert got == want, f"entry {index} reads {got:#x}, not {want:#x}"
 
     def step(self) -> Mapping[str, int] | None:
         """Return the access that reaches the table in the cycle that a clock edge ends, None if there is none.
