@@ -1,43 +1,54 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/common/td_banked_table.sv, frame by frame."""
+"""Cycle-accurate model of hdl/common/td_banked_table.sv."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from typing import Any
 
-import numpy as np
 
-
-@dataclass
 class BankedTable:
-    """Two banks of a table, (2, entries, ..): frames use one, software accesses the other.
+    """Two banks of words: frames read one; the other is written and read by others.
 
-    Raises
-    ------
-    ValueError
-        An entry is written while a change-over is due; the next frame could use a half-written table.
+    Attributes
+    ----------
+    banks : list of list of int
+        Words, None where one is not known.
+    in_use : int
+        Bank that frames read.
+    named : int
+        Bank of a frame that has begun and does not read yet; None without one.
+    wanted : int
+        Bank that software wants, in the clock before.
+    word, free_word : int
+        Words that were read; None where none counts.
     """
 
-    words: np.ndarray
-    in_use: int = 0
-    wanted: int = 0
+    def __init__(self, words: Sequence[int | None]) -> None:
+        self.banks = [[*words], [*words]]
+        self.in_use = self.wanted = 0
+        self.named: int | None = None
+        self.word: int | None = None
+        self.free_word: int | None = None
 
-    @classmethod
-    def of(cls, words: np.ndarray) -> BankedTable:
-        """Return two banks with the same contents, as at power-up."""
-        return cls(np.stack((words, words)))
+    def settled(self, wanted: int) -> bool:
+        """Return whether no change-over is due."""
+        return wanted == self.in_use and self.named in (None, wanted)
 
-    @property
-    def free(self) -> np.ndarray:
-        """Bank that software writes and reads."""
-        return self.words[1 - self.in_use]
-
-    def write(self, index: int, word: np.ndarray | tuple[int, ...] | int) -> None:
-        if self.wanted != self.in_use:
-            raise ValueError(f"entry {index} is written while a change-over is due")
-        self.free[index] = word
-
-    def begin_frame(self) -> np.ndarray:
-        """Change over if requested, at the start of a frame or at a reset; return the bank in use."""
-        self.in_use = self.wanted
-        return self.words[self.in_use]
+    def clock(self, **pins: Any) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        out = {"table_in_use": self.in_use, "read_word": self.word, "free_word": self.free_word}
+        free = self.banks[1 - self.in_use]
+        if pins["en"]:
+            if pins["change"] and self.named is not None:
+                self.in_use, self.named = self.named, None
+            if pins["frame_start"]:
+                self.named = pins["table_bank"]
+            self.word = self.banks[self.in_use][pins["read_address"]] if pins["read"] else None
+        self.free_word = self.banks[1 - self.in_use][pins["free_read_address"]] if pins["free_read"] else None
+        if pins["free_write"]:
+            free[pins["free_write_address"]] = pins["free_write_word"]
+        self.wanted = pins["table_bank"]
+        if pins["rst"]:
+            self.in_use, self.named, self.word, self.free_word = self.wanted, None, None, None
+        return out
