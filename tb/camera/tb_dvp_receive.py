@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""dvp_receive against tactile_depth.chip.camera.dvp_receive, at every edge of both clocks: ratios, stalls, resets."""
+"""dvp_receive against its model at every edge of both clocks: anything at the pins, at many ratios of the clocks."""
 
 import itertools
 import random
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Any
 
 import cocotb
@@ -13,9 +13,9 @@ from cocotb.triggers import ClockCycles, RisingEdge
 from formal.entries import Proof
 from tactile_depth.chip.camera.dvp_receive import IDLE, Beat, DvpReceive, Pins, camera_pins
 from tactile_depth.chip.common.td_async_fifo import AsyncFifo
-from tb.axis import AxisMonitor, AxisSink, profile
+from tb.axis import AxisSink
 from tb.pins import Driver
-from tb.stream import REGRESS, parameters, parametrize, sample
+from tb.stream import REGRESS, parameters, parametrize
 from tb.structures import BOTH, ICARUS, of_parameters
 from tb.two_clocks import RATIOS, run_clock, watch
 
@@ -35,8 +35,6 @@ PROOFS = (
 
 
 ROWS, BYTES = 3, 12
-NEARLY = ("equal", "half", "a_bit_slow", "a_bit_fast", "three_to_2")  # so near that the queue takes a frame's backlog
-FAST_ENOUGH = ("equal", "half", "a_bit_fast", "three_to_2", "camera_24", "far_faster")  # clk as fast as pclk
 CAMERA = ("vsync", "href", "data")
 SYSTEM = ("rst", "m_axis_tready", "m_axis_tvalid", "m_axis_tdata", "m_axis_tlast", "m_axis_tuser", "frames_lost")
 
@@ -48,7 +46,6 @@ class Bench:
         self.dut, self.drive = dut, Driver(dut)
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.events: list[Any] = []
-        self.lost: list[int] = []
 
     async def start(self, ratio: str, accepts: Iterable[bool]) -> None:
         """Start the clocks, empty the queue, and reset."""
@@ -63,7 +60,6 @@ class Bench:
         self.model = DvpReceive(AsyncFifo(1 << fifo_log2))
         cocotb.start_soon(watch(dut.pclk, [getattr(dut, pin) for pin in CAMERA], self.events, "camera"))
         cocotb.start_soon(watch(dut.clk, [getattr(dut, pin) for pin in SYSTEM], self.events, "system"))
-        self.out = AxisMonitor(dut, "m_axis", ("data", "last", "user"), prefix="t")
         self.sink.stall(accepts)
         dut.rst.value = 0
         await RisingEdge(dut.clk)
@@ -112,122 +108,40 @@ class Bench:
                     beat_at_pins = Beat(int(at["m_axis_tdata"]), *flags)
                 assert beat_at_pins == model.beat, f"at {time} ps"
                 assert int(at["frames_lost"]) == model.frames_lost, f"frames_lost at {time} ps"
-                self.lost += [model.frames_lost] * (model.frames_lost > 0)
             sampled = Pins(bool(camera["vsync"]), bool(camera["href"]), int(camera["data"])) if camera else None
             model.edges(sampled, sink)
 
-    def frames(self, count: int) -> np.ndarray:
-        """Return random pictures (count, ROWS, BYTES) of bytes."""
-        return np.frombuffer(self.random.randbytes(count * ROWS * BYTES), np.uint8).reshape(count, ROWS, BYTES)
 
-
-def beats(frame: np.ndarray) -> list[tuple[int, int, int]]:
-    """Return the beats of a whole frame."""
-    ends = np.arange(frame.size) % BYTES == BYTES - 1
-    return [(byte, int(end), int(index == 0)) for index, (byte, end) in enumerate(zip(frame.flat, ends, strict=True))]
-
-
-def stalls(first: int, length: int) -> Iterator[bool]:
-    """Yield the ready of a sink that stalls once, for `length` cycles after `first` cycles."""
-    return itertools.chain([True] * first, [False] * length, itertools.repeat(True))
-
-
-@cocotb.test(timeout_time=2, timeout_unit="ms")
-@parametrize(ratio=list(RATIOS), accepts=sample(["none", "one_in_4", "random"]))
-async def whole_frames(dut: Any, ratio: str, accepts: str) -> None:
-    """Send frames: every byte arrives if the sink is fast enough; otherwise frames are whole, or cut short and
-    counted."""
-    bench = Bench(dut)
-    await bench.start(ratio, profile(accepts))
-    frames = bench.frames(4)
-    for frame in frames:
-        await bench.play(camera_pins(frame, 3, 40))
-    await bench.end()
-    if accepts == "none" and ratio in FAST_ENOUGH:
-        assert bench.out.words == [beat for frame in frames for beat in beats(frame)]
-        assert not bench.lost
-
-
-@cocotb.test(timeout_time=2, timeout_unit="ms")
-@parametrize(ratio=sample(list(NEARLY)))
-async def frames_lost(dut: Any, ratio: str) -> None:
-    """Stall anywhere in a frame: only that frame is lost, it is counted once, and only its beginning leaves."""
-    fifo_depth = 1 << parameters(dut, "FifoLog2")[0]
-    pclk, clk = RATIOS[ratio]
-    frame_clocks = (2 + 40 + ROWS * (BYTES + 3)) * pclk // clk
-    bench = Bench(dut)
-    await bench.start(ratio, itertools.repeat(True))
-    steps = range(0, frame_clocks, 1 if REGRESS else 15)
-    for first in steps:
-        frames = bench.frames(3)
-        before, lost, after = (beats(frame) for frame in frames)
-        bench.out.forget()
-        await bench.play(camera_pins(frames[0], 3, 40))
-        bench.sink.stall(stalls(first, (fifo_depth + 4 * BYTES) * pclk // clk))
-        await bench.play(camera_pins(frames[1], 3, 40))
-        await bench.play([IDLE] * 90)
-        await bench.play(camera_pins(frames[2], 3, 40))
-        await bench.play([IDLE] * 40)
-        kept = bench.out.words[len(before) : len(bench.out.words) - len(after)]
-        assert bench.out.words == [*before, *lost[: len(kept)], *after], f"stalled after {first} clocks"
-    await bench.end()
-    assert 0 < len(bench.lost) <= len(steps)
-    assert set(bench.lost) == {1}
-
-
-@cocotb.test(timeout_time=2, timeout_unit="ms")
-@parametrize(ratio=sample(["equal", "half", "camera_24", "twice"]))
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+@parametrize(ratio=list(RATIOS))
 async def anything(dut: Any, ratio: str) -> None:
-    """Drive the pins at random, with vsync inside a row and for one cycle too; the sink stalls at random."""
+    """Play frames, more of them than are counted while the sink stalls, and pins at random; reset at any time."""
     bench = Bench(dut)
     chance = bench.random
-    runs = (([True] * chance.randint(1, 60)) + [False] * chance.randint(1, 40) for _ in itertools.repeat(None))
+    runs = (
+        [True] * chance.choice((1, 60, 400)) + [False] * chance.choice((1, 40, 400)) for _ in itertools.repeat(None)
+    )
     await bench.start(ratio, itertools.chain.from_iterable(runs))
-    for _ in range(150 if REGRESS else 60):
-        vsync = [Pins(True, chance.random() < 0.2, chance.getrandbits(8)) for _ in range(chance.choice((0, 1, 2, 6)))]
-        await bench.play(vsync)
-        for _ in range(chance.randint(0, 3)):
-            href = [Pins(False, True, chance.getrandbits(8)) for _ in range(chance.choice((1, 2, 9, 20)))]
-            await bench.play([*[Pins(False, False, 255)] * chance.randint(0, 4), *href])
-    await bench.end()
-
-
-@cocotb.test(timeout_time=2, timeout_unit="ms")
-@parametrize(count=[2, 5, 254, 255, 300])
-async def many_lost(dut: Any, count: int) -> None:
-    """Send frames that the sink never takes, and count them up to 255."""
-    bench = Bench(dut)
-    await bench.start("equal", itertools.repeat(True))
-    frames = bench.frames(2)
+    empty = [Pins(True, False, 0), IDLE, Pins(False, True, 1), IDLE]
+    for _ in range(60 if REGRESS else 20):
+        picture = np.frombuffer(chance.randbytes(ROWS * BYTES), np.uint8).reshape(ROWS, BYTES)
+        match chance.randrange(3):
+            case 0:
+                await bench.play(camera_pins(picture, 3, chance.choice((4, 40))))
+            case 1:
+                await bench.play(empty * chance.choice((1, 3)))
+            case 2:
+                vsync = [Pins(True, chance.random() < 0.2, chance.getrandbits(8))] * chance.choice((0, 1, 2, 6))
+                href = [Pins(False, True, chance.getrandbits(8)) for _ in range(chance.choice((1, 2, 9, 20)))]
+                await bench.play([*vsync, *[Pins(False, False, 255)] * chance.randint(0, 4), *href])
+        if chance.random() < 0.1:
+            dut.rst.value = 1
+            await ClockCycles(dut.clk, chance.choice((1, 2, 5)))
+            dut.rst.value = 0
     bench.sink.stall(itertools.repeat(False))
-    await bench.play(camera_pins(frames[0], 3, 4))
-    for _ in range(count - 1):
-        await bench.play([Pins(True, False, 0), IDLE, Pins(False, True, 1), IDLE])
+    await bench.play(camera_pins(picture, 3, 4))
+    await bench.play(empty * 300)
     bench.sink.stall(itertools.repeat(True))
     await bench.play([IDLE] * 40)
-    await bench.play(camera_pins(frames[1], 3, 4))
-    await bench.end()
-    assert bench.lost == [min(count, 255)]
-    assert bench.out.words[-frames[1].size :] == beats(frames[1])
-
-
-@cocotb.test(timeout_time=2, timeout_unit="ms")
-@parametrize(clocks=[1, 2, 5])
-async def resets(dut: Any, clocks: int) -> None:
-    """Reset at any time in a frame: nothing of it leaves afterwards, and the next frame is whole."""
-    bench = Bench(dut)
-    await bench.start("equal", itertools.repeat(True))
-    for phase in range(0, 90, 3 if REGRESS else 11):
-        frames = bench.frames(2)
-        playing = cocotb.start_soon(bench.play(camera_pins(frames[0], 3, 20)))
-        await ClockCycles(dut.clk, phase)
-        dut.rst.value = 1
-        await ClockCycles(dut.clk, clocks)
-        dut.rst.value = 0
-        await playing
-        await bench.play([IDLE] * 30)
-        bench.out.forget()
-        await bench.play(camera_pins(frames[1], 3, 20))
-        await bench.play([IDLE] * 30)
-        assert bench.out.words == beats(frames[1]), f"reset after {phase} clocks"
+    await bench.play(camera_pins(picture, 3, 4))
     await bench.end()
