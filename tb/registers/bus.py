@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Choices of the pins of AXI4-Lite, and of those between axil_port and a core of registers, for benches in lockstep."""
 
+import random
 from typing import Any
+
+import cocotb
 
 from tactile_depth.chip.registers.axil_port import strobed_bits
 from tactile_depth.chip.registers.register_map import CAMERA_REGISTERS, REGISTERS
@@ -20,14 +23,22 @@ PINS = {
 """Choices of the pins of a client on AXI4-Lite."""
 
 
-def choices(dut: Any, *names: str) -> dict[str, Any]:
-    """Return the choices for a core of these registers: as often theirs as offsets that differ from one in one bit."""
-    own = [OFFSET[name] for name in names]
-    at = own * 32 + [offset ^ 1 << bit for offset in own for bit in range(32)]
-    bus = {"write": 1.0, "write_offset": at, "write_ones": WORD, "write_mask": STROBES, "read_offset": at}
-    return {pin: choice for pin, choice in bus.items() if hasattr(dut, pin)}
+class Bus:
+    """The pins between axil_port and a core, which has registers of these names.
 
+    Attributes
+    ----------
+    choices : mapping
+        What each pin may be; `drive` is to make them legal.
+    """
 
-def strobed(model: Any, pins: Pins) -> None:
-    """Clear the data of bytes without strobe."""
-    pins["write_ones"] &= pins["write_mask"]
+    def __init__(self, dut: Any, *names: str) -> None:
+        self.chance, self.own = random.Random(cocotb.RANDOM_SEED), [OFFSET[name] for name in names]
+        pins = {"write": 1.0, "write_offset": self.own, "write_ones": WORD, "write_mask": STROBES}
+        self.choices = {pin: pins[pin] for pin in pins if hasattr(dut, pin)} | {"read_offset": self.own}
+
+    def drive(self, pins: Pins) -> None:
+        """Clear bytes without strobe. Address registers, and as often what differs from one in one bit."""
+        pins["write_ones"] &= pins.get("write_mask", -1)
+        for pin in ("write_offset", "read_offset"):
+            pins[pin] = self.chance.choice(self.own) ^ (self.chance.getrandbits(1) << self.chance.randrange(32))

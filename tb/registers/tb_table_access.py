@@ -9,7 +9,7 @@ from tactile_depth.chip.registers.register_map import TABLES
 from tactile_depth.chip.registers.table_access import HIGH, INDEX, LOW, PORTS, SIZE, TableAccess
 from tb import structs
 from tb.lockstep import WORD, Pins, play
-from tb.registers.bus import NAME_AT, choices, strobed
+from tb.registers.bus import NAME_AT, Bus
 from tb.structures import BOTH, ICARUS, Structure
 
 ALL = {"GradientWords": 8, "CoefficientWords": 36, "ReferenceWords": 5000, "ZeroWords": 1250}
@@ -75,21 +75,22 @@ class Access:
         return out
 
 
-def legal(access: Access, pins: Pins) -> None:
-    """Write in no reset, and access nothing in the clock after a read of a table."""
-    strobed(access, pins)
-    pins["read"] &= not access.asked
-    pins["write"] &= not (access.asked or pins["rst"])
-
-
 @cocotb.test()
 async def accesses(dut: Any) -> None:
     sizes = {code: int(getattr(dut, PARAMETERS[name]).value) for name, code in TABLES.items()}
+    bus = Bus(dut, INDEX, HIGH, LOW, LOW, SIZE)
     pins = {
-        **choices(dut, INDEX, HIGH, LOW, LOW, SIZE),
+        **bus.choices,
         "read": 1.0,
         "select": list(TABLES.values()),
         "closed": [0, *range(16)],
         "table_answer": WORD,
     }
+
+    def legal(access: Access, pins: Pins) -> None:
+        """Write in no reset, and access nothing in the clock after a read of a table."""
+        bus.drive(pins)
+        pins["read"] &= not access.asked
+        pins["write"] &= not (access.asked or pins["rst"])
+
     await play(dut, Access(sizes), pins, legal)

@@ -9,7 +9,7 @@ from formal.entries import Proof
 from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT, TableBanks
 from tb import structs
 from tb.lockstep import Pins, play
-from tb.registers.bus import NAME_AT, choices
+from tb.registers.bus import NAME_AT, Bus
 from tb.structures import BOTH, ICARUS, of_parameters
 
 built = of_parameters("Present")
@@ -62,20 +62,22 @@ class Banks:
         return out
 
 
-def legal(banks: Banks, pins: Pins) -> None:
-    """Write in no reset. What stands for the bank in use is where it differs from the next one."""
-    pins["write"] &= not pins["rst"]
-    pins["table_in_use"] ^= banks.model.bank
-
-
 @cocotb.test()
 async def banks(dut: Any) -> None:
+    bus = Bus(dut, COMMIT.name, *(register.name for register in CAPTURES.values()))
     status = [structs.pack("capture_status_t", {"busy": busy, "done": done}) for busy, done in ((0, 0), (1, 0), (1, 1))]
     pins = {
-        **choices(dut, COMMIT.name, *(register.name for register in CAPTURES.values())),
+        **bus.choices,
         "frame_start": 1.0,
         "cold_rst": 0.1,
         "table_in_use": [0, 15, 1, 2, 4, 8],
         **{f"{table}_status": status for table in CAPTURES},
     }
+
+    def legal(banks: Banks, pins: Pins) -> None:
+        """Write in no reset. What stands for the bank in use is where it differs from the next one."""
+        bus.drive(pins)
+        pins["write"] &= not pins["rst"]
+        pins["table_in_use"] ^= banks.model.bank
+
     await play(dut, Banks(int(dut.Present.value)), pins, legal)
