@@ -178,12 +178,15 @@ def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
         if structure.roms:
             structure.roms(folder)
         wanted = replace(RUN, device=structure.device, level=structure.level)
-        environment = replace(wanted, **settings).environment | {"COCOTB_RANDOM_TEST_ORDER": "1"}
+        environment = replace(wanted, **settings).environment
+        bench = test_module or repository.testbench(toplevel)
+        if not test_module and "," in bench:  # of several files: no test of them depends on an earlier one
+            environment["COCOTB_RANDOM_TEST_ORDER"] = "1"
 
         def play(log: Path, **arguments: Any) -> None:
             count, failed = simulation.run(
                 toplevel,
-                test_module or repository.testbench(toplevel),
+                bench,
                 folder,
                 folder,
                 simulator=simulator,
