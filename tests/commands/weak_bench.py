@@ -5,9 +5,11 @@ from typing import Any
 
 import cocotb
 
-from tb.common import tb_td_burst_counter
+from tactile_depth.chip.common.td_burst_counter import BurstCounter
+from tb.lockstep import play
+from tb.stream import parameters
 
 
 @cocotb.test()
 async def positions_without_pause(dut: Any) -> None:
-    await tb_td_burst_counter.check(dut, pause=0.0, before=0)
+    await play(dut, BurstCounter(*parameters(dut, "Words")), {"rst": 0.0, "en": [1], "start": 0.3})
