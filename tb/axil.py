@@ -49,14 +49,9 @@ async def take(dut: Any, channel: str, stall: int = 0) -> int:
     return response
 
 
-async def write_beats(dut: Any, address: int, data: int, strobe: int = 0xF) -> None:
-    """Offer address and data of a write together; do not take its response."""
-    await gather(present(dut, "aw", awaddr=address), present(dut, "w", wdata=data, wstrb=strobe))
-
-
 async def write(dut: Any, address: int, data: int, strobe: int = 0xF) -> int:
     """Write beat by beat; return the response."""
-    await write_beats(dut, address, data, strobe)
+    await gather(present(dut, "aw", awaddr=address), present(dut, "w", wdata=data, wstrb=strobe))
     return await take(dut, "b")
 
 
@@ -75,11 +70,6 @@ async def value_of(dut: Any, name: str) -> int:
     return data
 
 
-def master_of(dut: Any) -> AXI4LiteMaster:
-    """Return a bus master. It takes every response at once, so do not mix it with the beat-by-beat functions."""
-    return AXI4LiteMaster(dut, "s_axil", dut.clk)
-
-
 async def response_of(transaction: Awaitable) -> Response:
     """Return the response that ends a transaction of a master, also when the master raises it as an error."""
     try:
@@ -93,7 +83,7 @@ class Master:
     """Bus master that takes every response at once. Do not mix it with the beat-by-beat functions."""
 
     def __init__(self, dut: Any) -> None:
-        self.master = master_of(dut)
+        self.master = AXI4LiteMaster(dut, "s_axil", dut.clk)
 
     async def write(self, address: int, value: int) -> Response:
         return await response_of(self.master.write(address, value))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cache, lru_cache
 from typing import Any
 
@@ -64,13 +64,7 @@ def _unpacked(name: str, word: int) -> dict[str, int]:
 
 def of(handle: Any, name: str) -> dict[str, int | None]:
     """Return the members of a signal, unsigned; None where a bit is unknown."""
-    return reader(handle, name)()
-
-
-def reader(handle: Any, name: str) -> Callable[[], dict[str, int | None]]:
-    """Return the function that reads a signal as `of` does, for what is read in every clock."""
-    bits = handle._handle.get_signal_val_binstr
-    return lambda: dict(_shown(name, bits()))
+    return dict(_shown(name, handle._handle.get_signal_val_binstr()))
 
 
 @lru_cache(maxsize=1024)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -25,29 +26,9 @@ def strobed_bits(strobe: int) -> int:
     return sum(0xFF << 8 * byte for byte in range(BYTES) if strobe >> byte & 1)
 
 
-def response(refused: bool) -> Response:
+def response(refused: int) -> Response:
     """Return the response of an access."""
     return Response.SLVERR if refused else Response.OKAY
-
-
-@dataclass(frozen=True)
-class Write:
-    """A write in the cycle in which it takes effect: byte offset of the register, data, mask of its strobed bits."""
-
-    offset: int
-    ones: int
-    mask: int
-
-
-@dataclass(frozen=True)
-class Pins:
-    """Words that the master offers in one cycle; None: not valid."""
-
-    write_address: int | None = None
-    write_data: tuple[int, int] | None = None  # word, strobe
-    write_response_ready: bool = False
-    read_address: int | None = None
-    read_response_ready: bool = False
 
 
 def offset_of(address: int) -> int:
@@ -61,74 +42,87 @@ class AxilPort:
 
     Attributes
     ----------
-    address, data : int, (int, int), or None
-        Address, and word with strobe, of the write that was taken.
+    address, data : int, (int, int)
+        Offset of the latest write whose address was taken; latest word taken, 0 in bytes without strobe, and the mask
+        of its bytes. None before the first.
+    address_held, data_held : bool
+        True while that transaction is under way.
     written : Response or None
         Response of the write, while it waits for its ready.
     answer : (int, Response) or None
         Data and response of the read, while they wait for their ready.
     asked : int or None
-        Offset of the read that was taken in the cycle before, and is looked up in this one.
+        Offset of the latest read whose address was taken, None before the first.
+    reads : bool
+        True in the cycle behind that in which it was taken: it is looked up in this one.
     late : int
         Cycles until the late answer of a read; 0: none is under way.
     """
 
     address: int | None = None
     data: tuple[int, int] | None = None
+    address_held: bool = False
+    data_held: bool = False
     written: Response | None = None
     answer: tuple[int, Response] | None = None
     asked: int | None = None
+    reads: bool = False
     late: int = 0
 
-    def reset(self) -> None:
-        """Forget the transactions in flight; while a reset lasts, none is taken."""
-        self.address = self.data = self.written = self.answer = self.asked = None
-        self.late = 0
+    def outputs(self, rst: int) -> dict[str, int | None]:
+        """Return the outputs in this cycle, None where one does not count.
 
-    @property
-    def read_ready(self) -> bool:
-        """Return `arready` out of reset; the ready of address and data of a write is that none is held."""
-        return self.answer is None and self.asked is None and not self.late
-
-    def write(self) -> Write | None:
-        """Return the write that takes effect in this cycle, which may be the first one of a reset."""
-        if self.address is None or self.data is None or self.written is not None or self.late:
-            return None
-        word, strobe = self.data
-        mask = strobed_bits(strobe)
-        return Write(offset_of(self.address), word & mask, mask)
-
-    def clock(
-        self, pins: Pins, refused: bool, answer: tuple[int, Response], is_late: bool, late_answer: tuple[int, Response]
-    ) -> None:
-        """Take one clock edge out of reset.
-
-        Parameters
-        ----------
-        pins : Pins
-        refused : bool
-            The write of this cycle is refused.
-        answer, is_late : (int, Response), bool
-            Answer of the read that is looked up in this cycle, or whether it comes late.
-        late_answer : (int, Response)
-            Late answer as it stands in this cycle.
+        A write that takes effect may be in the first cycle of a reset.
         """
-        writes, reads = self.write() is not None, self.asked is not None
-        taken = pins.read_address if self.read_ready else None
-        held = self.address is not None, self.data is not None
-        if self.written is not None and pins.write_response_ready:
-            self.address = self.data = self.written = None
-        elif writes:
-            self.written = response(refused)
-        if pins.write_address is not None and not held[0]:
-            self.address = pins.write_address
-        if pins.write_data is not None and not held[1]:
-            self.data = pins.write_data
-        if pins.read_response_ready:
+        ones, mask = self.data or (None, None)
+        rdata, rresp = self.answer or (None, None)
+        busy = self.answer is not None or self.reads or self.late
+        return {
+            "s_axil_awready": not (self.address_held or rst),
+            "s_axil_wready": not (self.data_held or rst),
+            "s_axil_bvalid": self.written is not None,
+            "s_axil_bresp": self.written,
+            "s_axil_arready": not (busy or rst),
+            "s_axil_rvalid": self.answer is not None,
+            "s_axil_rdata": rdata,
+            "s_axil_rresp": rresp,
+            "write": self.address_held and self.data_held and self.written is None and not self.late,
+            "write_offset": self.address,
+            "write_ones": ones,
+            "write_mask": mask,
+            "read": self.reads,
+            "read_offset": self.asked,
+        }
+
+    def advance(self, pins: Mapping[str, int]) -> None:
+        """Advance by one clock edge with these inputs."""
+        out = self.outputs(pins["rst"])
+        if pins["s_axil_rready"]:
             self.answer = None
-        if reads and not is_late:
-            self.answer = answer
         if self.late == 1:
-            self.answer = late_answer
-        self.asked = None if taken is None else offset_of(taken)
-        self.late = LATE_CLOCKS if reads and is_late else max(0, self.late - 1)
+            self.answer = pins["late_data"], response(pins["late_refused"])
+        self.late = max(0, self.late - 1)
+        if out["read"] and pins["read_late"]:
+            self.late = LATE_CLOCKS
+        elif out["read"]:
+            self.answer = pins["read_data"], response(pins["read_refused"])
+        if out["write"]:
+            self.written = response(pins["write_refused"])
+        elif self.written is not None and pins["s_axil_bready"]:
+            self.address_held, self.data_held, self.written = False, False, None
+        if out["s_axil_awready"] and pins["s_axil_awvalid"]:
+            self.address, self.address_held = offset_of(pins["s_axil_awaddr"]), True
+        if out["s_axil_wready"] and pins["s_axil_wvalid"]:
+            mask = strobed_bits(pins["s_axil_wstrb"])
+            self.data, self.data_held = (pins["s_axil_wdata"] & mask, mask), True
+        self.reads = bool(out["s_axil_arready"] and pins["s_axil_arvalid"])
+        if self.reads:
+            self.asked = offset_of(pins["s_axil_araddr"])
+        if pins["rst"]:
+            self.address_held, self.data_held, self.written, self.answer, self.late = False, False, None, None, 0
+
+    def clock(self, **pins: int) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it."""
+        out = self.outputs(pins["rst"])
+        self.advance(pins)
+        return out
