@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 
@@ -27,3 +28,13 @@ class Format:
     @property
     def lsb(self) -> float:
         return 2.0**-self.fraction
+
+
+def split(entry: int, words: int, width: int) -> list[int]:
+    """Return the words in a number, the first in the lowest bits."""
+    return [entry >> width * place & (1 << width) - 1 for place in range(words)]
+
+
+def joined(words: Sequence[int], width: int) -> int:
+    """Return the number with these words in it."""
+    return sum((word & (1 << width) - 1) << width * place for place, word in enumerate(words))

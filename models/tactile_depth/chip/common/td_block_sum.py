@@ -3,7 +3,12 @@
 
 from __future__ import annotations
 
+from collections import deque
+from typing import Any
+
 import numpy as np
+
+from tactile_depth.chip.fixed_point import joined, split
 
 CYCLES_TO_SUM = 5
 """Cycles from the last word of a block's row to the write of its sum."""
@@ -25,3 +30,60 @@ def block_sum(frames: np.ndarray, block_log2: int, column_log2: int | None = Non
     wide = block if column_log2 is None else 1 << column_log2
     whole = frames[:, : rows // block * block, : columns // wide * wide]
     return whole.reshape(count, rows // block, block, columns // wide, wide, *channels).sum(axis=(2, 4))
+
+
+class BlockSum:
+    """Sums, and a memory that holds them.
+
+    Attributes
+    ----------
+    place, size : int
+        Words that came of the frame; words of a frame.
+    answer : int
+        What the memory answers to the read of the clock before; None without one.
+    """
+
+    def __init__(self, **numbers: int) -> None:
+        self._of, self._log2 = numbers, numbers["BlockLog2"]
+        self._blocks = numbers["Rows"] >> self._log2, numbers["Columns"] >> numbers["ColumnLog2"]
+        self.size, self.place = numbers["Rows"] * numbers["Columns"], 0
+        self._sums: list[int] = []
+        self._memory = [[0] * numbers["Channels"]] * self._blocks[0] * self._blocks[1]
+        self.answer: int | None = None
+        self._late: deque[Any] = deque([None] * CYCLES_TO_SUM)  # of rows of blocks: block, sums, begins, complete
+
+    def _take(self, data: int) -> Any:
+        """Add a word; return the row of a block that it ends."""
+        of, (row, column) = self._of, divmod(self.place, self._of["Columns"])
+        wide, high = (1 << of["ColumnLog2"]) - 1, (1 << self._log2) - 1
+        sign = of["Signed"] << of["Width"] - 1
+        words = [(word ^ sign) - sign for word in split(data, of["Channels"], of["Width"])]
+        self._sums = [sum(pair) for pair in zip(self._sums, words, strict=True)] if column & wide else words
+        if column & wide != wide or row >> self._log2 == self._blocks[0]:
+            return None
+        block = (row >> self._log2) * self._blocks[1] + (column >> of["ColumnLog2"])
+        return block, self._sums, self._first and row & high == 0, self._last and row & high == high
+
+    def clock(self, **pins: int) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        written, width = self._late.popleft(), self._of["SumWidth"]
+        read, self.answer = self._late[2], None
+        out: dict[str, int | None] = {"read_en": 0, "write_en": written is not None, "write_complete": 0}
+        if read is not None and not read[2]:
+            out |= {"read_en": 1, "read_block": read[0]}
+            self.answer = joined(self._memory[read[0]], width)
+        if written is not None:
+            block, sums, begins, complete = written
+            if not begins:
+                sums = [sum(pair) for pair in zip(sums, self._memory[block], strict=True)]
+            self._memory[block] = sums
+            out |= {"write_block": block, "write_sums": joined(sums, width), "write_complete": complete}
+        self._late.append(None)
+        if pins["in_valid"]:
+            if self.place == 0:
+                self._first, self._last = pins["in_first_frame"], pins["in_last_frame"]
+            self._late[-1] = self._take(pins["in_data"])
+            self.place = (self.place + 1) % self.size
+        if pins["rst"]:
+            self.place, self._late = 0, deque([None] * CYCLES_TO_SUM)
+        return out
