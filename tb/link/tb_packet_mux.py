@@ -27,5 +27,5 @@ PROOFS = (
 async def packets(dut: Any) -> None:
     choices: dict[str, Any] = {"out_ready": 1.0}
     for name in SOURCES:
-        choices |= {f"{name}_valid": 1.0, f"{name}_data": WORD, f"{name}_last": 1.0}
+        choices |= {f"{name}_valid": 0.4, f"{name}_data": WORD, f"{name}_last": 1.0}
     await play(dut, PacketMux(), choices, offers=SOURCES)
