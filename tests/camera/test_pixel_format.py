@@ -9,12 +9,15 @@ import pytest
 from tactile_depth.chip.camera.pixel_format import CHROMA_OFFSET, photograph, pixel_format
 from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraConfiguration
 from tactile_depth.chip.registers.register_map import CAMERA_REGISTERS
-from tb.camera.tb_pixel_format import camera
 
 
 def test_the_formats_are_those_of_the_register() -> None:
     field = CAMERA_REGISTERS["CAMERA_FORMAT"].field("pixel_format")
     assert field.values == {name: form.code for name, form in FORMATS.items()}
+
+
+def camera(form: str) -> CameraConfiguration:
+    return CameraConfiguration((2, 4), (1, 1), form)
 
 
 def words(*values: int) -> np.ndarray:

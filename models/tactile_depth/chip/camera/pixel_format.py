@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+from typing import Any
+
 import numpy as np
 
 from tactile_depth.chip.camera_configuration import CHROMA_FRACTION, CameraConfiguration
@@ -122,3 +125,58 @@ def photograph(picture: np.ndarray, camera: CameraConfiguration) -> np.ndarray:
 def latency(camera: CameraConfiguration) -> int:
     """Return the latency; YUYV: of the second pixel of a pair, one more than of its first."""
     return 4 if camera.format.is_yuyv else 1
+
+
+@dataclass
+class PixelFormat:
+    """State of the core.
+
+    Attributes
+    ----------
+    camera : CameraConfiguration
+    first : dict or None
+        Pins of the first pixel of a pair whose second has not come; YUYV alone.
+    due : dict
+        Outputs by the number of clocks with en until they leave.
+    """
+
+    camera: CameraConfiguration
+    first: dict[str, int] | None = None
+    due: dict[int, dict[str, int]] = field(default_factory=dict)
+
+    def _leave(self, clocks: int, pixel: dict[str, int], samples: Any) -> None:
+        width = self.camera.sample_width
+        words = (int(sample) % (1 << width) << width * place for place, sample in enumerate(np.atleast_1d(samples)))
+        marks = {f"out_{mark}": pixel[f"in_{mark}"] for mark in ("row_start", "frame_start")}
+        self.due[clocks] = self.due.get(clocks, {}) | {"out_valid": 1, "out_samples": sum(words), **marks}
+        if self.camera.format.bayer:
+            site = pixel["in_odd_row"] << 1 | pixel["in_odd_column"]
+            self.due[clocks]["out_colour"] = site ^ self.camera.phase_code
+
+    def _take(self, pixel: dict[str, int]) -> None:
+        if not self.camera.format.is_yuyv:
+            if pixel["in_inside"]:
+                self._leave(1, pixel, pixel_format(np.array([[pixel["in_data"]]]), self.camera)[0, 0])
+        elif not pixel["in_odd_column"]:
+            self.first = pixel
+        elif self.first is not None:
+            pair = self.first, pixel
+            samples = pixel_format(np.array([[each["in_data"] for each in pair]]), self.camera)[0]
+            for clocks, each, colours in zip((3, 4), pair, samples, strict=True):
+                if each["in_inside"]:
+                    self._leave(clocks, each, colours)
+            self.first = None
+
+    def clock(self, **pins: int) -> dict[str, int]:
+        """Advance by one clock edge; return the outputs before it."""
+        out = {"out_valid": 0, "out_abort": 0} | self.due.get(0, {})
+        if pins["en"]:
+            if pins["in_valid"]:
+                self._take(pins)
+            if pins["in_abort"]:
+                clocks = latency(self.camera)
+                self.due[clocks] = self.due.get(clocks, {}) | {"out_abort": 1}
+            self.due = {clocks - 1: leaves for clocks, leaves in self.due.items() if clocks}
+        if pins["rst"]:
+            self.due, self.first = {}, None
+        return out
