@@ -205,16 +205,3 @@ async def reads_as_a_pause_ends(device: Any, nodes: Nodes) -> None:
         await reading
         await sending
         await nodes.changed()
-
-
-async def watch_active(dut: Any, latency: int) -> None:
-    """Check in every cycle that `active` is high while a word is inside, which takes `latency` cycles with en."""
-    inside = 0  # a bit for each cycle, the latest lowest
-    read, edge = by_name(dut), RisingEdge(dut.clk)
-    while True:
-        await edge
-        assert read("active") == bool(inside), f"active is {read('active')}"
-        if read("rst"):
-            inside = 0
-        elif read("en"):
-            inside = (inside << 1 | read("in_valid")) & (1 << latency) - 1
