@@ -10,8 +10,16 @@ from cocotb.triggers import RisingEdge
 
 from formal.entries import Proof
 from tactile_depth.chip.contact import contact_events
-from tactile_depth.chip.contact.contact_events import CYCLES_TO_TOUCHING, WORDS, ContactEvents, Settings, latency
+from tactile_depth.chip.contact.contact_events import (
+    CYCLES_TO_TOUCHING,
+    WORD_BITS,
+    WORDS,
+    ContactEvents,
+    Settings,
+    latency,
+)
 from tactile_depth.chip.contact.record_packets import RecordPackets
+from tactile_depth.chip.fixed_point import joined, split
 from tb.axis import profile
 from tb.cases import on_bench
 from tb.contact.depth_bench import WORD_HIGH, DepthBench
@@ -87,7 +95,6 @@ class Bench(DepthBench):
         self.latency = latency(self.rows, self.columns, self.lanes)
         self.accepts = profile(accepts)
         self.model = ContactEvents(self.rows, self.columns, self.width, bool(self.bottom_first))
-        self.packets = RecordPackets()
         self.lost = 0
         self.moved = False  # value of the record when it was read last
         # words of each new record, words of each packet
@@ -97,7 +104,7 @@ class Bench(DepthBench):
 
     def forget(self) -> None:
         """Forget all outputs that are due."""
-        self.touching, self.record = False, (0,) * WORDS
+        self.touching, self.packets = False, RecordPackets(WORDS)
         self.touching_due: dict[Any, Any] = {}
         self.record_due: dict[Any, Any] = {}
         self.open: list[Any] = []
@@ -117,7 +124,6 @@ class Bench(DepthBench):
         await self.edge(False, [0] * self.lanes, (0, 0, 0))
         self.dut.rst.value = 0
         self.model.reset()
-        self.packets.reset()
         self.forget()
 
     async def edge(
@@ -148,27 +154,22 @@ class Bench(DepthBench):
         """Compare the outputs at the end of the cycle."""
         read, now = self.read, self.now
         self.touching = self.touching_due.pop(now, self.touching)
-        new = self.record_due.pop(now, None)
-        self.record = new or self.record
         assert read("touching") == self.touching, "touching"
-        assert read("record_valid") == (new is not None), "record_valid"
-        if new or self.moved:  # its many bits are read only when they change or should change
-            value = read("record")
-            words = tuple(value >> 32 * word & 0xFFFF_FFFF for word in range(WORDS))
-            assert words == self.record, f"record {words}, expected {self.record}"
-            self.moved = False
-        if new:
-            self.records.append(words)
+        new = self.record_due.pop(now + 1, ())
+        expected = self.packets.clock(
+            rst=0, new_valid=bool(new), new_record=joined(new, WORD_BITS), m_event_tready=int(ready)
+        )
+        self.moved |= bool(expected["record_valid"])
+        for pin, value in expected.items():
+            if pin != "record" or self.moved:  # its many bits are read only when they change or should change
+                assert read(pin) == value, pin
+        self.moved = False
+        if expected["record_valid"]:
+            self.records.append(tuple(split(read("record"), WORDS, WORD_BITS)))
+        if ready and expected["m_event_tvalid"]:
+            self.open.append(expected["m_event_tdata"])
+        self.lost += bool(expected["record_lost"])
         sending = self.packets.sending
-        assert read("m_event_tvalid") == bool(sending), "m_event_tvalid"
-        if sending:
-            assert read("m_event_tdata") == sending[0], f"word {WORDS - len(sending)} of a packet"
-            assert read("m_event_tlast") == (len(sending) == 1), "m_event_tlast"
-            if ready:
-                self.open.append(sending[0])
-        lost = self.packets.clock(self.record_due.get(now + 1), ready)
-        assert read("record_lost") == lost, "record_lost"
-        self.lost += lost
         if not sending or len(sending) == WORDS:
             self.sent += [tuple(self.open)] * bool(self.open)
             self.open = []
@@ -332,7 +333,7 @@ async def the_sink_takes_the_last_word(bench: Bench) -> None:
         bench.records, bench.sent, bench.lost = [], [], 0
         await bench.frame(bench.full(1), Settings(0, 0, 0, 1, 1))
         await bench.settle()
-        left = len(bench.packets.sending) + WORDS * (bench.packets.waiting is not None)
+        left = len(bench.packets.sending) + WORDS * bench.packets.waiting
         bench.accepts = iter([True] * (left - 1) + [False] * (1 << 20))
         await bench.idle(WORDS)
         assert len(bench.packets.sending) == 1

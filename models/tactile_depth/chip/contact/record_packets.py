@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field
+
+from tactile_depth.chip.fixed_point import split
 
 
-@dataclass
 class RecordPackets:
     """State of the packet sender between two clock edges.
 
@@ -15,31 +15,32 @@ class RecordPackets:
     ----------
     sending : deque of int
         Remaining words of the current packet; the first one is offered.
-    waiting : tuple of int or None
-        Words of a record that waits for the current packet to end.
+    waiting : bool
+        True if the record waits for the current packet to end.
+    record, new : int, bool
+        The newest record; whether it came in the cycle before.
     """
 
-    sending: deque[int] = field(default_factory=deque)
-    waiting: tuple[int, ...] | None = None
+    def __init__(self, words: int) -> None:
+        self.words, self.sending = words, deque[int]()
+        self.waiting, self.record, self.new = False, 0, False
 
-    def clock(self, renewed: tuple[int, ...] | None, ready: bool) -> bool:
-        """Advance by one clock edge; return True if a record is lost.
-
-        `renewed` holds the words of a new record (None: no new record); `ready` is set if the sink takes a word.
-        """
-        leaves = bool(self.sending) and ready
-        send = self.waiting is not None and len(self.sending) <= leaves
-        lost = renewed is not None and self.waiting is not None and not send
-        if leaves:
-            self.sending.popleft()
-        if send and self.waiting is not None:
-            self.sending.extend(self.waiting)
-            self.waiting = None
-        if renewed is not None:
-            self.waiting = renewed
-        return lost
-
-    def reset(self) -> None:
-        """Advance by one clock edge in reset."""
-        self.sending.clear()
-        self.waiting = None
+    def clock(self, *, rst: int, new_valid: int, new_record: int, m_event_tready: int) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        sending = self.sending
+        out: dict[str, int | None] = {"record_valid": self.new, "record": self.record, "m_event_tvalid": bool(sending)}
+        if sending:
+            out |= {"m_event_tdata": sending[0], "m_event_tlast": len(sending) == 1}
+            if m_event_tready:
+                sending.popleft()
+        if self.waiting and not sending:
+            sending.extend(split(self.record, self.words, 32))
+            self.waiting = False
+        out["record_lost"] = new_valid and self.waiting
+        self.new = bool(new_valid)
+        if new_valid:
+            self.record, self.waiting = new_record, True
+        if rst:
+            sending.clear()
+            self.waiting, self.record, self.new = False, 0, False
+        return out
