@@ -35,6 +35,12 @@ def split(entry: int, words: int, width: int) -> list[int]:
     return [entry >> width * place & (1 << width) - 1 for place in range(words)]
 
 
+def codes(entry: int, words: int, width: int) -> list[int]:
+    """Return the signed words in a number, the first in the lowest bits."""
+    sign = 1 << width - 1
+    return [(word ^ sign) - sign for word in split(entry, words, width)]
+
+
 def joined(words: Sequence[int], width: int) -> int:
     """Return the number with these words in it."""
     return sum((word & (1 << width) - 1) << width * place for place, word in enumerate(words))

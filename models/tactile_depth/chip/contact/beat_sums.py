@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+
+from tactile_depth.chip.fixed_point import split
 
 
 @dataclass(frozen=True)
@@ -29,3 +32,17 @@ def beat_sums(above: Sequence[bool], weights: Sequence[int]) -> BeatSums:
     moment = sum(weight * (len(weights) - 1 - offset) for offset, weight in enumerate(weights))
     first, last = (offsets[0], offsets[-1]) if offsets else (None, None)
     return BeatSums(len(offsets), sum(weights), moment, first, last)
+
+
+class SumsOfBeats:
+    """Sums on their way, of a core that has seen beats of nothing above."""
+
+    def __init__(self, width: int, lanes: int) -> None:
+        self.width, self.lanes = width, lanes
+        self._late = deque([beat_sums([False] * lanes, [0] * lanes)] * latency(lanes))
+
+    def clock(self, *, above: int, weights: int) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        sums, bits = self._late.popleft(), split(above, self.lanes, 1)
+        self._late.append(beat_sums(list(map(bool, bits)), split(weights, self.lanes, self.width)))
+        return asdict(sums)
