@@ -126,14 +126,13 @@ class AxisMonitor(BusMonitor):  # type: ignore[misc]
     Attributes
     ----------
     words : list of tuple
-        As they were taken. With `silence`, also None for each clock in which nothing was offered (and the pin
-        that `silence` names, if it is a string, was high).
+        As they were taken. With `silence`, also None for each clock in which nothing was offered.
     taken, offered : list of int
         For each entry of `words`, the clock of its handshake, and the first in which it stood on the pins.
     """
 
     def __init__(
-        self, dut: Any, name: str, fields: Sequence[str] = VIDEO, prefix: str = "", silence: bool | str = False
+        self, dut: Any, name: str, fields: Sequence[str] = VIDEO, prefix: str = "", silence: bool = False
     ) -> None:
         self._signals = _signals(fields, prefix)
         self.clock_count = 0
@@ -155,7 +154,6 @@ class AxisMonitor(BusMonitor):  # type: ignore[misc]
         valid, ready, reset = unsigned(self.bus.valid), unsigned(self.bus.ready), unsigned(self.entity.rst)
         pins = [unsigned(pin) for pin in self.pins]
         was_reset = True  # so that nothing is read before the first edge
-        enable = unsigned(getattr(self.entity, self.silence)) if isinstance(self.silence, str) else None
         held, since = None, 0
         while True:
             yield
@@ -167,7 +165,7 @@ class AxisMonitor(BusMonitor):  # type: ignore[misc]
             if not valid():
                 assert held is None, f"{self}: clock {clock}: valid fell before ready came"
                 ready()  # raises if it is unknown
-                if self.silence and (enable is None or enable()):
+                if self.silence:
                     self.words.append(None)
                     self.taken.append(clock)
                     self.offered.append(clock)
@@ -216,29 +214,6 @@ def video(pixels: Iterable[int], columns: int) -> list[Word]:
         Word(int(pixel), int(position % columns == columns - 1), int(position == 0))
         for position, pixel in enumerate(pixels)
     ]
-
-
-def spoiled(words: list[Word], rng: random.Random, longest: int) -> list[Word]:
-    """Return the words of a frame with up to three faults: a mark flipped or missing, a run of up to `longest` words
-    lost or repeated, the end cut off."""
-    for _ in range(rng.choice((0, 0, 1, 1, 2, 3))):
-        if not words:
-            break
-        place = rng.randrange(len(words))
-        match rng.randrange(6):
-            case 0:
-                words[place] = words[place]._replace(last=1 - words[place].last)
-            case 1:
-                words[place] = words[place]._replace(user=1 - words[place].user)
-            case 2:
-                del words[place : place + rng.randint(1, longest)]
-            case 3:
-                words[place:place] = words[place : place + rng.randint(1, longest)]
-            case 4:
-                words[0] = words[0]._replace(user=0)
-            case 5:
-                words = words[:place]
-    return words
 
 
 # Each way to break a frame, and some that break nothing, with the faults that it raises between whole frames.

@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Model of hdl/video/frame_guard.sv, word by word: any stream in, complete frames and faults out.
-
-The model counts cycles only for the time-out. It leaves out the cycles in which filler is sent and the input waits;
-these change neither frames nor faults.
-"""
+"""Model of hdl/video/frame_guard.sv: any stream in, complete frames and faults out."""
 
 from __future__ import annotations
 
@@ -62,8 +58,89 @@ class Guarded:
     open: list[int] = field(default_factory=list)
 
 
+@dataclass
+class FrameGuard:
+    """State of the core.
+
+    Attributes
+    ----------
+    rows, columns : int
+    pixels : list of int
+        Of the present frame, as they leave.
+    filling, hunting : bool
+        A broken frame is filled up; words up to the next start are dropped and not flagged.
+    silence : int
+        Cycles without a word inside a frame.
+    out : dict
+        Pins of the pixel that leaves, if one does.
+    """
+
+    rows: int
+    columns: int
+    pixels: list[int] = field(default_factory=list)
+    filling: bool = False
+    hunting: bool = False
+    silence: int = 0
+    out: dict[str, int] = field(default_factory=dict)
+
+    def _leave(self, data: int, bad: bool) -> None:
+        row, column = divmod(len(self.pixels), self.columns)
+        self.pixels.append(data)
+        starts, ends = (row == 0, column == 0), (row == self.rows - 1, column == self.columns - 1)
+        position = sum(mark << bit for bit, mark in enumerate((*starts, *ends)))
+        self.out = {"out_valid": 1, "out_data": data, "out_position": position, "out_frame_start": all(starts)}
+        self.filling, self.hunting = bad and not all(ends), bad and all(ends)
+        if all(ends):
+            self.out |= {"out_frame_end": 1, "out_bad": bad}
+            self.pixels = []
+
+    def fill(self) -> None:
+        """Let a pixel of filler leave."""
+        self.silence = 0
+        self._leave(self.pixels[-1], bad=True)
+
+    def take(self, word: Word | None, timeout: int = 0) -> str:
+        """Take a word, None for silence, while no frame is filled up; return the fault that it shows.
+
+        An early start is not taken: it breaks the frame, and then begins the next.
+        """
+        self.out, fault = {}, ""
+        waited, self.silence = self.silence, 0
+        if word is None and self.pixels:
+            self.silence = waited + 1
+            self.filling = 0 < timeout <= waited
+            return "timed_out" if self.filling else ""
+        if word is None:
+            return ""
+        if self.pixels and word.user:
+            self.filling = True
+            return "start_early"
+        if not self.pixels and not word.user:
+            fault, self.hunting = "" if self.hunting else "start_missing", True
+            return fault
+        if word.last != (len(self.pixels) % self.columns == self.columns - 1):
+            fault = "row_short" if word.last else "row_long"
+        self._leave(word.data, bool(fault))
+        return fault
+
+    def clock(self, **pins: int) -> dict[str, int]:
+        """Advance by one clock edge; return the outputs before it that count."""
+        ready = pins["en"] and not (self.pixels and pins["s_user"])
+        out, fault = {"out_valid": 0, "out_frame_start": 0, "out_frame_end": 0} | self.out, ""
+        if pins["en"] and self.filling:
+            self.fill()
+        elif pins["en"]:
+            word = Word(pins["s_data"], pins["s_last"], pins["s_user"]) if pins["s_valid"] else None
+            fault = self.take(word, pins["timeout"])
+        if pins["rst"]:
+            self.pixels, self.filling, self.hunting, self.silence, self.out = [], False, False, 0, {}
+        return {"s_ready": ready, "faults": sum((name == fault) << bit for bit, name in enumerate(FAULTS)), **out}
+
+
 def frame_guard(stream: Iterable[Word | None], rows: int, columns: int, timeout: int = 0) -> Guarded:
     """Return the complete frames and the faults of a stream.
+
+    The cycles in which filler is sent and the input waits are left out; these change neither frames nor faults.
 
     Parameters
     ----------
@@ -74,43 +151,19 @@ def frame_guard(stream: Iterable[Word | None], rows: int, columns: int, timeout:
     timeout : int
         Cycles of silence allowed inside a frame; the frame is given up in the next one. 0: no limit.
     """
-    out = Guarded()
-    size = rows * columns
-    first = last = silence = 0
-    hunting = False  # the next words belong to a broken frame, or have no start of frame
-
-    def end(bad: bool) -> None:
-        nonlocal hunting
-        filler = [out.open[-1]] * (size - len(out.open))
-        out.frames.append(Frame((*out.open, *filler), bad, first, last))
-        out.open.clear()
-        hunting = bad
-
-    def fault(name: str) -> None:
-        out.faults.append(name)
-        end(bad=True)
-
+    seen, core, first, last = Guarded(), FrameGuard(rows, columns), 0, 0
     for position, word in enumerate(stream):
-        if word is None:
-            if out.open and timeout and silence >= timeout:
-                fault("timed_out")
-            silence += 1
-            continue
-        silence = 0
-        if out.open and word.user:
-            fault("start_early")
-        if not out.open:
-            if not word.user:
-                if not hunting:
-                    out.faults.append("start_missing")
-                hunting = True
-                continue
-            first = position
-        last = position
-        out.open.append(word.data)
-        row_is_full = len(out.open) % columns == 0
-        if word.last != row_is_full:
-            fault("row_short" if word.last else "row_long")
-        elif len(out.open) == size:
-            end(bad=False)
-    return out
+        fault = "start_early"
+        while fault == "start_early":
+            fault = core.take(word, timeout)
+            seen.faults += [fault] if fault else []
+            if core.out:
+                first, last = position if core.out["out_frame_start"] else first, position
+                seen.open.append(core.out["out_data"])
+            while core.filling:
+                core.fill()
+                seen.open.append(core.out["out_data"])
+            if "out_bad" in core.out:
+                seen.frames.append(Frame(tuple(seen.open), bool(core.out["out_bad"]), first, last))
+                seen.open = []
+    return seen
