@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tactile_depth.chip.fixed_point import codes
+
 LATENCY = 1  # from the depth value that raises contact
 
 
@@ -20,11 +22,15 @@ class ThresholdComparator:
         True if a depth code of the current frame was above the threshold.
     threshold : int or None
         Threshold of the current frame; None before the first frame.
+    width, lanes : int
+        Bits of a depth code, and codes in a beat.
     """
 
     contact: bool = False
     raised: bool = False
     threshold: int | None = None
+    width: int = 32
+    lanes: int = 1
 
     def beat(self, data: int, user: bool, threshold: int, hold: bool) -> None:
         """Take a depth code that leaves.
@@ -55,3 +61,18 @@ class ThresholdComparator:
     def reset(self) -> None:
         """Advance by one clock edge in reset, which clears `contact` and keeps the threshold, as the device does."""
         self.contact = self.raised = False
+
+    def clock(
+        self, *, rst: int, in_valid: int, in_frame_start: int, in_data: int, threshold: int, hold: int
+    ) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it."""
+        out: dict[str, int | None] = {"contact": self.contact}
+        if in_valid:
+            highest = max(codes(in_data, self.lanes, self.width))
+            (level,) = codes(threshold, 1, 32)
+            self.beat(highest, bool(in_frame_start), level, bool(hold))
+        else:
+            self.idle(bool(hold))
+        if rst:
+            self.reset()
+        return out
