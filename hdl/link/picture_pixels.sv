@@ -7,8 +7,7 @@
 // are dropped, and so is what comes behind a picture's last pixel, or behind the last whole pixel of a packet.
 //
 // Stream out: AXI4-Stream Video, red in 23 to 16, blue in 15 to 8, green in 7 to 0. Latency: a pixel is offered the
-// clock after its last byte; until it is taken no byte is. Model: LinkDevice in
-// models/tactile_depth/chip/link/device.py.
+// clock after its last byte; until it is taken no byte is. Model: models/tactile_depth/chip/link/picture_pixels.py.
 
 `default_nettype none
 
