@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Requests of a capture, shared by the testbenches of reference_capture and zero_capture."""
+"""Requests of a capture, of the testbench of reference_capture."""
 
 from typing import Any
 
