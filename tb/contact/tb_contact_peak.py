@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""contact_peak against its model: count and peak of each frame, each valid in its cycle only."""
+"""contact_peak against its model in every clock."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import cocotb
-import numpy as np
-from cocotb.triggers import RisingEdge
 
 from formal.entries import Proof
-from tactile_depth.chip.contact.contact_peak import CYCLES_TO_COUNT, ContactPeak, cycles_to_peak
-from tb.cases import on_bench
-from tb.contact.depth_bench import WORD_LOW, MeasureBench
-from tb.stream import REGRESS, parametrize
+from tactile_depth.chip.contact.contact_peak import PeakByClock
+from tb.contact.beats import Frames, beats, levels
+from tb.lockstep import CLOCKS, play
+from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, Structure, of_parameters
 
-built = of_parameters("Width Rows Columns Lanes BottomFirst")
+NAMES = ("Width", "Rows", "Columns", "Lanes", "BottomFirst")
+built = of_parameters(" ".join(NAMES))
 
 
 def structures(columns: int) -> tuple[Structure, ...]:
@@ -52,110 +51,10 @@ PROOFS = proofs(
 )
 
 
-FRAMES = 1000 if REGRESS else 200
-
-
-class Thresholds(NamedTuple):
-    """Depth codes of a frame."""
-
-    on: int
-    off: int
-
-
-class Bench(MeasureBench):
-    """Driver of one cycle at a time; `touching` changes in the cycle of count_valid, the earliest allowed."""
-
-    def __init__(self, dut: Any, gap: float = 0.0) -> None:
-        super().__init__(dut, gap, cycles_to_peak)
-        self.model = ContactPeak(self.rows, self.columns, bool(self.bottom_first))
-        self.thresholds = Thresholds(0, 0)
-        self.each_beat = False  # beats of a frame have their own thresholds
-        self.touching = False  # of the frame that enters
-        self.changes: dict[int, bool] = {}  # values of `touching` by cycle
-
-    async def edge(
-        self, valid: bool, depths: list[int], position: tuple[Any, Any, Any], settings: Any = None, time: Any = None
-    ) -> None:
-        self.drive_depth(valid, depths, position)
-        if settings is not None:
-            self.thresholds = settings
-        if valid and self.each_beat:
-            self.thresholds = Thresholds(*(self.random.randint(self.low, self.high) for _ in range(2)))
-        if valid:
-            self.drive(on_threshold=self.thresholds.on, off_threshold=self.thresholds.off)
-        self.drive(touching=int(self.changes.pop(self.now, self.drive.driven.get("touching", 0))))
-        await RisingEdge(self.dut.clk)
-        self.check()
-        if valid:
-            for depth in self.in_turn(depths, position):
-                peak = self.model.beat(*depth, self.thresholds.off if self.touching else self.thresholds.on)
-            if peak is not None:
-                self.due[self.now] = peak
-                self.touching = bool(self.random.getrandbits(1))
-                self.changes[self.now + CYCLES_TO_COUNT] = self.touching
-        self.now += 1
-
-    def check(self) -> None:
-        dut = self.dut
-        count_of = self.due.get(self.now - CYCLES_TO_COUNT)
-        assert bool(dut.count_valid.value) == (count_of is not None), "count_valid"
-        if count_of is not None:
-            assert int(dut.count.value) == count_of.above, "count"
-        peak = self.due.pop(self.now - self.latency, None)
-        assert bool(dut.peak_valid.value) == (peak is not None), "peak_valid"
-        if peak is not None:
-            assert bool(dut.any_above.value) == bool(peak.above), "any_above"
-            position = int(dut.peak_row.value), int(dut.peak_column.value)
-            assert (dut.peak.value.to_signed(), position) == peak[1:], f"expected {peak}"
-            self.received.append(peak)
-
-
-@on_bench(Bench, milliseconds=100)
-@parametrize(gap=[0.0, 0.1])
-async def random_frames(bench: Bench) -> None:
-    """Send maps of every kind, back to back or with gaps, with thresholds near their values."""
-    rng = np.random.default_rng(cocotb.RANDOM_SEED)
-    for _ in range(FRAMES):
-        depth = bench.random_map(rng)
-        await bench.frame(depth, Thresholds(*bench.random_thresholds(rng, depth)))
-    await bench.settle()
-    counts = [peak.above for peak in bench.received]
-    assert len(counts) == FRAMES
-    assert counts.count(0) > FRAMES // 50, "the test is void: too few frames have no depth above"
-    assert counts.count(bench.pixels) > FRAMES // 50, "the test is void: too few frames have all depths above"
-
-
-@on_bench(Bench, milliseconds=10)
-async def ties_and_edges(bench: Bench) -> None:
-    """Find the first of equal peaks in stream order, a single one in each corner, and all and no depths above."""
-    maps = bench.edge_maps()
-    for depth in maps:
-        await bench.frame(depth, Thresholds(0, 0))
-    await bench.frame(bench.full(bench.low), Thresholds(WORD_LOW, WORD_LOW))
-    await bench.settle()
-    assert len(bench.received) == len(maps) + 1
-    first_row = bench.rows - 1 if bench.bottom_first else 0
-    assert bench.received[4].position == (first_row, 0), "the peak is not the first of the equal ones"
-
-
-@on_bench(Bench, milliseconds=20)
-async def thresholds_change_inside_a_frame(bench: Bench) -> None:
-    """Compare depths with the threshold of their beat: what is not above may be higher than the peak so far."""
-    rng = np.random.default_rng(cocotb.RANDOM_SEED)
-    bench.each_beat = True
-    for _ in range(FRAMES // 10):
-        await bench.frame(bench.random_map(rng), Thresholds(0, 0))
-    await bench.settle()
-    assert len(bench.received) == FRAMES // 10
-
-
-@on_bench(Bench, milliseconds=10)
-async def interrupted_frames(bench: Bench) -> None:
-    """Begin a frame inside another one: it is measured alone, with its own thresholds."""
-    await bench.interrupt_frames(Thresholds(-3, 5), Thresholds(0, 0))
-
-
-@on_bench(Bench, milliseconds=20)
-async def resets(bench: Bench) -> None:
-    """Reset in any cycle of a frame and after it: nothing of it remains."""
-    await bench.reset_in_every_cycle(Thresholds(0, -1), Thresholds(0, 0))
+@cocotb.test()
+async def peaks(dut: Any) -> None:
+    width, lanes = parameters(dut, "Width", "Lanes")
+    bits = {"in_valid": 1.0, "interrupts": 0.02, "touching": 1.0}
+    thresholds = {"on_threshold": levels(width, 32), "off_threshold": levels(width, 32)}
+    model = PeakByClock(*parameters(dut, *NAMES))
+    await play(dut, model, {**bits, **thresholds, "in_data": beats(width, lanes)}, Frames(dut), clocks=3 * CLOCKS)

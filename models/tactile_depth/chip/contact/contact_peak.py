@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tactile_depth.chip.contact import beat_peak
+from tactile_depth.chip.fixed_point import codes
 
 CYCLES_TO_COUNT = 2  # from the last depth of a frame
 
@@ -78,3 +80,51 @@ class ContactPeak:
         position = self.rows - 1 - row if self.bottom_first else row, column
         self.found = Peak(count, int(depths.max()), position) if count else Peak()
         return self.found
+
+
+class PeakByClock:
+    """ContactPeak of beats, and peaks on their way."""
+
+    def __init__(self, width: int, rows: int, columns: int, lanes: int, bottom_first: int) -> None:
+        self.width, self.lanes, self.peak = width, lanes, ContactPeak(rows, columns, bool(bottom_first))
+        self._clear()
+
+    def _clear(self) -> None:
+        self._late: deque[Peak | None] = deque([None] * (cycles_to_peak(self.lanes) - 1))
+        self._beat: Any = None  # of the clock before: depths, marks and both thresholds
+
+    def _judged(self, touching: int, depths: list[int], position: int, on: int, off: int) -> Peak | None:
+        """Take the beat of the clock before; `touching` is read now."""
+        for lane, depth in enumerate(depths):
+            last = lane == self.lanes - 1
+            first = bool(position & 4) and lane == 0
+            row_end, frame_end = bool(position & 2) and last, bool(position & 1) and last
+            peak = self.peak.beat(depth, first, row_end, frame_end, off if touching else on)
+        return peak
+
+    def clock(
+        self,
+        *,
+        rst: int,
+        in_valid: int,
+        in_position: int,
+        in_data: int,
+        on_threshold: int,
+        off_threshold: int,
+        touching: int,
+    ) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        peak, counted = self._late.popleft(), self._late[-1]
+        out: dict[str, int | None] = {"count_valid": counted is not None, "peak_valid": peak is not None}
+        if counted is not None:
+            out["count"] = counted.above
+        if peak is not None:
+            row, column = peak.position
+            out |= {"any_above": bool(peak.above), "peak": peak.peak, "peak_row": row, "peak_column": column}
+        self._late.append(self._judged(touching, *self._beat) if self._beat else None)
+        depths = codes(in_data, self.lanes, self.width)
+        on, off = (*codes(on_threshold, 1, 32), *codes(off_threshold, 1, 32))
+        self._beat = (depths, in_position, on, off) if in_valid else None
+        if rst:
+            self._clear()
+        return out
