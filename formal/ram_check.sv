@@ -4,7 +4,7 @@
 //
 // No word is read in the clock that writes it, and none beyond the depth is written. Proofs add what simulation shows as
 // unknown values, where they are used: no word beyond the depth is read, and (Defined) none before it was written.
-// Power-up is the first clock, which a bench spends in reset: nothing counts before its end.
+// Nothing counts before the end of the reset at power-up: one clock of a bench, some clocks until that of a board is seen.
 
 `default_nettype none
 
@@ -21,8 +21,15 @@ module ram_check #(
   input logic [AddressWidth-1:0] read_address
 );
 
-  logic started = 1'b0;
-  always_ff @(posedge clk) started <= 1'b1;
+`ifdef TD_SIMULATED
+  localparam int PowerUp = 16;  // clocks
+`else
+  localparam int PowerUp = 1;
+`endif
+  logic [$clog2(PowerUp + 1)-1:0] clocks = '0;
+  logic started;
+  assign started = 32'(clocks) == PowerUp;
+  always_ff @(posedge clk) if (!started) clocks <= clocks + 1'b1;
 
   logic write_outside, collision;
   assign write_outside = started && write_en && 32'(write_address) >= Depth;

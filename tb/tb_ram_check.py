@@ -10,10 +10,10 @@ from tb.stream import start_clock
 
 
 async def written(dut: Any, place: int, read: int) -> None:
-    """Read and write in one clock, the second one."""
+    """Read and write in one clock, behind those in which a reset comes."""
     start_clock(dut.clk)
     dut.write_en.value = dut.read_en.value = 0
-    await ClockCycles(dut.clk, 1)
+    await ClockCycles(dut.clk, 17)
     dut.write_en.value = dut.read_en.value = 1
     dut.write_address.value, dut.write_data.value, dut.read_address.value = place, 1, read
     await ClockCycles(dut.clk, 2)
