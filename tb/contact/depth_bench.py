@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bench of the cores that take the outgoing depth, one cycle at a time, and depth maps that reach their special
-cases."""
+"""Bench of contact_events, one cycle at a time, and depth maps that reach its special cases."""
 
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import cocotb
@@ -86,14 +85,6 @@ class DepthBench:
             depth[row, column] = value
         return depth
 
-    def edge_maps(self) -> list[np.ndarray]:
-        """Return maps of special cases: a single depth in each corner, equal peaks, all and none above 0."""
-        bottom, right = self.rows - 1, self.columns - 1
-        corners = [(0, 0), (0, right), (bottom, 0), (bottom, right)]
-        maps = [self.lone(self.high, corner) for corner in corners]
-        maps += [self.lone(1, *corners), self.lone(1, (1, 2), (1, 3), (2, 1))]
-        return [*maps, self.full(self.high), self.full(0), self.full(self.low)]
-
     def random_map(self, rng: np.random.Generator) -> np.ndarray:
         """Return a random map of one of several kinds."""
         low, high = self.low, self.high
@@ -135,49 +126,3 @@ class DepthBench:
         if rng.random() < 0.05:
             on, off = rng.choice([WORD_LOW, WORD_HIGH, self.low, self.high], 2)
         return int(on), int(off)
-
-    def random_level(self, rng: np.random.Generator, depth: np.ndarray) -> int:
-        """Return a random threshold near the values of the map, within the range of a depth code."""
-        return int(np.clip(self.random_thresholds(rng, depth)[0], self.low, self.high))
-
-
-class MeasureBench(DepthBench):
-    """DepthBench of a core that measures each frame; its measure comes some cycles after the frame's last depth."""
-
-    def __init__(self, dut: Any, gap: float, latency: Callable[[int], int]) -> None:
-        super().__init__(dut, gap)
-        self.latency = latency(self.lanes)
-        self.received: list[Any] = []
-        self.due: dict[int, Any] = {}  # by the cycle of the frame's last depth
-
-    async def reset(self) -> None:
-        self.dut.rst.value = 1
-        await self.edge(False, [0] * self.lanes, (0, 0, 0))
-        self.dut.rst.value = 0
-        self.due.clear()
-        self.received.clear()
-
-    async def settle(self) -> None:
-        await self.idle(self.latency + 1)
-
-    async def interrupt_frames(self, broken: Any, whole: Any) -> None:
-        """Begin frames inside others; `broken` and `whole` are the settings of those cut short and of the others."""
-        rng = np.random.default_rng(cocotb.RANDOM_SEED)
-        for words in [*range(1, self.beats), *rng.integers(1, self.beats, 20)]:
-            await self.frame(self.random_map(rng), broken, words=int(words))
-            if words % 3 == 0:
-                await self.frame(self.random_map(rng), whole)
-                await self.settle()
-        assert len(self.received) > self.beats // 3 - 1
-
-    async def reset_in_every_cycle(self, broken: Any, whole: Any) -> None:
-        """Reset in any cycle of a frame and after it; `broken` and `whole` are the settings of a frame and the next."""
-        rng = np.random.default_rng(cocotb.RANDOM_SEED)
-        for clocks in range(1, self.beats + self.latency + 2):
-            await self.frame(self.random_map(rng), broken, words=clocks)
-            await self.idle(max(0, clocks - self.beats))
-            await self.reset()
-            await self.idle(int(rng.integers(0, self.latency + 2)))
-            await self.frame(self.random_map(rng), whole)
-            await self.settle()
-            assert len(self.received) == 1

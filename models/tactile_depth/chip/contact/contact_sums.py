@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
 from tactile_depth.chip.contact import beat_sums
+from tactile_depth.chip.fixed_point import codes
 
 
 def cycles_to_sums(lanes: int = 1) -> int:
@@ -90,3 +92,31 @@ class ContactSums:
             int((weights * (self.rows - 1 - rows)).sum()),
             int((weights * (self.columns - 1 - columns)).sum()),
         )
+
+
+class SumsByClock:
+    """ContactSums of beats, and sums on their way."""
+
+    def __init__(self, width: int, rows: int, columns: int, lanes: int, bottom_first: int) -> None:
+        self.width, self.lanes, self.sums = width, lanes, ContactSums(rows, columns, bool(bottom_first))
+        self._late: deque[Sums | None] = deque([None] * cycles_to_sums(lanes))
+
+    def clock(
+        self, *, rst: int, in_valid: int, in_position: int, in_data: int, threshold: int
+    ) -> dict[str, int | str | None]:
+        """Advance by one clock edge; return the outputs before it. Limits have no meaning without area."""
+        sums, ended = self._late.popleft(), None
+        out: dict[str, int | str | None] = {"sums_valid": sums is not None}
+        if sums is not None:
+            numbers = f"{sums.area:032b}{sums.weight:064b}{sums.row_moment:064b}{sums.column_moment:064b}"
+            limits = "".join(f"{place:016b}" for place in (*sums.greatest, *sums.least))
+            out["sums"] = numbers + limits * bool(sums.area)
+        if in_valid:
+            last = self.lanes - 1
+            for lane, depth in enumerate(codes(in_data, self.lanes, self.width)):
+                starts, ends = bool(in_position & 4) and lane == 0, bool(in_position & 1) and lane == last
+                ended = self.sums.beat(depth, starts, ends, *codes(threshold, 1, self.width))
+        self._late.append(ended)
+        if rst:
+            self._late = deque([None] * len(self._late))
+        return out
