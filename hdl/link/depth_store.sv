@@ -8,8 +8,8 @@
 // and keep, takes it; from the next clock up to frame_done its values and words can be read: value_data 2 clocks after
 // value_read with value_address, record_data 1 clock after record_word. value_read is low in the clock of frame_done.
 // A frame that comes whole replaces one that waits. `skipped`: a whole frame is lost so. While keep is low, frames are
-// not kept, and none is counted. Memory: two banks of a frame. Model of the banks:
-// models/tactile_depth/chip/link/bank_choice.py.
+// not kept, and none is counted. Memory: two banks of a frame. Model:
+// models/tactile_depth/chip/link/depth_store.py.
 
 `default_nettype none
 
