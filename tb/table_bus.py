@@ -14,7 +14,6 @@ from tactile_depth.chip.common.td_table_port import INDEX_BITS, WORD_BITS, answe
 from tb import pins, structs
 from tb.lockstep import Pins
 
-TO_TABLE = 1  # cycles from an access on the bus to the table
 READ_CLOCKS = 3  # cycles from a read on the bus to the entry
 
 

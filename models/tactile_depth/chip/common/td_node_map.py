@@ -47,13 +47,6 @@ def entries_per_node(channels: int) -> int:
     return 1 << (channels - 1).bit_length()
 
 
-def table_entries(nodes: np.ndarray) -> dict[int, int]:
-    """Return the table entries, index to word, that the bus writes for nodes (node rows, node columns, channels)."""
-    words = np.asarray(nodes).reshape(-1, np.shape(nodes)[-1])
-    step = entries_per_node(words.shape[-1])
-    return {step * node + channel: word for node, of in enumerate(words.tolist()) for channel, word in enumerate(of)}
-
-
 def node_map(nodes: np.ndarray, config: Configuration) -> np.ndarray:
     """Return the words of every pixel, int64 (rows, columns, ..), from words at nodes (node rows, node columns, ..)."""
     return round_half_even(interpolated(nodes, config), 2 * config.reference_block_log2 + 2)

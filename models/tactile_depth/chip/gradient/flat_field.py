@@ -18,6 +18,7 @@ before it in its row; a dark first pixel of a row reads flat, or as ratios of 0.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,8 +30,9 @@ from tactile_depth.chip.common.td_block_sum import block_sum
 from tactile_depth.chip.common.td_node_map import node_map
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_half_even, round_saturate
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.fixed_point import Format
+from tactile_depth.chip.fixed_point import Format, split
 from tactile_depth.chip.limits import DARKEST_LOG2, DEVIATION, RATIO
+from tactile_depth.chip.registers.register_map import TABLES
 from tactile_depth.chip.resources import Memory, Multiplier, Parts, Words, banks
 
 LATENCY = td_node_map.latency(1, 1) + 3
@@ -176,6 +178,69 @@ def hold_dark(codes: np.ndarray, dark: np.ndarray, flat: int) -> np.ndarray:
     columns = np.arange(dark.shape[-1])
     last = np.maximum.accumulate(np.where(dark, -1, columns), axis=-1)[..., None]
     return np.where(last < 0, flat, np.take_along_axis(codes, np.maximum(last, 0), axis=-2))
+
+
+class FlatField:
+    """Gains, and the pixels behind them: each valid, its position, dark, its colours, and how many of them clip."""
+
+    def __init__(self, config: Configuration, parameters: Mapping[str, int], entries: Sequence[int | None]) -> None:
+        self.map = td_node_map.NodeMap(config, entries, TABLES["reference"], 3, 1, 0)
+        self.drop, self._parameters, self._level = parameters["Drop"], parameters, 0
+        self._clear()
+        self._out: list[int | None] = [None] * 3
+
+    def _clear(self) -> None:
+        self._pixels: list[tuple] = [(0, 0, 0, [None] * 3, 0)] * 3
+        self._dark: int | None = 0
+        self._clipped: int | None = 0
+
+    def _relative(self, pixel: int, gains: int | None) -> tuple:
+        """Return whether a pixel is dark, its colours, and how many of them clip; None without known gains."""
+        dim, colours = pixel >> 24, [pixel >> place & 255 for place in (16, 0, 8)]
+        if gains is None:
+            return None, [None] * 3, None
+        words = split(gains, 3, self.map.width)
+        width, half, out = self._parameters["OutWidth"], (1 << self.drop) // 2, []
+        for colour, gain in zip(colours, words, strict=True):
+            product = colour * gain - (self._parameters["Offset"] << self.drop)
+            out.append((product + half - (product >> self.drop & 1 ^ 1)) >> self.drop)
+        high = (1 << width - (self._parameters["Offset"] != 0)) - 1
+        limited = [min(max(colour, -high - 1), high) for colour in out]
+        dark = dim or any(gain >> self.map.width - 1 for gain in words)
+        return dark, limited, 0 if dark else sum(map(int.__ne__, out, limited))
+
+    def clock(
+        self, *, dark_level: int, capture_gains: int, in_pixel: int, in_position: int, **pins: int
+    ) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        _, last, (valid, position, *_) = self._pixels
+        out = dict(zip(("out_red", "out_green", "out_blue"), self._out if valid else [None] * 3, strict=True))
+        out |= {"out_valid": valid, "out_position": position if valid else None}
+        out |= {"dark": self._dark, "saturations": self._clipped}
+        level = dark_level if in_position & 3 == 3 else self._level
+        dim = level > max(in_pixel >> place & 255 for place in (0, 8, 16))
+        data, start = (in_position << 1 | dim) << 24 | in_pixel, in_position & 3 == 3
+        nodes = self.map.clock(**pins, capture_words=capture_gains, in_frame_start=start, in_data=data)
+        out |= {name: nodes[name] for name in ("table_answer", "table_in_use")}
+        out["capture_read_gains"] = nodes["capture_read_words"]
+        self._dark = self._clipped = 0
+        if pins["en"]:
+            if pins["in_valid"]:
+                self._level = level
+            if last[0]:
+                self._dark, self._clipped = last[2], last[4]
+                if last[2] is None:
+                    self._out = [None] * 3
+                elif not last[2] or last[1] & 2:
+                    self._out = [self._parameters["Flat"]] * 3 if last[2] else last[3]
+            pixel = (0, 0, 0, [None] * 3, 0)
+            if nodes["out_valid"]:
+                data = nodes["out_data"]
+                pixel = (1, data >> 25, *self._relative(data & (1 << 25) - 1, nodes["out_words"]))
+            self._pixels = [pixel, *self._pixels[:-1]]
+        if pins["rst"]:
+            self._clear()
+        return out
 
 
 def parts(config: Configuration) -> Parts:
