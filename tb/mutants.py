@@ -116,11 +116,7 @@ def children(numbers: Any, jobs: int, keep: Any) -> Any:
 async def every_mutant(dut: Any) -> None:
     wanted = RUN.mutants
     with Path(wanted["results"]).open("a", buffering=1) as results:
-        number = children(
-            wanted["numbers"],
-            wanted["jobs"],
-            lambda result: results.write(json.dumps(result) + "\n"),
-        )
+        number = children(wanted["numbers"], wanted["jobs"], lambda result: results.write(json.dumps(result) + "\n"))
     if number is None:
         cocotb.regression._manager_inst._test_queue.clear()  # the children have run the tests
         return

@@ -43,12 +43,7 @@ def built(form: str, picture: tuple[int, int], window: tuple[int, int, int, int]
 
 STRUCTURES = (
     built("raw10_lsb", (23, 42), (3, 2, 36, 18), on=VERILATOR, mutants=VERILATOR),
-    built(
-        "yuyv_bytes",
-        (13, 28),
-        (2, 1, 24, 12),
-        on=ICARUS,
-    ),
+    built("yuyv_bytes", (13, 28), (2, 1, 24, 12), on=ICARUS),
 )
 MUTANTS = Mutants(flat=False)
 NO_PROOF = "camera_unit and tactile_depth in a row"

@@ -28,29 +28,13 @@ STRUCTURES = (
     built(15, 4, 10, 1, on=VERILATOR),
     built(5, 4, 8, 0, on=VERILATOR),
     built(5, 2, 12, 1, on=ICARUS, mutants=ICARUS),
-    built(
-        1,
-        1,
-        8,
-        0,
-        on=ICARUS,
-    ),
+    built(1, 1, 8, 0, on=ICARUS),
     built(3, 2, 10, 0, on=ICARUS, mutants=ICARUS),
     *(built(*ratio, 8, 0) for ratio in RATIOS if ratio not in ((1, 1), (5, 4))),
     *(built(*ratio, 10, 1) for ratio in PATTERN_RATIOS if ratio != (15, 4)),
     built(2, 1, 8, 1),
-    built(
-        2,
-        1,
-        12,
-        1,
-    ),
-    built(
-        8,
-        1,
-        10,
-        0,
-    ),
+    built(2, 1, 12, 1),
+    built(8, 1, 10, 0),
 )
 MUTANTS = Mutants(repeats=2, flat=False)
 PROOFS = tuple(

@@ -26,13 +26,7 @@ PROTOCOL = {
     "out_samples out_colour out_row_start out_frame_start out_gains": "counts & out_valid",
 }
 MUTANTS = Mutants(repeats=2)
-PROOFS = tuple(
-    Proof(
-        FULL_WIDTH,
-        {"Bits": bits, "Channels": channels},
-    )
-    for bits, channels in ((10, 1), (8, 3))
-)
+PROOFS = tuple(Proof(FULL_WIDTH, {"Bits": bits, "Channels": channels}) for bits, channels in ((10, 1), (8, 3)))
 
 
 def legal(core: BlackLevel, pins: Pins) -> None:

@@ -14,11 +14,7 @@ from tb.structures import ICARUS, VERILATOR, of_parameters
 built = of_parameters("Numerator Denominator")
 STRUCTURES = (
     built(15, 4, on=VERILATOR),
-    built(
-        1,
-        1,
-        on=ICARUS,
-    ),
+    built(1, 1, on=ICARUS),
     built(7, 5, on=ICARUS, mutants=ICARUS),
     built(8, 1, on=ICARUS, mutants=ICARUS),
     built(2, 1),

@@ -69,12 +69,7 @@ STRUCTURES = (
     built(arguments("yuyv_bytes", (10, 16)), on=VERILATOR, mutants=ICARUS),
     built(arguments("rgb888", (4, 9)), on=ICARUS),
     *(built(choices) for choices in every_format_phase_and_ratio(3)),
-    *(
-        built(
-            choices,
-        )
-        for choices in every_format_phase_and_ratio(1)
-    ),
+    *(built(choices) for choices in every_format_phase_and_ratio(1)),
     built(arguments("yuyv", (7, 18), window=[3, 1, 10, 5])),
     built(arguments("yuyv", (7, 18), window=[4, 1, 9, 5])),
 )

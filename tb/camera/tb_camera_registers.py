@@ -38,23 +38,10 @@ def built(choices: dict[str, Any], **runs: Any) -> Structure:
     return Structure(camera_registers_parameters(CameraConfiguration(**choices)), **runs)
 
 
-STRUCTURES = (
-    built(VGA, on=VERILATOR),
-    built(OTHER, on=ICARUS, mutants=ICARUS),
-)
+STRUCTURES = (built(VGA, on=VERILATOR), built(OTHER, on=ICARUS, mutants=ICARUS))
 PROTOCOL = {"counts": "live"}
-MUTANTS = Mutants(
-    outside=(
-        "dropped",
-        "lost",
-    ),
-    flat=False,
-)
-PROOFS = (
-    Proof(
-        FULL_WIDTH,
-    ),
-)
+MUTANTS = Mutants(outside=("dropped", "lost"), flat=False)
+PROOFS = (Proof(FULL_WIDTH),)
 
 
 PARAMETERS = (

@@ -55,10 +55,7 @@ def built(entries: str, **runs: Any) -> Structure:
     )
 
 
-STRUCTURES = (
-    built("short", on=BOTH),
-    built("wide", on=ICARUS, mutants=ICARUS),
-)
+STRUCTURES = (built("short", on=BOTH), built("wide", on=ICARUS, mutants=ICARUS))
 PROTOCOL = {"counts": "live"}
 REFUSED = {
     "AddressBytes_must_be_1_or_2": "AddressBytes=3",
@@ -66,14 +63,7 @@ REFUSED = {
     "MillisecondClocks_and_Entries_must_be_at_least_2_XclkHalfClocks_and_Attempts_1": "Entries=1, Attempts=0",
     "DeviceId_must_be_an_even_byte": "DeviceId=67, DeviceId=256",
 }
-PROOFS = (
-    Proof(
-        "a list with every kind of entry",
-        {"Bus": 0},
-        roms=camera_list,
-        free=("sent", "caught"),
-    ),
-)
+PROOFS = (Proof("a list with every kind of entry", {"Bus": 0}, roms=camera_list, free=("sent", "caught")),)
 
 
 @cocotb.test()

@@ -25,13 +25,7 @@ STRUCTURES = (
     built(3, 2, 2, 1, 5, on=ICARUS, mutants=ICARUS),
     built(2, 2, 1, 1, 13),
     built(5, 4, 2, 0, 13),
-    built(
-        3,
-        2,
-        2,
-        1,
-        13,
-    ),
+    built(3, 2, 2, 1, 13),
 )
 PROTOCOL = {
     "counts": "live & ~reset",
@@ -40,10 +34,7 @@ PROTOCOL = {
 }
 MUTANTS = Mutants(repeats=2)
 PROOFS = tuple(
-    Proof(
-        "rows and columns are only counted and compared",
-        {"WordsPerPixel": words, "PixelPairs": pairs},
-    )
+    Proof("rows and columns are only counted and compared", {"WordsPerPixel": words, "PixelPairs": pairs})
     for words, pairs in ((1, 0), (1, 1))
 )
 
@@ -68,7 +59,7 @@ async def pictures(dut: Any) -> None:
     }
 
     def legal(core: CameraWindow, pins: Pins) -> None:
-        """What stands for a size is how far the picture goes beyond the window, for a mark where it is wrong.
+        """Set sizes, as far beyond the window as the choice says, and marks, wrong where it says so.
 
         A tenth of the starts is missing.
         """

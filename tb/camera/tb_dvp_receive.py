@@ -20,18 +20,10 @@ from tb.structures import BOTH, ICARUS, of_parameters
 from tb.two_clocks import RATIOS, run_clock, watch
 
 built = of_parameters("FifoLog2")
-STRUCTURES = (
-    built(4, on=BOTH),
-    built(3, on=ICARUS, mutants=ICARUS),
-)
+STRUCTURES = (built(4, on=BOTH), built(3, on=ICARUS, mutants=ICARUS))
 REFUSED = {"FifoLog2_must_be_at_least_3_or_nearly_equal_clocks_lose_every_frame": "FifoLog2=2"}
 PROTOCOL = {"counts": "live", "m_axis_tdata m_axis_tlast m_axis_tuser": "live & m_axis_tvalid"}
-PROOFS = (
-    Proof(
-        "the widths in use; td_async_fifo is proven by itself",
-        free=("write_ready", "read_valid", "word"),
-    ),
-)
+PROOFS = (Proof("the widths in use; td_async_fifo is proven by itself", free=("write_ready", "read_valid", "word")),)
 
 
 ROWS, BYTES = 3, 12

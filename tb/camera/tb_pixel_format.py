@@ -25,49 +25,26 @@ def built(form: str, phase: int, **runs: Any) -> Structure:
 
 STRUCTURES = (
     built("yuyv", 0, on=BOTH, mutants=ICARUS),
-    built(
-        "raw10",
-        1,
-        on=VERILATOR,
-    ),
+    built("raw10", 1, on=VERILATOR),
     built("raw10_lsb", 2, on=ICARUS, mutants=ICARUS),
     built("rgb565_bytes", 0, on=ICARUS, mutants=ICARUS),
-    built(
-        "rgb888",
-        0,
-        on=ICARUS,
-    ),
-    built(
-        "rgb565",
-        0,
-    ),
+    built("rgb888", 0, on=ICARUS),
+    built("rgb565", 0),
     built("yuyv_bytes", 0),
-    built(
-        "raw8",
-        3,
-    ),
-    built(
-        "raw12_lsb",
-        2,
-    ),
+    built("raw8", 3),
+    built("raw12_lsb", 2),
     *(built(form, phase) for form in RAW for phase in range(4)),
 )
 MUTANTS = Mutants(repeats=2)
 PROOFS = (
     *(
-        Proof(
-            FULL_WIDTH,
-            {"Format": FORMATS[form].code, "Phase": phase},
-        )
+        Proof(FULL_WIDTH, {"Format": FORMATS[form].code, "Phase": phase})
         for form, phase in (
             *(("rgb888", 0), ("rgb565", 0), ("rgb565_bytes", 0), ("raw8", 1), ("raw10", 0), ("raw10_lsb", 2)),
             *(("raw12", 3), ("raw12_lsb", 0)),
         )
     ),
-    Proof(
-        FULL_WIDTH,
-        {"Format": FORMATS["yuyv"].code},
-    ),
+    Proof(FULL_WIDTH, {"Format": FORMATS["yuyv"].code}),
 )
 
 

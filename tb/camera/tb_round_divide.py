@@ -15,12 +15,7 @@ from tb.structures import BOTH, ICARUS, Mutants, of_parameters
 built = of_parameters("TotalWidth WeightWidth Drop")
 STRUCTURES = (
     built(36, 8, 14, on=BOTH),
-    built(
-        12,
-        1,
-        2,
-        on=ICARUS,
-    ),
+    built(12, 1, 2, on=ICARUS),
     built(17, 7, 2, on=ICARUS, mutants=ICARUS),
     built(20, 3, 4),
     built(50, 25, 16),

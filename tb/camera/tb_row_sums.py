@@ -21,12 +21,7 @@ STRUCTURES = (
     built(8, 1, 14, 1),
     built(15, 4, 10, 0),
     built(2, 1, 10, 1),
-    built(
-        4,
-        3,
-        10,
-        0,
-    ),
+    built(4, 3, 10, 0),
 )
 PROTOCOL = {
     "begun": {"begins": "en & in_valid"},
@@ -35,10 +30,7 @@ PROTOCOL = {
     "out_sums out_red_columns": "counts & out_ends",
 }
 PROOFS = tuple(
-    Proof(
-        "sums are exact at any width",
-        {"Numerator": numerator, "Denominator": denominator, "Bayer": bayer},
-    )
+    Proof("sums are exact at any width", {"Numerator": numerator, "Denominator": denominator, "Bayer": bayer})
     for numerator, denominator, bayer in ((1, 1, 0), (4, 3, 0), (2, 1, 1), (5, 2, 1))
 )
 

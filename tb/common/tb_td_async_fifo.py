@@ -16,17 +16,11 @@ from tb.structures import BOTH, ICARUS, of_parameters
 from tb.two_clocks import RATIOS, run_clock, watch
 
 built = of_parameters("Width DepthLog2")
-STRUCTURES = (
-    built(10, 4, on=BOTH),
-    built(3, 2, on=ICARUS, mutants=ICARUS),
-)
+STRUCTURES = (built(10, 4, on=BOTH), built(3, 2, on=ICARUS, mutants=ICARUS))
 REFUSED = {"DepthLog2_must_be_at_least_2": "DepthLog2=1"}
 PROTOCOL = {"read_data": "read_valid"}
 PROOFS = (
-    Proof(
-        f"codes of three bits, words are only counted; {WORD_FREE}",
-        free=("written_code_q", "fetched_code_q"),
-    ),
+    Proof(f"codes of three bits, words are only counted; {WORD_FREE}", free=("written_code_q", "fetched_code_q")),
 )
 
 

@@ -33,11 +33,7 @@ STRUCTURES = (
     built(5, 6, DISTRIBUTED, on=ICARUS, mutants=ICARUS),
     built(42, 64, BLOCK),
 )
-PROOFS = (
-    Proof(
-        WORD_FREE,
-    ),
-)
+PROOFS = (Proof(WORD_FREE),)
 
 
 def legal(table: BankedTable, pins: Pins) -> None:

@@ -12,18 +12,11 @@ from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("Words")
-STRUCTURES = (
-    built(16, on=VERILATOR),
-    built(8, on=ICARUS, mutants=ICARUS),
-    built(64),
-)
+STRUCTURES = (built(16, on=VERILATOR), built(8, on=ICARUS, mutants=ICARUS), built(64))
 REFUSED = {"Words_must_be_at_least_2": "Words=1"}
 PROTOCOL = {"counts": "live", "position": "live & active"}
 PROOFS = tuple(
-    Proof(
-        why,
-        {"Words": words},
-    )
+    Proof(why, {"Words": words})
     for words, why in ((2, "the smallest"), (8, "one counter, the same logic at every power of two"))
 )
 

@@ -24,10 +24,7 @@ STRUCTURES = (
 )
 REFUSED = {"Delay_must_be_at_least_1": "Delay=0"}
 PROOFS = tuple(
-    Proof(
-        why,
-        {"Delay": delay},
-    )
+    Proof(why, {"Delay": delay})
     for delay, why in (
         (1, "the smallest"),
         (4, f"the longest of registers; {WORD_FREE}"),

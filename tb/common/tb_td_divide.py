@@ -21,9 +21,7 @@ STRUCTURES = (
     built(1, 2),
     built(15, 12),
 )
-REFUSED = {
-    "DivisorWidth_must_be_at_least_1_and_QuotientWidth_at_least_2": "DivisorWidth=0, QuotientWidth=1",
-}
+REFUSED = {"DivisorWidth_must_be_at_least_1_and_QuotientWidth_at_least_2": "DivisorWidth=0, QuotientWidth=1"}
 PROOFS = (
     Proof(
         "every numerator and divisor; a bit is found in the same way at any width",

@@ -14,12 +14,7 @@ from tb.stream import drive, parameters, parametrize
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("AWidth BWidth")
-STRUCTURES = (
-    built(27, 18, on=VERILATOR),
-    built(15, 10, on=ICARUS),
-    built(35, 24),
-    built(4, 3, mutants=ICARUS),
-)
+STRUCTURES = (built(27, 18, on=VERILATOR), built(15, 10, on=ICARUS), built(35, 24), built(4, 3, mutants=ICARUS))
 PROTOCOL = {"settled": {"Clocks": 4}, "counts": "settled"}
 PROOFS = (Proof("no control but en; no width enters"),)
 

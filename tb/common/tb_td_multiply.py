@@ -14,12 +14,7 @@ from tb.stream import drive, parameters, parametrize
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("AWidth BWidth")
-STRUCTURES = (
-    built(27, 18, on=VERILATOR),
-    built(35, 24, on=ICARUS),
-    built(15, 10, mutants=ICARUS),
-    built(2, 3),
-)
+STRUCTURES = (built(27, 18, on=VERILATOR), built(35, 24, on=ICARUS), built(15, 10, mutants=ICARUS), built(2, 3))
 PROTOCOL = {"settled": {}, "counts": "settled"}
 PROOFS = (Proof("no control but en; no width enters"),)
 

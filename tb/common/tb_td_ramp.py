@@ -21,17 +21,10 @@ STRUCTURES = (
     built(9, 5, 2),
     built(40, 37, 32),
 )
-REFUSED = {
-    "Count_must_be_a_power_of_two": "Count=0, Count=3",
-    "StepWidth_must_be_at_most_Width": "StepWidth=33",
-}
+REFUSED = {"Count_must_be_a_power_of_two": "Count=0, Count=3", "StepWidth_must_be_at_most_Width": "StepWidth=33"}
 PROTOCOL = {"settled": {"Clocks": "$clog2(Count)"}, "counts": "settled"}
 PROOFS = tuple(
-    Proof(
-        "sums are exact at any width; no tree, and one of two levels",
-        {"Count": count},
-    )
-    for count in (1, 4)
+    Proof("sums are exact at any width; no tree, and one of two levels", {"Count": count}) for count in (1, 4)
 )
 
 

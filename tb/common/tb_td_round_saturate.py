@@ -28,23 +28,10 @@ STRUCTURES = (
     built(8, -3, 9, on=ICARUS, mutants=ICARUS),
     built(8, -3, 14, on=ICARUS),
 )
-REFUSED = {
-    "Drop_must_leave_a_bit_of_the_input": "Drop=46",
-    "OutWidth_must_be_at_least_2": "OutWidth=1",
-}
+REFUSED = {"Drop_must_leave_a_bit_of_the_input": "Drop=46", "OutWidth_must_be_at_least_2": "OutWidth=1"}
 PROOFS = tuple(
-    Proof(
-        FULL_WIDTH,
-        {"InWidth": in_width, "Drop": drop, "OutWidth": out_width},
-    )
-    for in_width, drop, out_width in (
-        (48, 17, 27),
-        (29, 1, 27),
-        (28, 0, 27),
-        (24, -3, 27),
-        (27, -3, 24),
-        (12, 9, 8),
-    )
+    Proof(FULL_WIDTH, {"InWidth": in_width, "Drop": drop, "OutWidth": out_width})
+    for in_width, drop, out_width in ((48, 17, 27), (29, 1, 27), (28, 0, 27), (24, -3, 27), (27, -3, 24), (12, 9, 8))
 )
 
 

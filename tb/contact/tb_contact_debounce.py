@@ -11,17 +11,9 @@ from tb.lockstep import CLOCKS, Pins, play
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("AreaWidth")
-STRUCTURES = (
-    built(15, on=VERILATOR),
-    built(5, on=ICARUS, mutants=ICARUS),
-    built(21),
-)
+STRUCTURES = (built(15, on=VERILATOR), built(5, on=ICARUS, mutants=ICARUS), built(21))
 PROTOCOL = {"begun": {"begins": "area_valid"}, "counts": "live & ~reset", "began ended": "counts & begun"}
-PROOFS = (
-    Proof(
-        "areas are only compared; every count of frames",
-    ),
-)
+PROOFS = (Proof("areas are only compared; every count of frames"),)
 
 AGAINST = 0  # area that stands for one that speaks against the last result
 

@@ -47,7 +47,7 @@ PROTOCOL = {
     "any_above peak peak_row peak_column": "counts & peak_valid",
 }
 PROOFS = proofs(
-    "positions are only counted; either order of rows; the peak of a beat of several depths is proven of beat_peak",
+    "positions are only counted; either order of rows; the peak of a beat of several depths is proven of beat_peak"
 )
 
 

@@ -13,14 +13,10 @@ from tb.lockstep import CLOCKS, Pins, play
 from tb.stream import parameters
 
 STRUCTURES = structures(8)
-PROTOCOL = {
-    "depth_frames": {"Columns": "Columns / Lanes"},
-    "counts": "live & ~reset",
-    "sums": "counts & sums_valid",
-}
+PROTOCOL = {"depth_frames": {"Columns": "Columns / Lanes"}, "counts": "live & ~reset", "sums": "counts & sums_valid"}
 PROOFS = proofs(
     "positions are only counted; sums are exact at any width; either order of rows; the sums of a beat of "
-    "several depths are proven of beat_sums",
+    "several depths are proven of beat_sums"
 )
 
 

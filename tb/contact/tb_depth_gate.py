@@ -12,11 +12,7 @@ from tb.stream import depth_position
 from tb.structures import BOTH, ICARUS, Structure
 
 STRUCTURES = (Structure({"Width": 12}, on=BOTH, mutants=ICARUS),)
-PROOFS = (
-    Proof(
-        f"words of a frame are only counted; {WORD_FREE}",
-    ),
-)
+PROOFS = (Proof(f"words of a frame are only counted; {WORD_FREE}"),)
 
 
 def legal(model: DepthGate, pins: Pins) -> None:

@@ -12,17 +12,9 @@ from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("Words")
-STRUCTURES = (
-    built(13, on=VERILATOR),
-    built(3, on=ICARUS, mutants=ICARUS),
-    built(2),
-)
+STRUCTURES = (built(13, on=VERILATOR), built(3, on=ICARUS, mutants=ICARUS), built(2))
 PROTOCOL = {"counts": "live & ~reset", "m_event_tdata m_event_tlast": "counts & m_event_tvalid"}
-PROOFS = (
-    Proof(
-        "words are sent alike; as many to a packet as in use",
-    ),
-)
+PROOFS = (Proof("words are sent alike; as many to a packet as in use"),)
 
 
 @cocotb.test()

@@ -28,8 +28,7 @@ PROTOCOL = {
 }
 PROOFS = tuple(
     Proof(
-        f"{FULL_WIDTH}; of several depths, which are only compared, any one decides",
-        {"Width": width, "Lanes": lanes},
+        f"{FULL_WIDTH}; of several depths, which are only compared, any one decides", {"Width": width, "Lanes": lanes}
     )
     for width, lanes in ((24, 1), (4, 2))
 )

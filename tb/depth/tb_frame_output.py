@@ -16,12 +16,7 @@ STRUCTURES = (
     Structure({"Width": 12, "Rows": 16, "Columns": 2}, on=BOTH, mutants=ICARUS),
 )
 PROTOCOL = {"counts": "live & ~reset & en", "out_data": "counts & out_valid"}
-PROOFS = (
-    Proof(
-        f"rows and columns are only counted; {WORD_FREE}",
-        {"Rows": 3, "Columns": 4},
-    ),
-)
+PROOFS = (Proof(f"rows and columns are only counted; {WORD_FREE}", {"Rows": 3, "Columns": 4}),)
 
 
 def legal(model: FrameOutput, pins: Pins) -> None:

@@ -21,10 +21,7 @@ STRUCTURES = (
     built(4, 9, 6, mutants=ICARUS),
 )
 PROOFS = tuple(
-    Proof(
-        f"one, two and three places; {WORD_FREE}",
-        {"Latency": latency, "Pixels": pixels},
-    )
+    Proof(f"one, two and three places; {WORD_FREE}", {"Latency": latency, "Pixels": pixels})
     for latency, pixels in ((3, 4), (5, 4), (7, 3))
 )
 

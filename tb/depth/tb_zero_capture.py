@@ -20,15 +20,7 @@ def built(*case: int, **runs: Any) -> Structure:
 
 
 STRUCTURES = (
-    built(
-        16,
-        8,
-        1,
-        24,
-        5,
-        1,
-        on=VERILATOR,
-    ),
+    built(16, 8, 1, 24, 5, 1, on=VERILATOR),
     built(32, 13, 2, 20, 3, 4, on=VERILATOR),
     built(4, 5, 1, 4, 2, 1, on=ICARUS, mutants=ICARUS),
     built(4, 2, 1, 6, 1, 1, on=ICARUS),
@@ -38,14 +30,7 @@ STRUCTURES = (
     built(16, 16, 2, 24, 3, 1),
     built(128, 20, 3, 16, 1, 1),
     built(16, 9, 1, 32, 0, 1),
-    built(
-        16,
-        8,
-        1,
-        24,
-        LARGEST_LOG2,
-        1,
-    ),
+    built(16, 8, 1, 24, LARGEST_LOG2, 1),
     built(128, 20, 3, 24, 2, 8),
     built(256, 9, 3, 24, 1, 32),
     built(128, 17, 3, 24, 1, 32),
@@ -68,10 +53,7 @@ PROOFS = (
         )
         for rows, lanes in ((5, 1), (2, 1), (3, 2), (3, 4))
     ),
-    Proof(
-        f"a cut row of blocks; sums are exact at any width; {ROUNDING}",
-        {"Sums": 1, "Rows": 3},
-    ),
+    Proof(f"a cut row of blocks; sums are exact at any width; {ROUNDING}", {"Sums": 1, "Rows": 3}),
 )
 
 

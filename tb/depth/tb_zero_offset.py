@@ -32,14 +32,7 @@ def built(columns: int, rows: int, block_log2: int, width: int, lanes: int, **ru
 STRUCTURES = (
     built(16, 15, 2, 4, 1, on=VERILATOR, mutants=ICARUS),
     built(32, 15, 2, 8, 4, on=VERILATOR),
-    built(
-        16,
-        8,
-        1,
-        24,
-        1,
-        on=ICARUS,
-    ),
+    built(16, 8, 1, 24, 1, on=ICARUS),
     built(4, 2, 1, 5, 1, on=ICARUS),
     built(16, 11, 2, 6, 2, on=ICARUS, mutants=ICARUS),
     built(16, 16, 1, 12, 1),

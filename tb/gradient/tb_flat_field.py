@@ -32,14 +32,7 @@ def built(columns: int, rows: int, block_log2: int, output: Format, gain_width: 
 
 STRUCTURES = (
     built(16, 11, 2, CODE, 24, on=VERILATOR, mutants=ICARUS),
-    built(
-        16,
-        8,
-        1,
-        DEVIATION,
-        17,
-        on=ICARUS,
-    ),
+    built(16, 8, 1, DEVIATION, 17, on=ICARUS),
     built(16, 11, 2, DEVIATION, 24, mutants=ICARUS),
     built(32, 21, 1, CODE, 24),
     built(128, 8, 3, CODE, 24),
@@ -60,12 +53,7 @@ PROTOCOL = {
     "dark saturations": "live & ~reset",
 }
 PROOFS = (
-    Proof(
-        f"every clock reads a node; {WORD_FREE}",
-        {"Meets": 1},
-        roms=gain_rom(2),
-        free=("gains",),
-    ),
+    Proof(f"every clock reads a node; {WORD_FREE}", {"Meets": 1}, roms=gain_rom(2), free=("gains",)),
     *(
         Proof(
             f"products are exact at any width; {ROUNDING}",

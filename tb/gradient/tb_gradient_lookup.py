@@ -31,18 +31,8 @@ def built(bits: int, data_width: int, **runs: Any) -> Structure:
     )
 
 
-STRUCTURES = (
-    built(2, 24, on=VERILATOR),
-    built(1, 32, on=ICARUS, mutants=ICARUS),
-    built(3, 12),
-    built(4, 24),
-)
-PROOFS = (
-    Proof(
-        f"{WORD_FREE}; one bit a channel has the same index",
-        roms=gradient_rom,
-    ),
-)
+STRUCTURES = (built(2, 24, on=VERILATOR), built(1, 32, on=ICARUS, mutants=ICARUS), built(3, 12), built(4, 24))
+PROOFS = (Proof(f"{WORD_FREE}; one bit a channel has the same index", roms=gradient_rom),)
 
 
 def legal(lookup: GradientLookup, pins: Pins) -> None:

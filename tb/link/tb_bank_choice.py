@@ -11,11 +11,7 @@ from tb.lockstep import Pins, play
 from tb.structures import BOTH, ICARUS, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
-PROOFS = (
-    Proof(
-        "it has no size; frames are numbered modulo 8, and at most three are inside",
-    ),
-)
+PROOFS = (Proof("it has no size; frames are numbered modulo 8, and at most three are inside"),)
 
 
 def legal(banks: BankChoice, pins: Pins) -> None:

@@ -13,24 +13,14 @@ from tb.stream import parameters
 from tb.structures import BOTH, ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("Longest")
-STRUCTURES = (
-    built(LONGEST_PIECE, on=VERILATOR),
-    built(300, on=BOTH, mutants=BOTH),
-    built(2, on=ICARUS),
-)
+STRUCTURES = (built(LONGEST_PIECE, on=VERILATOR), built(300, on=BOTH, mutants=BOTH), built(2, on=ICARUS))
 PROTOCOL = {
     "holds": "~(in_valid & in_broken)",
     "counts": "live",
     "out_data": "live & out_valid",
     "out_bad": "live & out_end",
 }
-PROOFS = (
-    Proof(
-        "the length of a piece is only counted",
-        {"Longest": 5},
-        steps=3,
-    ),
-)
+PROOFS = (Proof("the length of a piece is only counted", {"Longest": 5}, steps=3),)
 
 
 def legal(model: CobsDecode, pins: Pins) -> None:

@@ -12,19 +12,11 @@ from tb.stream import parameters
 from tb.structures import BOTH, ICARUS, Mutants, of_parameters
 
 built = of_parameters("Run")
-STRUCTURES = (
-    built(254, on=BOTH),
-    built(3, on=ICARUS, mutants=ICARUS),
-    built(2),
-)
+STRUCTURES = (built(254, on=BOTH), built(3, on=ICARUS, mutants=ICARUS), built(2))
 MUTANTS = Mutants(repeats=2)
 PROTOCOL = {"counts": "live & ~reset", "out_data": "counts & out_valid"}
 PROOFS = tuple(
-    Proof(
-        "the length of a run is only counted; an arbitrary byte is followed",
-        {"Run": run},
-    )
-    for run in (2, 3)
+    Proof("the length of a run is only counted; an arbitrary byte is followed", {"Run": run}) for run in (2, 3)
 )
 
 

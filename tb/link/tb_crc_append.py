@@ -14,12 +14,7 @@ from tb.structures import BOTH, ICARUS, Mutants, Structure
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
 MUTANTS = Mutants(repeats=2)
 PROTOCOL = {"stays": "in_", "counts": "live & ~reset", "out_data out_last": "counts & out_valid"}
-PROOFS = (
-    Proof(
-        FULL_WIDTH,
-        steps=2,
-    ),
-)
+PROOFS = (Proof(FULL_WIDTH, steps=2),)
 
 
 class CrcAppend:

@@ -14,13 +14,7 @@ from tb.stream import MANY, drive, parameters, parametrize
 from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
 
 built = of_parameters("DataWidth")
-STRUCTURES = (
-    built(24, on=VERILATOR, mutants=ICARUS),
-    built(12, on=ICARUS),
-    built(32, on=ICARUS),
-    built(16),
-    built(2),
-)
+STRUCTURES = (built(24, on=VERILATOR, mutants=ICARUS), built(12, on=ICARUS), built(32, on=ICARUS), built(16), built(2))
 MUTANTS = Mutants(repeats=4)
 PROOFS = (
     Proof(

@@ -25,11 +25,7 @@ from tb.stream import MANY, parameters, parametrize, start_clock
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("Rows Columns DataWidth Lanes BottomFirst")
-STRUCTURES = (
-    built(6, 16, 24, 1, 1, on=ICARUS),
-    built(5, 32, 15, 4, 0, on=VERILATOR),
-    built(32, 16, 18, 2, 1),
-)
+STRUCTURES = (built(6, 16, 24, 1, 1, on=ICARUS), built(5, 32, 15, 4, 0, on=VERILATOR), built(32, 16, 18, 2, 1))
 REFUSED = {
     "Rows_must_be_2_to_4096": "Rows=1, Rows=4097",
     "Columns_must_be_a_power_of_two_2_to_4096": "Columns=1, Columns=12, Columns=8192",

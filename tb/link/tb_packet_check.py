@@ -20,11 +20,7 @@ PROTOCOL = {
     "out_good": "live & out_end",
 }
 MUTANTS = Mutants()  # a CRC is slow in Icarus
-PROOFS = (
-    Proof(
-        "the widths in use",
-    ),
-)
+PROOFS = (Proof("the widths in use"),)
 AT_ONCE, GOOD = -2, -1  # kinds of packets; the others have this bit wrong
 POLYNOMIAL = 0xEDB88320
 

@@ -13,12 +13,7 @@ from tb.lockstep import CLOCKS, WORD, Pins, play
 from tb.structures import BOTH, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=BOTH),)
-PROOFS = (
-    Proof(
-        "the widths in use",
-        steps=3,
-    ),
-)
+PROOFS = (Proof("the widths in use", steps=3),)
 
 
 LIMITS = (  # lengths at the limits of the kinds, and near each power of two

@@ -16,11 +16,7 @@ PROTOCOL = {
     "counts": "live & ~reset",
     "out_data out_last": "counts & out_valid",
 }
-PROOFS = (
-    Proof(
-        FULL_WIDTH,
-    ),
-)
+PROOFS = (Proof(FULL_WIDTH),)
 
 
 @cocotb.test()

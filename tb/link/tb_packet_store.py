@@ -13,18 +13,8 @@ from tb.stream import parameters
 from tb.structures import BOTH, ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("BankBytes")
-STRUCTURES = (
-    built(1024, on=VERILATOR),
-    built(8, on=ICARUS, mutants=BOTH),
-    built(4),
-)
-PROOFS = (
-    Proof(
-        "places are only counted; an arbitrary byte is followed",
-        {"BankBytes": 4},
-        steps=3,
-    ),
-)
+STRUCTURES = (built(1024, on=VERILATOR), built(8, on=ICARUS, mutants=BOTH), built(4))
+PROOFS = (Proof("places are only counted; an arbitrary byte is followed", {"BankBytes": 4}, steps=3),)
 
 
 def legal(model: PacketStore, pins: Pins) -> None:

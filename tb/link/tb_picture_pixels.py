@@ -13,24 +13,14 @@ from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
 
 built = of_parameters("Rows Columns")
-STRUCTURES = (
-    built(12, 16, on=VERILATOR),
-    built(3, 4, on=ICARUS, mutants=ICARUS),
-    built(5, 6),
-    built(2, 300),
-)
+STRUCTURES = (built(12, 16, on=VERILATOR), built(3, 4, on=ICARUS, mutants=ICARUS), built(5, 6), built(2, 300))
 PROTOCOL = {
     "stays": "picture_",
     "counts": "live & ~reset",
     "m_axis_tdata m_axis_tlast m_axis_tuser": "counts & m_axis_tvalid",
 }
 MUTANTS = Mutants(repeats=4)
-PROOFS = (
-    Proof(
-        "rows and columns are only counted",
-        {"Rows": 2, "Columns": 3},
-    ),
-)
+PROOFS = (Proof("rows and columns are only counted", {"Rows": 2, "Columns": 3}),)
 
 
 @cocotb.test()

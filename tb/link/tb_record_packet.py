@@ -13,11 +13,7 @@ from tb.structures import BOTH, ICARUS, Mutants, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
 MUTANTS = Mutants(flat=False)
-PROOFS = (
-    Proof(
-        f"the size in use; one bit of an arbitrary word is followed: {WORD_FREE}",
-    ),
-)
+PROOFS = (Proof(f"the size in use; one bit of an arbitrary word is followed: {WORD_FREE}"),)
 
 
 BANK_CLOCKS = 2  # from the last byte of a word to the next word

@@ -18,18 +18,9 @@ from tb.stream import MANY, parameters, parametrize, start_clock
 from tb.structures import BOTH, ICARUS, Mutants, of_parameters
 
 built = of_parameters("AddressWidth Accesses")
-STRUCTURES = (
-    built(10, 128, on=BOTH),
-    built(4, 3, on=ICARUS, mutants=ICARUS),
-    built(16, 128),
-)
+STRUCTURES = (built(10, 128, on=BOTH), built(4, 3, on=ICARUS, mutants=ICARUS), built(16, 128))
 MUTANTS = Mutants(repeats=2)
-PROOFS = (
-    Proof(
-        "accesses are only counted, and no value is looked at; td_ram is proven by itself",
-        free=("word",),
-    ),
-)
+PROOFS = (Proof("accesses are only counted, and no value is looked at; td_ram is proven by itself", free=("word",)),)
 
 
 Request = Read | Write

@@ -12,11 +12,7 @@ from tb.structures import BOTH, ICARUS, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
 PROTOCOL = {"counts": "live & ~reset", "status_data status_last": "counts & status_valid"}
-PROOFS = (
-    Proof(
-        "fields leave alike; three bytes of them",
-    ),
-)
+PROOFS = (Proof("fields leave alike; three bytes of them"),)
 FIELDS = STATUS.size - 2  # bytes behind kind and version
 
 

@@ -11,19 +11,10 @@ from tb.lockstep import Pins, play
 from tb.stream import parameters
 from tb.structures import BOTH, ICARUS, Structure
 
-STRUCTURES = (
-    Structure({"Divider": 4}, on=BOTH, mutants=ICARUS),
-    Structure(
-        {"Divider": 33},
-    ),
-)
+STRUCTURES = (Structure({"Divider": 4}, on=BOTH, mutants=ICARUS), Structure({"Divider": 33}))
 REFUSED = {"Divider_must_be_at_least_4": "Divider=3"}
 PROTOCOL = {"counts": "live & ~reset", "out_data": "counts & out_valid"}
-PROOFS = (
-    Proof(
-        "clocks of a bit are only counted",
-    ),
-)
+PROOFS = (Proof("clocks of a bit are only counted"),)
 
 
 class Receive:

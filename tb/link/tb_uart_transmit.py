@@ -12,12 +12,7 @@ from tb.lockstep import WORD, play
 from tb.stream import parameters
 from tb.structures import BOTH, ICARUS, Structure
 
-STRUCTURES = (
-    Structure({"Divider": 4}, on=BOTH, mutants=ICARUS),
-    Structure(
-        {"Divider": 33},
-    ),
-)
+STRUCTURES = (Structure({"Divider": 4}, on=BOTH, mutants=ICARUS), Structure({"Divider": 33}))
 REFUSED = {"Divider_must_be_at_least_2": "Divider=1"}
 PROTOCOL = {"stays": "in_", "counts": "live & ~reset"}
 PROOFS = tuple(

@@ -29,12 +29,7 @@ STRUCTURES = (
     # Few bits are dropped: ties are common.
     built(CHOICES | {"rows": 21, "data_width": 12, "coefficient_width": 10}, on=ICARUS, mutants=ICARUS),
 )
-PROOFS = (
-    Proof(
-        f"rows are only counted; {ROUNDING}",
-        {"Rows": 4},
-    ),
-)
+PROOFS = (Proof(f"rows are only counted; {ROUNDING}", {"Rows": 4}),)
 
 
 CLOSEST = 6  # cycles between two rows, at least: the way of an addend into the mean

@@ -34,10 +34,7 @@ STRUCTURES = (
     built(4, 3, 1, mutants=ICARUS),
 )
 PROOFS = tuple(
-    Proof(
-        "the subtractions are exact at any width; columns and rows are only counted",
-        {"Neumann": neumann},
-    )
+    Proof("the subtractions are exact at any width; columns and rows are only counted", {"Neumann": neumann})
     for neumann in (0, 1)
 )
 

@@ -32,14 +32,7 @@ PROOFS = tuple(
         f"a memory row that divide a burst, and not; {WORD_FREE}",
         {"Rows": rows, "Columns": size, "WordsPerRow": words},
     )
-    for rows, size, words in (
-        (3, 4, 1),
-        (4, 4, 1),
-        (3, 4, 2),
-        (3, 4, 3),
-        (3, 5, 3),
-        (2, 3, 3),
-    )
+    for rows, size, words in ((3, 4, 1), (4, 4, 1), (3, 4, 2), (3, 4, 3), (3, 5, 3), (2, 3, 3))
 )
 
 

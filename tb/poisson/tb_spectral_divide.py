@@ -42,12 +42,7 @@ STRUCTURES = (
 )
 PROTOCOL = {"protocol_bursts": {"Rows": "Columns"}}
 PROOFS = tuple(
-    Proof(
-        f"one recurrence for every size; {ROUNDING}",
-        {"Columns": size},
-        roms=divide_rom(size),
-    )
-    for size in (4, 8)
+    Proof(f"one recurrence for every size; {ROUNDING}", {"Columns": size}, roms=divide_rom(size)) for size in (4, 8)
 )
 
 

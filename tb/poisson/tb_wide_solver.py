@@ -31,9 +31,7 @@ def built(choices: Any, **runs: Any) -> Structure:
 
 STRUCTURES = (
     built(CHOICES | {"columns": 32, "rows": 11, "lanes": 8}, on=VERILATOR),
-    built(
-        CHOICES | {"columns": 64, "rows": 8, "lanes": 32},
-    ),
+    built(CHOICES | {"columns": 64, "rows": 8, "lanes": 32}),
     built(CHOICES | {"lanes": 8, "rows": 9, "neumann": True}, on=ICARUS),
     built(CHOICES | {"lanes": 2, "rows": 9}, on=ICARUS, mutants=BOTH),
     built(CHOICES | {"columns": 32, "rows": 9, "lanes": 4, "data_width": 16, "coefficient_width": 10}, mutants=BOTH),

@@ -14,11 +14,7 @@ from tb.structures import BOTH, ICARUS, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
 PROTOCOL = CLIENT | {"counts": "live"}
-PROOFS = (
-    Proof(
-        FULL_WIDTH,
-    ),
-)
+PROOFS = (Proof(FULL_WIDTH),)
 
 
 @cocotb.test()

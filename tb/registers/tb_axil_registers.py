@@ -59,10 +59,7 @@ def built(name: str, fields: dict[str, int], **runs: Any) -> Structure:
 STRUCTURES = (
     built("128", fields_of(columns=128), on=VERILATOR),
     built("extremes", EXTREMES, on=ICARUS, mutants=BOTH),
-    built(
-        "quadratic",
-        QUADRATIC,
-    ),
+    built("quadratic", QUADRATIC),
 )
 PROTOCOL = CLIENT | {"counts": "live"}
 MUTANTS = Mutants(flat=False)

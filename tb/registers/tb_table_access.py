@@ -14,14 +14,7 @@ from tb.structures import BOTH, ICARUS, Structure
 
 ALL = {"GradientWords": 8, "CoefficientWords": 36, "ReferenceWords": 5000, "ZeroWords": 1250}
 SMALL = {"GradientWords": 0, "CoefficientWords": 6, "ReferenceWords": 0, "ZeroWords": 5}
-STRUCTURES = (
-    Structure(SMALL, on=BOTH, mutants=ICARUS),
-    Structure(
-        ALL,
-        on=ICARUS,
-    ),
-    Structure({"GradientWords": 4096}),
-)
+STRUCTURES = (Structure(SMALL, on=BOTH, mutants=ICARUS), Structure(ALL, on=ICARUS), Structure({"GradientWords": 4096}))
 NO_PROOF = "every register and output of it is proven through the port: axil_registers"
 
 

@@ -13,20 +13,9 @@ from tb.registers.bus import NAME_AT, Bus
 from tb.structures import BOTH, ICARUS, of_parameters
 
 built = of_parameters("Present")
-STRUCTURES = (
-    built(15, on=BOTH, mutants=ICARUS),
-    built(2, on=ICARUS),
-    built(4, on=ICARUS),
-    built(9, on=ICARUS),
-)
+STRUCTURES = (built(15, on=BOTH, mutants=ICARUS), built(2, on=ICARUS), built(4, on=ICARUS), built(9, on=ICARUS))
 PROTOCOL = {"counts": "live", "write": "write & ~rst"}
-PROOFS = tuple(
-    Proof(
-        "all tables, and a build without some",
-        {"Present": present},
-    )
-    for present in (15, 8)
-)
+PROOFS = tuple(Proof("all tables, and a build without some", {"Present": present}) for present in (15, 8))
 
 
 class Banks:

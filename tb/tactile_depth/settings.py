@@ -49,46 +49,20 @@ STRUCTURES = (
         FORMATS,
         on=ICARUS,
     ),
+    built("32-12", {"columns": 32, "data_width": 12, "bits_per_channel": 3}, "stream"),
+    built("16-flat-neumann", {"columns": 16, "flat_field": True, "neumann": True, "zero_offset": True}, FORMATS),
+    built("16-27-neumann", {"columns": 16, "data_width": 27, "neumann": True}, FORMATS),
+    built("tridiagonal-21x16-neumann", TRIDIAGONAL | {"rows": 21, "data_width": 27, "neumann": True}, FORMATS),
+    built("tridiagonal-8x16-2-lanes", TRIDIAGONAL | {"lanes": 2, "bits_per_channel": 2, "neumann": True}, FORMATS),
     built(
-        "32-12",
-        {"columns": 32, "data_width": 12, "bits_per_channel": 3},
-        "stream",
-    ),
-    built(
-        "16-flat-neumann",
-        {"columns": 16, "flat_field": True, "neumann": True, "zero_offset": True},
-        FORMATS,
-    ),
-    built(
-        "16-27-neumann",
-        {"columns": 16, "data_width": 27, "neumann": True},
-        FORMATS,
-    ),
-    built(
-        "tridiagonal-21x16-neumann",
-        TRIDIAGONAL | {"rows": 21, "data_width": 27, "neumann": True},
-        FORMATS,
-    ),
-    built(
-        "tridiagonal-8x16-2-lanes",
-        TRIDIAGONAL | {"lanes": 2, "bits_per_channel": 2, "neumann": True},
-        FORMATS,
-    ),
-    built(
-        "tridiagonal-9x32-4-lanes",
-        TRIDIAGONAL | {"columns": 32, "rows": 9, "lanes": 4, "bits_per_channel": 2},
-        FORMATS,
+        "tridiagonal-9x32-4-lanes", TRIDIAGONAL | {"columns": 32, "rows": 9, "lanes": 4, "bits_per_channel": 2}, FORMATS
     ),
     built(
         "tridiagonal-21x16-2-lanes-zero",
         TRIDIAGONAL | {"rows": 21, "lanes": 2, "bits_per_channel": 2, "zero_offset": True},
         FORMATS,
     ),
-    built(
-        "tridiagonal-9x32-4-lanes-sensor",
-        SENSOR | {"columns": 32},
-        FORMATS,
-    ),
+    built("tridiagonal-9x32-4-lanes-sensor", SENSOR | {"columns": 32}, FORMATS),
 )
 PROTOCOL = CLIENT | {
     "axis_source": {

@@ -54,7 +54,7 @@ def random_entries(pipeline: Pipeline, name: str, rng: np.random.Generator) -> n
 
 @case(Level.FORMATS)
 @parametrize(
-    name=up_to({Level.FORMATS: named(SHORT), Level.WHOLE: named([name for name in BUILT if name not in SHORT])}),
+    name=up_to({Level.FORMATS: named(SHORT), Level.WHOLE: named([name for name in BUILT if name not in SHORT])})
 )
 async def written(dut: Any, name: str) -> None:
     """Write and read a table between frames: after its commit the next frame has the codes of the new table."""

@@ -13,11 +13,7 @@ from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
 
 built = of_parameters("Rows Columns")
-STRUCTURES = (
-    built(8, 2, on=VERILATOR),
-    built(3, 4, on=ICARUS, mutants=ICARUS),
-    built(4, 8),
-)
+STRUCTURES = (built(8, 2, on=VERILATOR), built(3, 4, on=ICARUS, mutants=ICARUS), built(4, 8))
 PROTOCOL = {
     "counts": "live & ~reset",
     "out_valid out_frame_start out_frame_end": "counts & en",
@@ -40,7 +36,7 @@ async def words(dut: Any) -> None:
     pins = {"en": 1.0, "s_valid": 1.0, "s_data": WORD, "s_last": 0.1, "s_user": 0.1, "timeout": [5, 0, 1, 2, 8]}
 
     def legal(core: FrameGuard, pins: Pins) -> None:
-        """What stands for a mark is where it is wrong, a tenth of the starts is missing, some silences are long."""
+        """Set each mark, wrong where the choice says so; a tenth of the starts is missing; some silences are long."""
         pins["s_user"] ^= not core.pixels and chance.random() < 0.9
         pins["s_last"] ^= len(core.pixels) % core.columns == core.columns - 1
         if core.silence and chance.random() < 0.5:

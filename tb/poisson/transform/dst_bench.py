@@ -17,16 +17,7 @@ from tactile_depth.chip.poisson.transform.transform import Transform
 from tb.stream import MANY, check_bursts, extremes, parameters, parametrize, sample, uniform, with_and_without_en
 
 # Parameters of dst_forward and dst_inverse, in the order of their structures.
-TRANSFORM_PARAMETERS = (
-    "Size",
-    "InWidth",
-    "InputDrop",
-    "Width",
-    "CoeffWidth",
-    "OutputDrop",
-    "OutWidth",
-    "Sine",
-)
+TRANSFORM_PARAMETERS = ("Size", "InWidth", "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Sine")
 
 
 def transform_parameters(*values: int) -> dict[str, int]:

@@ -22,13 +22,7 @@ STRUCTURES = (
     built(8, 4, mutants=ICARUS),
 )
 PROTOCOL = {"protocol_bursts": {"Columns": "Size"}}
-PROOFS = tuple(
-    Proof(
-        f"{ONE_ORDER}; at 8 the delay line is in memory; {WORD_FREE}",
-        {"Size": size},
-    )
-    for size in (4, 8)
-)
+PROOFS = tuple(Proof(f"{ONE_ORDER}; at 8 the delay line is in memory; {WORD_FREE}", {"Size": size}) for size in (4, 8))
 
 
 async def check(dut: Any, x: Any, **behaviour: Any) -> None:
@@ -36,13 +30,7 @@ async def check(dut: Any, x: Any, **behaviour: Any) -> None:
         return np.stack(mode_pairs(x[..., 0]), axis=-1)
 
     await check_bursts(
-        dut,
-        x,
-        model,
-        mode_pairs_latency(x.shape[1]),
-        in_fields=["mode"],
-        out_fields=["mode", "mirrored"],
-        **behaviour,
+        dut, x, model, mode_pairs_latency(x.shape[1]), in_fields=["mode"], out_fields=["mode", "mirrored"], **behaviour
     )
 
 

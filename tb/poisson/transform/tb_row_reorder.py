@@ -16,12 +16,7 @@ STRUCTURES = (
 )
 PROTOCOL = "protocol_words"
 PROOFS = tuple(
-    Proof(
-        f"{ONE_ORDER}; {WORD_FREE}",
-        {"Columns": size, "ToBurst": to_burst},
-    )
-    for size in (4, 8)
-    for to_burst in (0, 1)
+    Proof(f"{ONE_ORDER}; {WORD_FREE}", {"Columns": size, "ToBurst": to_burst}) for size in (4, 8) for to_burst in (0, 1)
 )
 
 

@@ -21,10 +21,7 @@ STRUCTURES = (
 )
 PROTOCOL = {"protocol_bursts": {"Rows": "Columns"}}
 PROOFS = tuple(
-    Proof(
-        f"{ONE_ORDER}; {WORD_FREE}",
-        {"Columns": 4, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out},
-    )
+    Proof(f"{ONE_ORDER}; {WORD_FREE}", {"Columns": 4, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out})
     for makhoul_in, makhoul_out in ((0, 1), (1, 0))
 )
 

@@ -23,10 +23,7 @@ STRUCTURES = (
 )
 PROTOCOL = "protocol_wide_bursts"
 PROOFS = tuple(
-    Proof(
-        f"{ONE_ORDER}; {WORD_FREE}",
-        {"Paths": paths, "Beats": 4, "Delay": delay, "Up": up},
-    )
+    Proof(f"{ONE_ORDER}; {WORD_FREE}", {"Paths": paths, "Beats": 4, "Delay": delay, "Up": up})
     for paths, delay, up in ((4, 2, 1), (4, 1, 0), (2, 2, 0))
 )
 

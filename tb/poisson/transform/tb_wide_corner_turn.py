@@ -27,11 +27,7 @@ STRUCTURES = (
 )
 PROTOCOL = {"protocol_wide_bursts": {"Beats": "Size / Paths", "OutBeats": "Size / Paths / 2", "OutLead": 0}}
 PROOFS = tuple(
-    Proof(
-        f"{ONE_ORDER}; {WORD_FREE}",
-        {"Size": size, "Paths": paths},
-        steps=2,
-    )
+    Proof(f"{ONE_ORDER}; {WORD_FREE}", {"Size": size, "Paths": paths}, steps=2)
     for size, paths in ((8, 1), (8, 2), (16, 4))
 )
 

@@ -13,13 +13,7 @@ STRUCTURES = (
     built(8, 8, 4, on=ICARUS),
     built(64, 24, 8),
 )
-PROOFS = tuple(
-    Proof(
-        f"{ONE_ORDER}; {WORD_FREE}",
-        {"Columns": 8, "Paths": paths},
-    )
-    for paths in (2, 4)
-)
+PROOFS = tuple(Proof(f"{ONE_ORDER}; {WORD_FREE}", {"Columns": 8, "Paths": paths}) for paths in (2, 4))
 
 
 __all__ = ["a_frame_begins_afresh", "reset_in_mid_row", "rows"]
