@@ -33,14 +33,12 @@ def block_sum(frames: np.ndarray, block_log2: int, column_log2: int | None = Non
 
 
 class BlockSum:
-    """Sums, and a memory that holds them.
+    """Sums, added to what a memory answers.
 
     Attributes
     ----------
     place, size : int
         Words that came of the frame; words of a frame.
-    answer : int
-        What the memory answers to the read of the clock before; None without one.
     """
 
     def __init__(self, **numbers: int) -> None:
@@ -48,8 +46,6 @@ class BlockSum:
         self._blocks = numbers["Rows"] >> self._log2, numbers["Columns"] >> numbers["ColumnLog2"]
         self.size, self.place = numbers["Rows"] * numbers["Columns"], 0
         self._sums: list[int] = []
-        self._memory = [[0] * numbers["Channels"]] * self._blocks[0] * self._blocks[1]
-        self.answer: int | None = None
         self._late: deque[Any] = deque([None] * CYCLES_TO_SUM)  # of rows of blocks: block, sums, begins, complete
 
     def _take(self, data: int) -> Any:
@@ -62,26 +58,25 @@ class BlockSum:
         if column & wide != wide or row >> self._log2 == self._blocks[0]:
             return None
         block = (row >> self._log2) * self._blocks[1] + (column >> of["ColumnLog2"])
-        return block, self._sums, self._first and row & high == 0, self._last and row & high == high
+        return [block, self._sums, self._first and row & high == 0, self._last and row & high == high]
 
     def clock(self, **pins: int) -> dict[str, int | None]:
         """Advance by one clock edge; return the outputs before it, None where one does not count."""
         written, width = self._late.popleft(), self._of["SumWidth"]
-        read, self.answer = self._late[2], None
+        _, answered, read, _ = self._late
         out: dict[str, int | None] = {"read_en": 0, "write_en": written is not None, "write_complete": 0}
         if read is not None and not read[2]:
             out |= {"read_en": 1, "read_block": read[0]}
-            self.answer = joined(self._memory[read[0]], width)
+        if answered is not None and not answered[2]:
+            before = split(pins["read_sums"], self._of["Channels"], width)
+            answered[1] = [sum(pair) for pair in zip(answered[1], before, strict=True)]
         if written is not None:
-            block, sums, begins, complete = written
-            if not begins:
-                sums = [sum(pair) for pair in zip(sums, self._memory[block], strict=True)]
-            self._memory[block] = sums
+            block, sums, _, complete = written
             out |= {"write_block": block, "write_sums": joined(sums, width), "write_complete": complete}
         self._late.append(None)
         if pins["in_valid"]:
-            if self.place == 0:
-                self._first, self._last = pins["in_first_frame"], pins["in_last_frame"]
+            if pins["in_frame_start"]:
+                self.place, self._first, self._last = 0, pins["in_first_frame"], pins["in_last_frame"]
             self._late[-1] = self._take(pins["in_data"])
             self.place = (self.place + 1) % self.size
         if pins["rst"]:

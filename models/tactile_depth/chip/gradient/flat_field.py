@@ -93,9 +93,12 @@ def captured_gains(frames: np.ndarray, config: Configuration) -> np.ndarray:
     assert count.bit_count() == 1, "a power of two of frames"
     log2 = config.reference_block_log2
     total = block_sum(frames.astype(np.int64), log2).sum(axis=0)
-    dividend = np.int64(2 * count << (config.gain.fraction + 2 * log2))
-    quotient = (dividend // np.maximum(total, 1) + 1) >> 1
-    return np.minimum(quotient, (1 << config.gain.width) - 1)
+    return gains_of(total, np.int64(2 * count << (config.gain.fraction + 2 * log2)), config.gain.width)
+
+
+def gains_of(sums: np.ndarray, dividend: int | np.int64, width: int) -> np.ndarray:
+    """Return half of the dividend over each sum, rounded with ties up, and saturated."""
+    return np.minimum((dividend // np.maximum(sums, 1) + 1) >> 1, (1 << width) - 1)
 
 
 @dataclass(frozen=True)
