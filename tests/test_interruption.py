@@ -16,10 +16,12 @@ from commands.common import signals, variables
 from tactile_depth.base import files, interruption
 from tactile_depth.cli import main
 from tactile_depth.pictures import frames
+from tb.settings import RUN
 
-INTERRUPTIONS = 2500
+INTERRUPTIONS = 2500 if RUN.full else 500
 LONGEST_S = 1e-3  # until a signal: a few workspaces, and a few arrays that are read
 TEXT = "terminated by SIGTERM\n"
+pytestmark = pytest.mark.seeds
 
 
 @pytest.fixture

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Wrappers with a configuration inside, and the package of default parameters."""
 
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -67,21 +65,9 @@ def test_two_pipelines_with_two_calibrations_in_one_simulation(
     run_tb(structure, toplevel="two_pipelines", test_module="tb.tb_two_pipelines", files=files)
 
 
-def command(*arguments: str) -> tuple[int, str]:
-    """Return the exit status of `make wrap`, and what it prints."""
-    result = subprocess.run(
-        [sys.executable, "-m", "commands", "wrap", *arguments],
-        cwd=repository.ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    return result.returncode, result.stdout + result.stderr
-
-
-def test_the_command_writes_the_module_and_its_tables(tmp_path: Path) -> None:
+def test_the_command_writes_the_module_and_its_tables(run_command: Callable[..., Any], tmp_path: Path) -> None:
     choices = ("PRESET=published", "N=16", "SOLVER=tridiagonal")
-    assert command("NAME=finger", f"OUT={tmp_path}", "TABLES=finger/", *choices)[0] == 0
+    assert run_command("wrap", "NAME=finger", f"OUT={tmp_path}", "TABLES=finger/", *choices).status == 0
     text = (tmp_path / "tactile_depth_finger.sv").read_text()
     assert 'parameter TableFolder = "finger/"' in text
     assert "[32*TridiagonalField+:32] = 32'd1;" in text
@@ -96,9 +82,9 @@ def test_the_command_writes_the_module_and_its_tables(tmp_path: Path) -> None:
     assert (tmp_path / described.name).read_text() == described.read_text()
 
 
-def test_the_zero_offset_is_in_its_table(tmp_path: Path) -> None:
+def test_the_zero_offset_is_in_its_table(run_command: Callable[..., Any], tmp_path: Path) -> None:
     choices = ("PRESET=published", "N=16", "SOLVER=tridiagonal", "ZERO=ball")
-    assert command("NAME=finger", f"OUT={tmp_path}", *choices)[0] == 0
+    assert run_command("wrap", "NAME=finger", f"OUT={tmp_path}", *choices).status == 0
     (tmp_path / "direct").mkdir()
     config = Configuration(columns=16, solver="tridiagonal", zero_offset=True)
     at_rest = tactile_depth(render("ball", 16).frames, synthetic(), replace(config, zero_offset=False))
@@ -110,10 +96,12 @@ def test_the_zero_offset_is_in_its_table(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("form", [("CAMERA=raw10_lsb", "BAYER=grbg"), ("CAMERA=yuyv_bytes",)], ids=lambda form: form[0])
-def test_with_a_camera_the_module_is_a_tactile_sensor(tmp_path: Path, form: tuple[str, ...]) -> None:
+def test_with_a_camera_the_module_is_a_tactile_sensor(
+    run_command: Callable[..., Any], tmp_path: Path, form: tuple[str, ...]
+) -> None:
     """Elaborate the module in Icarus, which refuses an unknown port or parameter."""
     choices = ("PRESET=published", "N=64", "SOLVER=tridiagonal", *form)
-    assert command("NAME=finger", f"OUT={tmp_path}", *choices)[0] == 0
+    assert run_command("wrap", "NAME=finger", f"OUT={tmp_path}", *choices).status == 0
     path = tmp_path / "tactile_sensor_finger.sv"
     assert "frames_lost" in path.read_text()
     assert {file.name for file in tmp_path.glob("*.xml")} == {"tactile_depth.xml", "camera.xml"}
@@ -132,8 +120,5 @@ def test_with_a_camera_the_module_is_a_tactile_sensor(tmp_path: Path, form: tupl
         (("NAME=finger", "CAMERA=raw9"), "CAMERA=raw9 is unknown: accepted are"),
     ],
 )
-def test_bad_input_ends_with_one_line(arguments: tuple[str, ...], message: str) -> None:
-    status, text = command(*arguments)
-    assert status == 2
-    assert message in text
-    assert len(text.splitlines()) == 1
+def test_bad_input_ends_with_one_line(refused: Callable[..., str], arguments: tuple[str, ...], message: str) -> None:
+    assert message in refused("wrap", *arguments)
