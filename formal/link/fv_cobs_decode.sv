@@ -5,11 +5,11 @@
 //
 // Places are counted modulo 256: a code names one at most 255 further on. Anything comes before the first delimiter.
 
-parameter int Longest = 5;
-
 logic begun, broken, is_code, first, after_full;
+localparam int LengthWidth = $clog2(Longest + 2);
+localparam logic [LengthWidth-1:0] TooLong = LengthWidth'(Longest + 1);
 logic [7:0] place, next_code;  // of the next byte, and of the next code
-logic [3:0] bytes;             // of the piece, up to Longest + 1
+logic [LengthWidth-1:0] bytes;  // of the piece, up to TooLong
 assign is_code = place == next_code;
 
 logic due, ends, was_broken, was_cut, was_long;
@@ -20,7 +20,7 @@ always_ff @(posedge clk) begin
   ends <= begun & in_valid & (in_data == '0) & (bytes != '0 | broken);
   was_broken <= broken;
   was_cut <= ~is_code;
-  was_long <= bytes > 4'(Longest);
+  was_long <= bytes == TooLong;
   if (in_valid && in_data == '0) begin
     begun <= 1'b1;
     {place, next_code} <= '0;
@@ -34,7 +34,7 @@ always_ff @(posedge clk) begin
       first <= 1'b0;
       after_full <= in_data == 8'd255;
     end
-    if (bytes <= 4'(Longest)) bytes <= bytes + 4'd1;
+    if (bytes != TooLong) bytes <= bytes + LengthWidth'(1);
   end
   if (begun && in_broken) broken <= 1'b1;
   if (rst) begin
@@ -51,12 +51,12 @@ always_comb begin
     if (begun) begin
       code_in: assert (dut.left == next_code - place);
       zero_behind: assert (dut.zero_due == (!first && !after_full));
-      length: assert (dut.length == 3'(broken ? 4'(Longest + 1) : bytes));
-      counted: assert (bytes <= 4'(Longest + 1) && (bytes == '0) == first && (!first || is_code));
+      length: assert (dut.length == (broken ? TooLong : bytes));
+      counted: assert (bytes <= TooLong && (bytes == '0) == first && (!first || is_code));
     end
-    zero_between: cover (out_valid && out_data == '0 && bytes == 4'd3);
+    zero_between: cover (out_valid && out_data == '0 && 32'(bytes) == 3);
     good: cover (out_end && !out_bad);
-    too_long: cover (out_end && was_long && !was_cut && !was_broken);
+    if (Longest < 9) too_long: cover (out_end && was_long && !was_cut && !was_broken);
     cut: cover (out_end && was_cut && !was_long && !was_broken);
   end
 end

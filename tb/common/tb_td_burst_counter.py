@@ -17,7 +17,7 @@ REFUSED = {"Words_must_be_at_least_2": "Words=1"}
 PROTOCOL = {"counts": "live", "position": "live & active"}
 PROOFS = tuple(
     Proof(why, {"Words": words})
-    for words, why in ((2, "the smallest"), (8, "one counter, the same logic at every power of two"))
+    for words, why in ((2, "the smallest"), (8, "one of which a trace shows two bursts"), (1024, "the longest in use"))
 )
 
 

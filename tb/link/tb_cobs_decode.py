@@ -20,7 +20,10 @@ PROTOCOL = {
     "out_data": "live & out_valid",
     "out_bad": "live & out_end",
 }
-PROOFS = (Proof("the length of a piece is only counted", {"Longest": 5}, steps=3),)
+PROOFS = tuple(
+    Proof("the length in use; one of which a trace shows a piece", {"Longest": longest}, steps=3)
+    for longest in (LONGEST_PIECE, 5)
+)
 
 
 def legal(model: CobsDecode, pins: Pins) -> None:

@@ -5,14 +5,14 @@ from typing import Any
 
 import cocotb
 
-from formal.entries import Proof
+from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.chip.link.packets import STATUS, VERSION, Kind
 from tb.lockstep import WORD, play
 from tb.structures import BOTH, ICARUS, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
 PROTOCOL = {"counts": "live & ~reset", "status_data status_last": "counts & status_valid"}
-PROOFS = (Proof("fields leave alike; three bytes of them"),)
+PROOFS = (Proof(FULL_WIDTH, steps=2),)
 FIELDS = STATUS.size - 2  # bytes behind kind and version
 
 

@@ -14,7 +14,10 @@ from tb.structures import BOTH, ICARUS, Structure
 STRUCTURES = (Structure({"Divider": 4}, on=BOTH, mutants=ICARUS), Structure({"Divider": 33}))
 REFUSED = {"Divider_must_be_at_least_4": "Divider=3"}
 PROTOCOL = {"counts": "live & ~reset", "out_data": "counts & out_valid"}
-PROOFS = (Proof("clocks of a bit are only counted"),)
+PROOFS = tuple(
+    Proof("8 bits of a counter; those in use; a byte in a trace", {"Divider": divider}, steps=4)
+    for divider in (256, 33, 4)
+)
 
 
 class Receive:
