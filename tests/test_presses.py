@@ -30,21 +30,16 @@ from tests.ball_presses import (
     read,
     real_folder,
     table_rows,
-    write_folder,
     write_table,
 )
 
 BALL = GridPress("ball", (64, 64), 30.4, 33.7, 14.0, 26.0)
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    return write_folder(tmp_path_factory.mktemp("ball") / "presses")
-
-
 @pytest.fixture
-def folder(made: Any, tmp_path: Path) -> Any:
-    return Path(shutil.copytree(made, tmp_path / "presses"))
+def folder(folder: Path, tmp_path: Path) -> Path:
+    """Copy of the shared folder, which a test may change."""
+    return Path(shutil.copytree(folder, tmp_path / "presses"))
 
 
 def refused(action: Any) -> str:
@@ -137,10 +132,10 @@ def without_scikit_image(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(builtins, "__import__", refuse)
 
 
-def test_only_circles_that_are_searched_for_need_scikit_image(monkeypatch: pytest.MonkeyPatch, made: Any) -> None:
+def test_only_circles_that_are_searched_for_need_scikit_image(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
     without_scikit_image(monkeypatch)
-    assert len(read(made).views) == 24
-    for action in (lambda: read(made, find_circles=True), circles.require_circle_finder):
+    assert len(read(folder).views) == 24
+    for action in (lambda: read(folder, find_circles=True), circles.require_circle_finder):
         assert "pip install '.[fit]' in the repository" in refused(action)
 
 
@@ -154,18 +149,18 @@ def in_memory(**changed: Any) -> list[td.BallPress]:
     ]
 
 
-def test_presses_in_memory_are_those_of_the_folder(made: Any) -> None:
+def test_presses_in_memory_are_those_of_the_folder(folder: Path) -> None:
     background = pictures()["background.png"]
-    gathered, there = to_grid(gather(in_memory(), background), PITCH), read(made)
+    gathered, there = to_grid(gather(in_memory(), background), PITCH), read(folder)
     assert [view.press.name for view in gathered.views][:2] == ["press 1", "press 2"]
     for one, other in zip(gathered.views, there.views, strict=True):
         np.testing.assert_array_equal(one.deviations, other.deviations)
         assert one.press.x == other.press.x
 
 
-def test_presses_in_memory_may_be_paths(made: Any) -> None:
-    presses = [td.BallPress(made / "03.png", 8.0, (60, 50, 20))]
-    assert gather(presses, made / "background.png").presses[0].name == f"{made}/03.png"
+def test_presses_in_memory_may_be_paths(folder: Path) -> None:
+    presses = [td.BallPress(folder / "03.png", 8.0, (60, 50, 20))]
+    assert gather(presses, folder / "background.png").presses[0].name == f"{folder}/03.png"
 
 
 @pytest.mark.parametrize(
@@ -206,9 +201,9 @@ def test_the_pitch_follows_from_the_balls() -> None:
     assert camera_pitch_mm(gathered, 0.0635) == 0.0635
 
 
-def test_a_pitch_that_is_contradicted_or_that_nothing_tells_is_named(made: Any) -> None:
+def test_a_pitch_that_is_contradicted_or_that_nothing_tells_is_named(folder: Path) -> None:
     message = "pitch_mm=0.12 contradicts presses, whose ball radii give 0.1 mm/pixel. Omit pitch_mm or correct ball_rad"
-    assert message in refused(lambda: camera_pitch_mm(gather(made), 0.12))
+    assert message in refused(lambda: camera_pitch_mm(gather(folder), 0.12))
     assert "pitch_mm is needed" in refused(lambda: camera_pitch_mm(gather(in_memory(), drawn([], 1)), None))
 
 

@@ -22,17 +22,7 @@ from tactile_depth.calibrate.presses import GridPresses, gather, to_grid
 from tactile_depth.cli.circle_page import circle_page
 from tactile_depth.cli.main import main
 from tactile_depth.sensor.verdict import Verdict
-from tests.ball_presses import PITCH, places, read, real_folder, table_rows, write_folder, write_table
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_folder(tmp_path_factory.mktemp("verdict") / "presses")
-
-
-@pytest.fixture(scope="module")
-def presses(folder: Path) -> GridPresses:
-    return read(folder)
+from tests.ball_presses import PITCH, places, real_folder, table_rows, write_folder, write_table
 
 
 def verdict(presses: GridPresses) -> Verdict:
