@@ -356,7 +356,7 @@ def _cubic(views: Sequence[View], equations: Sequence[Equations]) -> tuple[np.nd
     seen = np.concatenate(
         [correction_codes(view.deviations[view.press.distance < 1]) >> 8 - CORRECTION_BITS for view in views]
     )
-    limit = np.abs(corrections[tuple(np.unique(seen, axis=0).T)]).max(axis=0)
+    limit = np.abs(corrections[tuple(seen.T)]).max(axis=0)
     return solution[:, :count].reshape(CUBIC), corrections.clip(-limit, limit)
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -80,13 +81,13 @@ class GridPress:
         top, left = ((length - side) / 2 for length in self.grid)
         return replace(self, grid=(side, side), x=self.x - left, y=self.y - top).margin >= 0
 
-    @property
+    @cached_property
     def distance(self) -> np.ndarray:
         """Distance of each pixel from the centre in contact radii, float64 (rows, columns)."""
         rows, columns = np.indices(self.grid)
         return np.hypot((columns - self.x) * self.aspect, rows - self.y) / self.contact_radius
 
-    @property
+    @cached_property
     def slopes(self) -> np.ndarray:
         """Change of the depth from pixel to pixel, float64 (rows, columns, 2), in heights of a pixel.
 
@@ -99,25 +100,25 @@ class GridPress:
         drop = np.sqrt(np.where(touches, self.ball_radius**2 - squared, 1))
         return np.where(touches[..., None], -offset * (self.aspect, 1) / drop[..., None], 0)
 
-    @property
+    @cached_property
     def _squared(self) -> np.ndarray:
         """Squared distance of each depth of a map from the centre."""
         rows, columns = np.indices(self.grid)
         return ((columns - self.x - 0.5) * self.aspect) ** 2 + (rows - self.y - 0.5) ** 2
 
-    @property
+    @cached_property
     def depth(self) -> np.ndarray:
         """Depth of the ball above the contact circle, float64 (rows, columns), NaN outside."""
         squared = self._squared
         height = np.sqrt(np.maximum(self.ball_radius**2 - squared, 0)) - (self.ball_radius - self.cap_height)
         return np.where(squared < self.contact_radius**2, height, np.nan)
 
-    @property
+    @cached_property
     def untouched(self) -> np.ndarray:
         """Depths of a map that are so far from the contact that the gel is at rest, bool (rows, columns)."""
         return self._squared > (AT_REST * self.contact_radius) ** 2
 
-    @property
+    @cached_property
     def edge(self) -> tuple[np.ndarray, np.ndarray]:
         """Points of the contact circle in a depth map: columns, rows, float64 (360,) each."""
         angle = np.linspace(0, 2 * np.pi, 360, endpoint=False)
