@@ -52,13 +52,12 @@ module device_bench
     .m_axil_rdata(rdata), .m_axil_rresp(rresp), .m_axil_rvalid(rvalid), .m_axil_rready(rready)
   );
 
-  logic unused_contact, unused_irq;
   tactile_depth_device u_depth (
     .clk, .rst, .cold_rst,
     .s_axis_tdata(picture_tdata), .s_axis_tvalid(picture_tvalid), .s_axis_tready(picture_tready),
     .s_axis_tlast(picture_tlast), .s_axis_tuser(picture_tuser),
     .m_axis_tdata(depth_tdata), .m_axis_tvalid(depth_tvalid), .m_axis_tready(1'b1), .m_axis_tlast(depth_tlast),
-    .m_axis_tuser(depth_tuser), .contact(unused_contact), .irq(unused_irq),
+    .m_axis_tuser(depth_tuser), .contact(), .irq(),
     .m_event_tdata(event_tdata), .m_event_tvalid(event_tvalid), .m_event_tready(1'b1), .m_event_tlast(event_tlast),
     .s_axil_awaddr(awaddr), .s_axil_awprot(3'd0), .s_axil_awvalid(awvalid), .s_axil_awready(awready),
     .s_axil_wdata(wdata), .s_axil_wstrb(4'hF), .s_axil_wvalid(wvalid), .s_axil_wready(wready),

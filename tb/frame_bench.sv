@@ -69,22 +69,18 @@ module frame_bench
   logic m_axis_tvalid, m_axis_tready, m_axis_tlast, m_axis_tuser;
   logic contact, resetting;
   logic [4:0] flagged;
-  logic [31:0] m_event_tdata;  // records are seen in the testbench of the top
-  logic m_event_tvalid, m_event_tlast, unused_events, unused_irq;
-  assign unused_events = ^{m_event_tdata, m_event_tvalid, m_event_tlast};
 
   if (Camera != 0) begin : g_camera
-    logic unused_restart;
     tactile_sensor_bench dut (
       .clk, .rst(rst | resetting), .cold_rst(1'b0),
       .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
-      .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact, .irq(unused_irq),
-      .m_event_tdata, .m_event_tvalid, .m_event_tready(1'b1), .m_event_tlast,
+      .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact, .irq(),
+      .m_event_tdata(), .m_event_tvalid(), .m_event_tready(1'b1), .m_event_tlast(),
       .s_axil_awaddr, .s_axil_awprot('0), .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb,
       .s_axil_wvalid, .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr,
       .s_axil_arprot('0), .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid,
       .s_axil_rready,
-      .frames_lost('0), .setup_restart(unused_restart), .setup_done('0), .setup_failed('0), .setup_entry('0),
+      .frames_lost('0), .setup_restart(), .setup_done('0), .setup_failed('0), .setup_entry('0),
       .setup_found('0)
     );
     assign flagged = dut.u_sensor.u_pipeline.u_video.faults;
@@ -92,8 +88,8 @@ module frame_bench
     tactile_depth_bench dut (
       .clk, .rst(rst | resetting), .cold_rst(1'b0),
       .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
-      .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact, .irq(unused_irq),
-      .m_event_tdata, .m_event_tvalid, .m_event_tready(1'b1), .m_event_tlast,
+      .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact, .irq(),
+      .m_event_tdata(), .m_event_tvalid(), .m_event_tready(1'b1), .m_event_tlast(),
       .s_axil_awaddr, .s_axil_awprot('0), .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb,
       .s_axil_wvalid, .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr,
       .s_axil_arprot('0), .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready

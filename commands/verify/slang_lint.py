@@ -88,6 +88,12 @@ WAIVERS = (
         "named so: it takes up what a port or a slice has too much",
     ),
     Waiver(
+        "unused-port",
+        lambda f: re.search(r"'s_axi(s_tlast|l_a[rw]prot)'", f.text) is not None,
+        "a bus has all its pins",
+    ),
+    Waiver("empty-output-connection", lambda f: True, "an output that nothing reads is connected to nothing"),
+    Waiver(
         "unused-package-parameter",
         lambda f: "_map_pkg" in f.place,
         "a register map is generated whole; no core uses every reset value and bit",

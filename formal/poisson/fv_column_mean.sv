@@ -14,12 +14,11 @@ logic [$clog2(Rows+1)-1:0] row;
 logic signed [MomentWidth-1:0] addend, moment;
 logic signed [Width-1:0] sum, sum_q, expected, expected_q;
 logic signed [Width+CoeffWidth-1:0] scaled;
-logic [1:0] unused_clipped;
 td_round_saturate #(.InWidth(MomentWidth), .Drop(MomentDrop), .OutWidth(Width)) u_sum (
-  .in(moment), .out(sum), .clipped(unused_clipped[0])
+  .in(moment), .out(sum), .clipped()
 );
 td_round_saturate #(.InWidth(Width + CoeffWidth), .Drop(MeanDrop), .OutWidth(Width)) u_mean (
-  .in(scaled), .out(expected), .clipped(unused_clipped[1])
+  .in(scaled), .out(expected), .clipped()
 );
 always_ff @(posedge clk) begin
   if (en) begin

@@ -62,12 +62,11 @@ td_round_saturate #(.InWidth(Width), .Drop(StoreDrop), .OutWidth(OutWidth)) u_st
 logic signed [MomentWidth-1:0] addend, moment;
 logic signed [Width-1:0] sum, sum_q, mean, mean_q;
 logic signed [Width+CoeffWidth-1:0] scaled;
-logic [1:0] unused_mean;
 td_round_saturate #(.InWidth(MomentWidth), .Drop(MomentDrop), .OutWidth(Width)) u_sum (
-  .in(moment), .out(sum), .clipped(unused_mean[0])
+  .in(moment), .out(sum), .clipped()
 );
 td_round_saturate #(.InWidth(Width + CoeffWidth), .Drop(MeanDrop), .OutWidth(Width)) u_mean (
-  .in(scaled), .out(mean), .clipped(unused_mean[1])
+  .in(scaled), .out(mean), .clipped()
 );
 
 logic held;
@@ -340,14 +339,14 @@ module protocol_wide_elimination;
   logic [15:0] out_left = '0;
   logic [1:0] start_q = '0, frame_start_q;
   logic [RowWidth-1:0] out_row, out_row_q;
-  logic words, unused_counts;
+  logic words;
   assign words = counts_out_start & (start_q[1] | out_left != '0);
   assign out_row = ~start_q[1] ? out_row_q : frame_start_q[1] ? '0 : out_row_q + RowWidth'(1);
   assign counts_out_last = words & (out_row == RowWidth'(Rows - 1));
   assign counts_out_ahead = words & (out_row != '0);
   protocol_bursts #(.Columns(Clocks), .Rows(Rows)) u_bursts (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row, .holds,
-    .counts_out_start, .counts_out_frame_start, .counts_saturations, .counts(unused_counts)
+    .counts_out_start, .counts_out_frame_start, .counts_saturations, .counts()
   );
   always_ff @(posedge clk) begin
     if (en) begin

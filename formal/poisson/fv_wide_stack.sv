@@ -331,7 +331,7 @@ module protocol_wide_stack;
   logic last_row;
   // Clocks that a frame of an odd number of rows waits, where rows come as fast as they leave.
   localparam int Wait = (Rows + 1) / 2 * 2 * Beats > Rows * Clocks ? (Rows + 1) / 2 * 2 * Beats - Rows * Clocks : 0;
-  logic bursts, unused_saturations, unused_counts;
+  logic bursts;
   logic [15:0] wait_left = '0, out_left = '0;
   logic [5:0] start_q = '0;
   assign holds = bursts & ~(in_start & in_frame_start & wait_left != '0);
@@ -339,8 +339,8 @@ module protocol_wide_stack;
   assign counts = counts_out_start & (start_q[5] | out_left != '0);
   protocol_bursts #(.Columns(Clocks), .Rows(Rows)) u_bursts (
     .clk, .rst(rst | ~holds), .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row,
-    .holds(bursts), .counts_out_start, .counts_out_frame_start, .counts_saturations(unused_saturations),
-    .counts(unused_counts)
+    .holds(bursts), .counts_out_start, .counts_out_frame_start, .counts_saturations(),
+    .counts()
   );
   always_ff @(posedge clk) begin
     if (en) begin

@@ -47,13 +47,12 @@ module protocol_node_map #(
 
   localparam logic [NodeWidth:0] End = Words;
   logic named = 1'b0, was_captured = 1'b0, settled, write, read, idle, legal, known;
-  logic [23:0] unused_index;
   always_ff @(posedge clk) begin
     was_captured <= capture_read & holds;
     if (reset || (en && in_valid && &place[1:0])) named <= table_bank;
   end
   raster_places #(.Rows(Rows), .Columns(Columns / Lanes)) u_places (.*);
-  table_accesses #(.Select(Select), .Entries(Nodes << $clog2(Channels))) u_accesses (.*, .index(unused_index));
+  table_accesses #(.Select(Select), .Entries(Nodes << $clog2(Channels))) u_accesses (.*, .index());
   assign given_in_frame_start = in_valid & ~rst ? &place[1:0] : in_frame_start;
   assign settled = table_bank == table_in_use & named == table_in_use;
   assign holds = legal

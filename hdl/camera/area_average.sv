@@ -101,14 +101,13 @@ module area_average #(
 
   logic [23:0] means;  // blue, green, red
   for (genvar c = 0; c < 3; c++) begin : g_colour
-    logic signed [ScaledWidth:0] product;
-    logic signed [ScaledWidth-1:0] scaled;
+    logic signed [ScaledWidth-1:0] product, scaled;
     logic unused_top;  // repeats the sign
-    assign unused_top = product[ScaledWidth];
     td_multiply #(.AWidth(TotalWidth), .BWidth(GainWidth + 1)) u_gain (
-      .clk, .en, .a(totals[c*TotalWidth+:TotalWidth]), .b({1'b0, gains[c*GainWidth+:GainWidth]}), .product
+      .clk, .en, .a(totals[c*TotalWidth+:TotalWidth]), .b({1'b0, gains[c*GainWidth+:GainWidth]}),
+      .product({unused_top, product})
     );
-    always_ff @(posedge clk) if (en) scaled <= product[ScaledWidth-1:0];
+    always_ff @(posedge clk) if (en) scaled <= product;
     round_divide #(.TotalWidth(ScaledWidth), .WeightWidth(AreaWidth), .Drop(Bits - 8 + GainFraction)) u_divide (
       .clk, .en, .total(scaled), .weight(areas_q2[c*AreaWidth+:AreaWidth]), .mean(means[8*c+:8])
     );

@@ -104,8 +104,6 @@ module block_totals #(
     );
     assign parts[n*TotalWidth+:TotalWidth] = TotalWidth'(part);
     assign wholes[n*TotalWidth+:TotalWidth] = TotalWidth'(whole);
-    logic unused_top;  // bits that repeat the sign, at ratios below 2
-    assign unused_top = ^{part, whole};
   end
 
   for (genvar c = 0; c < 3; c++) begin : g_colour
@@ -139,8 +137,6 @@ module block_totals #(
     logic blue_row;
     logic [BlockWidth-1:0] carried, red_rows, row_red_rows, red_rows_q, red_columns_q, blue_rows_q, blue_columns_q;
     logic signed [2*BlockWidth+1:0] red, blue;
-    logic unused_top;
-    assign unused_top = ^{red[2*BlockWidth+1:AreaWidth], blue[2*BlockWidth+1:AreaWidth]};
     assign carried = ~row_ends ? row_red_rows : blue_row ? '0 : BlockWidth'(Pixel - row_weight);
     always_comb begin
       red_rows = row_red_rows;
@@ -166,8 +162,6 @@ module block_totals #(
       .clk, .en, .a({1'b0, blue_rows_q}), .b({1'b0, blue_columns_q}), .product(blue)
     );
   end else begin : g_area
-    logic unused_colour;
-    assign unused_colour = ^{blue_q2, in_red_columns};
     assign out_areas = {3{Area}};
   end
 

@@ -79,13 +79,7 @@ module camera_setup #(
   logic load;
   step_e step, load_step;
   logic [AddressBits-1:0] address_bits;
-  if (AddressBytes == 1) begin : g_short
-    assign address_bits = {address[7:0], 1'b1};
-    logic unused_address;
-    assign unused_address = ^address[15:8];
-  end else begin : g_long
-    assign address_bits = {address[15:8], 1'b1, address[7:0], 1'b1};
-  end
+  assign address_bits = AddressBits'({address[15:8], 1'b1, address[7:0], 1'b1});
 
   always_ff @(posedge clk) begin
     line_q <= {line_q[0], sio_d};

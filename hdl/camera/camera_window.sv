@@ -157,8 +157,6 @@ module camera_window #(
     always_ff @(posedge clk) if (en) out_data <= s_data;
   end else begin : g_bytes
     logic [7:0] first;
-    logic unused_bits;
-    assign unused_bits = ^s_data[23:8];
     always_ff @(posedge clk) begin
       if (en) begin
         if (word) first <= s_data[7:0];

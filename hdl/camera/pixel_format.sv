@@ -49,20 +49,16 @@ module pixel_format
     logic [Channels*Width-1:0] samples;
     if (format_is_bayer(Format) != 0) begin : g_raw
       localparam int Lowest = Format == CameraFormatRaw10 || Format == CameraFormatRaw12 ? 16 - Bits : 0;
-      logic unused_bits;
-      assign samples = Width'(in_data[Lowest+:Bits]);
-      assign unused_bits = ^in_data;
+      assign samples = Width'(Bits'(in_data >> Lowest));
     end else if (Format == CameraFormatRgb888) begin : g_rgb888
       assign samples = {Width'(in_data[15:8]), Width'(in_data[7:0]), Width'(in_data[23:16])};
     end else begin : g_rgb565
       logic [4:0] red, blue;
       logic [5:0] green;
-      logic unused_bits;
       assign {red, green, blue} = Format == CameraFormatRgb565Bytes ? {in_data[7:0], in_data[15:8]} : in_data[15:0];
       assign samples = {
         Width'({blue, blue[4:2]}), Width'({green, green[5:4]}), Width'({red, red[4:2]})
       };
-      assign unused_bits = ^in_data[23:16];
     end
     always_ff @(posedge clk) begin
       if (en) begin
@@ -146,14 +142,11 @@ module pixel_format
     assign colours = {blue, green, red};
     for (genvar c = 0; c < 3; c++) begin : g_round
       logic signed [Width-1:0] rounded;
-      logic unused_clipped;
       td_round_saturate #(.InWidth(Product + 2), .Drop(Fraction + 8 - Bits), .OutWidth(Width)) u_round (
-        .in(colours[c]), .out(rounded), .clipped(unused_clipped)
+        .in(colours[c]), .out(rounded), .clipped()
       );
       always_ff @(posedge clk) if (en) out_samples[c*Width+:Width] <= rounded;
     end
-    logic unused_inputs;
-    assign unused_inputs = ^{in_data[23:16], in_odd_row};
   end
 
 endmodule

@@ -49,13 +49,11 @@ module round_divide #(
 
   for (genvar k = 0; k < Bits; k++) begin : g_bit
     logic [WeightWidth:0] shifted, difference;
-    logic unused_top;
     assign shifted = {remainders[k], quotients[k][Bits-1]};
     assign difference = shifted - {1'b0, weights[k]};
-    assign unused_top = shifted[WeightWidth];
     always_ff @(posedge clk) begin
       if (en) begin
-        remainders[k+1] <= difference[WeightWidth] ? shifted[WeightWidth-1:0] : difference[WeightWidth-1:0];
+        remainders[k+1] <= WeightWidth'(difference[WeightWidth] ? shifted : difference);
         quotients[k+1] <= {quotients[k][Bits-2:0], ~difference[WeightWidth]};
         weights[k+1] <= weights[k];
       end

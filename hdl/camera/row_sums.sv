@@ -79,8 +79,6 @@ module row_sums #(
     );
     assign parts[c*SumWidth+:SumWidth] = SumWidth'(part);
     assign wholes[c*SumWidth+:SumWidth] = SumWidth'(whole);
-    logic unused_top;  // bits that repeat the sign, at ratios below 2
-    assign unused_top = ^{part, whole};
   end
 
   for (genvar n = 0; n < Sums; n++) begin : g_sum
@@ -111,8 +109,6 @@ module row_sums #(
       end
     end
   end else begin : g_no_red_columns
-    logic unused_weight;
-    assign unused_weight = ^{weight_q2, blue_q2};
     assign out_red_columns = '0;
   end
 

@@ -27,8 +27,6 @@ module td_delay_line #(
       always_ff @(posedge clk) if (en) taps <= {taps[Delay-2:0], in};
     end
     assign out = taps[Delay-1];
-    logic unused_rst;
-    assign unused_rst = rst;
   end else begin : g_memory
     // The word read now leaves the read register one cycle later: it is the one written Delay - 1 cycles ago.
     localparam int AddressWidth = $clog2(Delay);

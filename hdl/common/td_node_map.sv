@@ -148,8 +148,6 @@ module td_node_map
     td_multiply #(.AWidth(Width + 1), .BWidth(WeightBits + 1)) u_product (
       .clk, .en, .a(operand), .b({1'b0, weight_q[2]}), .product
     );
-    logic unused_bits;
-    assign unused_bits = ^{free_words, product[SumWidth+1:SumWidth]};
     always_ff @(posedge clk) begin
       if (en) begin
         above_word_q <= {above_word_q[0], read_words[0]};
@@ -169,8 +167,6 @@ module td_node_map
     logic [SumWidth-1:0] left;             // the last node of those before them
     logic [Side+1:0][SumWidth-1:0] ends;   // of the runs
     assign ends = {segment_q[ToRun-1] ? sums[c][0] : right[Side-1], right, start_q[ToRun-1] ? right[0] : left};
-    logic unused_left;  // where the only run is behind a node
-    assign unused_left = ^ends[0];
     always_ff @(posedge clk) begin
       if (en && segment_q[ToRun-1]) left <= right[Side-1];
       if (en && (segment_q[ToRun-1] || start_q[ToRun-2])) right <= sums[c];
@@ -201,11 +197,9 @@ module td_node_map
       );
       for (genvar n = 0; n < Run; n++) begin : g_pixel
         logic signed [Width:0] rounded;
-        logic unused_clipped, unused_sign;
         td_round_saturate #(.InWidth(ScaledWidth + 1), .Drop(2 * WeightBits), .OutWidth(Width + 1)) u_round (
-          .in({Signed != 0 & ramp[n][ScaledWidth-1], ramp[n]}), .out(rounded), .clipped(unused_clipped)
+          .in({Signed != 0 & ramp[n][ScaledWidth-1], ramp[n]}), .out(rounded), .clipped()
         );
-        assign unused_sign = rounded[Width];
         always_ff @(posedge clk) if (en) out_words[((r*Run+n)*Channels+c)*Width+:Width] <= rounded[Width-1:0];
       end
     end

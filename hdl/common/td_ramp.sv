@@ -24,28 +24,24 @@ module td_ramp #(
 
   for (genvar l = 0; l <= Levels; l++) begin : g_level
     logic [(1<<l)*Width-1:0] words;  // 2^l of them, Count / 2^l steps apart
-    logic signed [StepWidth-1:0] apart;
     if (l == 0) begin : g_first
       assign words = first;
-      assign apart = step;
     end else begin : g_next
-      always_ff @(posedge clk) if (en) apart <= g_level[l-1].apart;
+      logic signed [StepWidth-1:0] apart;  // the step, when the words of level l - 1 are there
+      if (l == 1) begin : g_now
+        assign apart = step;
+      end else begin : g_later
+        always_ff @(posedge clk) if (en) apart <= g_level[l-1].g_next.apart;
+      end
       for (genvar n = 0; n < 1 << l; n++) begin : g_word
         logic [Width-1:0] word, add;
         assign word = g_level[l-1].words[n/2*Width+:Width];
-        assign add = n % 2 == 0 ? '0 : Width'(g_level[l-1].apart) <<< (Levels - l);
+        assign add = n % 2 == 0 ? '0 : Width'(apart) <<< (Levels - l);
         always_ff @(posedge clk) if (en) words[n*Width+:Width] <= word + add;
       end
     end
   end
   assign out = g_level[Levels].words;
-
-  logic unused_apart;
-  assign unused_apart = ^g_level[Levels].apart;
-  if (Levels == 0) begin : g_at_once
-    logic unused_clock;
-    assign unused_clock = clk & en;
-  end
 
   if (Count < 1 || Count != (1 << Levels)) begin : g_refused_0
     Count_must_be_a_power_of_two u_refused ();

@@ -63,9 +63,6 @@ module td_table_port
   assign table_answer.low = extended[0];
   assign table_answer.high = Words > 1 ? extended[Words-1] : '0;
 
-  logic unused_command;  // bits of wider entries
-  assign unused_command = ^table_command;
-
   if (Words < 1 || Words > 2 || Width > 32) begin : g_refused
     an_entry_is_1_or_2_words_of_at_most_32_bits u_refused ();
   end

@@ -35,18 +35,16 @@ module centroid #(
   logic [MomentWidth-1:0] moment;
   logic [QuotientWidth-1:0] quotient;
   logic [WeightWidth-1:0] remainder;
-  logic unused_overflow;
   assign moment = start ? column_moment : row_moment;
   td_divide #(.DivisorWidth(WeightWidth), .QuotientWidth(QuotientWidth)) u_divide (
     .clk, .rst, .start(start | (divided & ~of_row)), .numerator({moment, 5'd0}), .divisor(weight),
-    .done(divided), .quotient, .remainder, .overflow(unused_overflow)
+    .done(divided), .quotient, .remainder, .overflow()
   );
 
   logic signed [QuotientWidth:0] rounded;
-  logic unused_clipped;
   logic [1:0] unused_rounded;  // no mean of positions is larger than the largest
   td_round_saturate #(.InWidth(QuotientWidth + 2), .Drop(2), .OutWidth(QuotientWidth + 1)) u_round (
-    .in($signed({1'b0, quotient, remainder != '0})), .out(rounded), .clipped(unused_clipped)
+    .in($signed({1'b0, quotient, remainder != '0})), .out(rounded), .clipped()
   );
   assign {unused_rounded, row} = rounded;
   assign done = divided & of_row;

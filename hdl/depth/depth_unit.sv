@@ -109,12 +109,7 @@ module depth_unit
     assign depth_time = tag_time;
     assign {capture_status, table_answer, table_in_use, saturations} = '0;
     assign busy = tags_held | active;
-    logic unused_capture;
-    assign unused_capture = ^{capture_command, table_command, tag_bank};
   end
-
-  logic unused_banks;  // of other tables
-  assign unused_banks = ^table_bank;
 
 endmodule
 

@@ -103,12 +103,10 @@ module zero_capture
   for (genvar s = 0; s < Side; s++) begin : g_mean
     logic signed [SumWidth-1:0] scaled;
     logic signed [Width:0] mean;  // which Width bits hold
-    logic unused_clipped, unused_sign;
     assign scaled = sums[s*SumWidth+:SumWidth] << (4'($unsigned(MaxLog2)) - log2);
     td_round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(Width + 1)) u_round (
-      .in(scaled), .out(mean), .clipped(unused_clipped)
+      .in(scaled), .out(mean), .clipped()
     );
-    assign unused_sign = mean[Width];
     always_ff @(posedge clk) map_write_zero[s*Width+:Width] <= mean[Width-1:0];
   end
 

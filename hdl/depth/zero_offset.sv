@@ -51,14 +51,13 @@ module zero_offset
   logic zero_valid, map_active;
   depth_position_t zero_position;
   logic [Lanes-1:0][Width-1:0] depths, zero_words, rounded;
-  logic [Side*Width-1:0] unused_capture_words;
   td_node_map #(
     .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(Width), .Signed(1), .Lanes(Lanes),
     .DataWidth(3 + Lanes * Width), .Select(TableSelectZero), .Name({TableFolder, "zero"})
   ) u_map (
     .clk, .rst, .en, .table_command, .table_answer, .table_bank, .table_in_use,
     .capture_write, .capture_write_node, .capture_words(capture_zero),
-    .capture_read(1'b0), .capture_read_node(capture_write_node), .capture_read_words(unused_capture_words),
+    .capture_read(1'b0), .capture_read_node(capture_write_node), .capture_read_words(),
     .in_valid, .in_frame_start(in_position.frame_start), .in_data({in_position, in_data}),
     .out_valid(zero_valid), .out_data({zero_position, depths}), .out_words(zero_words), .active(map_active)
   );

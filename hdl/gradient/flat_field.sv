@@ -64,7 +64,7 @@ module flat_field
 
   // Colours in the order of the gains: red, green, blue from the lowest.
 
-  logic frame_start, dim_in, dim, gain_valid, unused_active;
+  logic frame_start, dim_in, dim, gain_valid;
   logic [7:0] red, green, blue, level, level_q;
   logic [2:0][7:0] colours;
   position_t gain_position;
@@ -81,7 +81,7 @@ module flat_field
     .capture_write, .capture_write_node, .capture_words(capture_gains),
     .capture_read, .capture_read_node, .capture_read_words(capture_read_gains),
     .in_valid, .in_frame_start(frame_start), .in_data({in_position, dim_in, blue, green, red}),
-    .out_valid(gain_valid), .out_data({gain_position, dim, colours}), .out_words(gains), .active(unused_active)
+    .out_valid(gain_valid), .out_data({gain_position, dim, colours}), .out_words(gains), .active()
   );
 
   logic dead;
@@ -101,10 +101,6 @@ module flat_field
     td_round_saturate #(.InWidth(ProductWidth), .Drop(Drop), .OutWidth(RoundedWidth)) u_round (
       .in(sum), .out(rounded), .clipped(clipped[c])
     );
-    if (Offset == 0) begin : g_unsigned
-      logic unused_sign;
-      assign unused_sign = rounded[OutWidth];
-    end
     always_ff @(posedge clk) begin
       if (en) begin
         sum <= product - (ProductWidth'(Offset) <<< Drop);

@@ -39,12 +39,6 @@ module gradient_lookup
   assign index = {
     in_pixel[23-:BitsPerChannel], in_pixel[7-:BitsPerChannel], in_pixel[15-:BitsPerChannel]
   };
-  if (BitsPerChannel < 8) begin : g_unused
-    logic unused_bits;
-    assign unused_bits = ^{
-      in_pixel[23-BitsPerChannel:16], in_pixel[15-BitsPerChannel:8], in_pixel[7-BitsPerChannel:0]
-    };
-  end
 
   logic table_write, table_read;
   logic [IndexWidth-1:0] table_index;

@@ -68,8 +68,6 @@ module gradient_unit
   assign table_answer = coefficients_answer | gradient_answer | reference_answer;
   assign table_in_use = (4'(coefficients_in_use) << TableSelectCoefficients)
       | (4'(gradient_in_use) << TableSelectGradient) | (4'(reference_in_use) << TableSelectReference);
-  logic unused_banks;  // of other tables
-  assign unused_banks = ^table_bank;
 
   // Colours, relative to the reference if there is one.
 
@@ -117,8 +115,6 @@ module gradient_unit
       assign {blue, green, red} = relative;
       assign {colour_valid, colour_position} = {relative_valid, relative_position};
       assign {light_gains, light_saturations} = '0;
-      logic unused_light;
-      assign unused_light = ^light_command;
     end
     reference_capture #(
       .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth),
@@ -136,8 +132,6 @@ module gradient_unit
     assign colour_position = pixel_position;
     assign {dark, ratio_saturations, light_saturations, light_gains} = '0;
     assign {capture_status, reference_in_use, reference_answer} = '0;
-    logic unused_reference;
-    assign unused_reference = ^{dark_level, capture_command, light_command, pixel_bad};
   end
 
   // Their slopes.
@@ -153,20 +147,16 @@ module gradient_unit
       assign colours = {red, green, blue};
       for (genvar colour = 0; colour < 3; colour++) begin : g_colour
         logic signed [PlaceWidth-1:0] place;  // from the start of the table; a deviation is -1 or more
-        logic unused_place;
         assign place = PlaceWidth'($signed(colours[colour])) + PlaceWidth'(Start);
         assign codes[colour] = place[ColourWidth:DeviationFraction+1] != '0 ? '1 : place[DeviationFraction-:8];
-        assign unused_place = ^place[DeviationFraction-8:0];
       end
-      logic unused_valid;
-      position_t unused_position;
       gradient_lookup #(
         .File({TableFolder, "gradient.hex"}), .Width(CorrectionWidth), .BitsPerChannel(BitsPerChannel)
       ) u_corrections (
         .clk, .rst, .en, .table_command, .table_answer(gradient_answer), .table_bank(table_bank[TableSelectGradient]),
         .table_in_use(gradient_in_use),
         .in_valid(colour_valid), .in_pixel({codes[2], codes[0], codes[1]}), .in_position(colour_position),
-        .out_valid(unused_valid), .out_position(unused_position), .out_gx(correction_gx), .out_gy(correction_gy)
+        .out_valid(), .out_position(), .out_gx(correction_gx), .out_gy(correction_gy)
       );
     end else begin : g_no_corrections
       assign {correction_gx, correction_gy, gradient_in_use, gradient_answer} = '0;

@@ -127,11 +127,11 @@ module light_gains
 
     logic signed [CountWidth:0] net;  // pixels above less pixels below
     logic signed [SumWidth-1:0] sum, slowed;
-    logic up, down, unused_clip;
+    logic up, down;
     logic signed [MoveWidth-1:0] mean, move, moved;
     logic [GainWidth-1:0] kept, chosen, next;
     td_round_saturate #(.InWidth(SumWidth), .Drop(SumDrop), .OutWidth(MoveWidth)) u_mean (
-      .in(slowed), .out(mean), .clipped(unused_clip)
+      .in(slowed), .out(mean), .clipped()
     );
     assign moved = $signed({1'b0, gains[c]}) - move;
     assign kept = moved[GainWidth] ? '1 : moved[GainWidth-1:0];  // no move takes a gain of 1/2 below 0

@@ -132,13 +132,11 @@ module polynomial_gradient
       localparam int Before = colour == 0 ? Polynomial : Polynomial - 1;
 
       // The words of this polynomial, one a cycle: at a frame's first pixel A to H; at other rows' U, G, W.
-      logic [IndexWidth-1:0] offset;  // of the entry on the bus
+      logic [TermWidth-1:0] offset;  // of the entry on the bus
       logic own_entry, fetched;
       logic [WordWidth-1:0] word, free_word;
       logic [TermWidth-1:0] term;
-      assign offset = table_index - IndexWidth'(Terms * Polynomial);
-      logic unused_offset;  // beyond its own entries
-      assign unused_offset = ^offset;
+      assign offset = TermWidth'(table_index - IndexWidth'(Terms * Polynomial));
       always_ff @(posedge clk) begin  // beside table_index
         own_entry <= 32'(table_command.index) - $unsigned(Terms * Polynomial) < $unsigned(Terms);
       end
@@ -152,8 +150,8 @@ module polynomial_gradient
       ) u_words (
         .clk, .rst, .en, .table_bank, .table_in_use(in_use[Polynomial]), .frame_start, .change(first_q[colour]),
         .read(1'b1), .read_address(term), .read_word(word),
-        .free_write(table_write & own_entry), .free_write_address(offset[TermWidth-1:0]), .free_write_word(table_word),
-        .free_read(table_read), .free_read_address(offset[TermWidth-1:0]), .free_word
+        .free_write(table_write & own_entry), .free_write_address(offset), .free_write_word(table_word),
+        .free_read(table_read), .free_read_address(offset), .free_word
       );
       always_ff @(posedge clk) fetched <= table_read & own_entry;
       assign fetched_words[Polynomial] = fetched ? free_word : '0;

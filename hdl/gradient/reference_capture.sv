@@ -64,7 +64,7 @@ module reference_capture
   assign log2_next = log2_frames > 4'($unsigned(MaxLog2)) ? 4'(MaxLog2) : log2_frames;
   assign busy = state != Idle | done;
 
-  logic sum_read, sum_write, unused_complete;
+  logic sum_read, sum_write;
   logic [NodeWidth-1:0] sum_read_node, sum_write_node;
   logic [3*Width-1:0] sums;
   td_block_sum #(
@@ -73,7 +73,7 @@ module reference_capture
     .clk, .rst, .in_valid(take & (state == Summing | starts)), .in_frame_start(starts), .in_first_frame(state == Armed),
     .in_last_frame(1'b0), .in_data({in_pixel[15:8], in_pixel[7:0], in_pixel[23:16]}),
     .read_en(sum_read), .read_block(sum_read_node), .read_sums(map_read_gains),
-    .write_en(sum_write), .write_block(sum_write_node), .write_sums(sums), .write_complete(unused_complete)
+    .write_en(sum_write), .write_block(sum_write_node), .write_sums(sums), .write_complete()
   );
 
   // Gains, node by node: a word of three sums is fetched, each sum in turn gives way to its gain at the other end.
@@ -82,7 +82,7 @@ module reference_capture
   logic [1:0] channel;
   logic [NodeWidth-1:0] divide_node;
   logic [3*Width-1:0] fetched, word;  // fetched: a register right behind the memory, which is slow
-  logic [Width-1:0] scale, gain, unused_remainder;
+  logic [Width-1:0] scale, gain;
   logic [QuotientWidth-1:0] quotient;
   logic divide_start, divided, overflow, node_ends;
   logic gains_valid = 1'b0;  // a cycle before the first reset writes no gain
@@ -92,7 +92,7 @@ module reference_capture
   assign node_ends = divided & channel == 2'd2;
   td_divide #(.DivisorWidth(Width), .QuotientWidth(QuotientWidth)) u_divide (
     .clk, .rst(rst | request), .start(divide_start), .numerator({scale, QuotientWidth'(0)}), .divisor(word[Width-1:0]),
-    .done(divided), .quotient, .remainder(unused_remainder), .overflow
+    .done(divided), .quotient, .remainder(), .overflow
   );
 
   logic fetches, takes, finished;

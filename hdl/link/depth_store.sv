@@ -54,8 +54,6 @@ module depth_store
   logic [Lanes*DataWidth-1:0] values, written_values;
   logic stored;  // the beat belongs to a frame
   logic [1:0] writes;  // of each bank, a clock after the beat: the memories of a bank are far apart
-  logic unused_tlast;
-  assign unused_tlast = s_axis_tlast;
   assign begins = s_axis_tvalid & s_axis_tuser;
   assign ends = s_axis_tvalid & in_frame & ~s_axis_tuser & next_beat == BeatWidth'(Beats - 1);
   assign stored = s_axis_tvalid & (s_axis_tuser | in_frame);
@@ -65,11 +63,7 @@ module depth_store
     .waiting(frame_valid), .take(frame_take), .done(frame_done), .reading, .read_bank, .replaced(skipped)
   );
   for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
-    assign values[lane*DataWidth+:DataWidth] = s_axis_tdata[lane*LaneBits+:DataWidth];
-    if (LaneBits > DataWidth) begin : g_sign
-      logic unused_sign;
-      assign unused_sign = ^s_axis_tdata[lane*LaneBits+DataWidth+:LaneBits-DataWidth];
-    end
+    assign values[lane*DataWidth+:DataWidth] = DataWidth'(s_axis_tdata[lane*LaneBits+:LaneBits]);
   end
 
   logic [3:0] word;

@@ -26,13 +26,13 @@ module record_packet
 
   localparam int Bytes = 4 * RecordWords;
 
-  logic begins, ends, write_bank, waiting, take, done, reading, read_bank, unused_replaced;
+  logic begins, ends, write_bank, waiting, take, done, reading, read_bank;
   logic [3:0] word;
   assign begins = s_event_tvalid & word == '0;
   assign ends = s_event_tvalid & s_event_tlast;
   bank_choice u_banks (
     .clk, .rst, .keep(1'b1), .write_begin(begins), .write_end(ends), .publish(ends), .write_bank, .waiting, .take,
-    .done, .reading, .read_bank, .replaced(unused_replaced)
+    .done, .reading, .read_bank, .replaced()
   );
 
   logic read, read_q, loaded, leaves, word_ends;

@@ -113,9 +113,8 @@ module spectral_solver
     .out_start(depth_start), .out_frame_start(depth_frame_start), .out_data(depth), .saturations(clipped_row_inverse)
   );
 
-  logic [$clog2(Columns)-1:0] unused_position;
   td_burst_counter #(.Words(Columns)) u_depth_valid (
-    .clk, .rst, .en, .start(depth_start), .position(unused_position), .active(depth_valid)
+    .clk, .rst, .en, .start(depth_start), .position(), .active(depth_valid)
   );
   row_reorder #(.Width(DataWidth), .Columns(Columns), .ToBurst(0)) u_row_out (
     .clk, .rst, .en, .in_valid(depth_valid), .in_frame_start(depth_frame_start), .in_data(depth),

@@ -58,13 +58,12 @@ module wide_substitution #(
   assign alone = in_start ? in_alone : alone_q;
 
   logic [Words*CoeffWidth-1:0] coefficients;  // minus the products of two
-  logic unused_shift;
   thomas_table #(
     .TableFolder(TableFolder), .Table("wide_up"), .CoeffWidth(Words * CoeffWidth), .Rows(Rows), .Columns(Beats),
     .Words(TableWords), .SettledWidth(SettledWidth), .HasLastRow(1'b0)
   ) u_table (
     .clk, .en, .position(position[BeatWidth-1:0]), .row(row - RowWidth'(position[BeatWidth])),
-    .coefficient(coefficients), .shift(unused_shift)
+    .coefficient(coefficients), .shift()
   );
 
   logic [ToWords-1:0] start_q, frame_start_q, alone_start_q;

@@ -68,10 +68,10 @@ module axil_port
   assign s_axil_awready = !address_held && !rst;
   assign s_axil_wready = !data_held && !rst;
   assign s_axil_arready = !s_axil_rvalid && !read && waiting == '0 && !rst;
-  assign write_offset = 32'({address[AddressWidth-1:2], 2'b00});
+  assign write_offset = 32'(address) & ~32'd3;
   assign write_mask = {{8{strobe[3]}}, {8{strobe[2]}}, {8{strobe[1]}}, {8{strobe[0]}}};
   assign write_ones = data & write_mask;
-  assign read_offset = 32'({read_address[AddressWidth-1:2], 2'b00});
+  assign read_offset = 32'(read_address) & ~32'd3;
 
   always_comb begin
     any_word = '0;
@@ -125,9 +125,6 @@ module axil_port
       waiting <= '0;
     end
   end
-
-  logic unused_bits;
-  assign unused_bits = ^{address[1:0], read_address[1:0]};
 
 endmodule
 

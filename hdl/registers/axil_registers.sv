@@ -216,9 +216,6 @@ module axil_registers
   assign read_data = {word, 32'(gain_read), setting_data, event_data, bank_data, entry_data, camera_answer.data};
   assign read_refused = !(is_register(read_offset) || camera_answer.readable);
 
-  logic unused_pins;
-  assign unused_pins = ^{s_axil_awprot, s_axil_arprot};
-
 endmodule
 
 `default_nettype wire

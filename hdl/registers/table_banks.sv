@@ -72,9 +72,6 @@ module table_banks
     : read_offset == ReferenceCaptureOffset ? 32'(reference_status.busy) << ReferenceCaptureBusyBit
     : read_offset == ZeroCaptureOffset ? 32'(zero_status.busy) << ZeroCaptureBusyBit : '0;
 
-  logic unused_bits;
-  assign unused_bits = ^write_ones;
-
 endmodule
 
 `default_nettype wire

@@ -51,13 +51,12 @@ bind td_ram ram_check #(.Depth(Depth)) u_check (.clk, .write_en, .write_address,
 // Protocol: single words go in; bursts of Columns / Paths beats go out, 2 enabled clocks behind their start.
 module protocol_wide_rows;
   logic [1:0] start_q;
-  logic unused_saturations;
   always_ff @(posedge clk) begin
     if (en) start_q <= {start_q[0], out_start};
     if (reset) start_q <= '0;
   end
   protocol_words #(.Columns(Columns), .Lanes(Paths)) u_words (
     .clk, .rst, .en, .in_valid, .in_frame_start, .out_start(start_q[1]), .holds,
-    .counts_out_start, .counts_out_frame_start, .counts_saturations(unused_saturations), .counts
+    .counts_out_start, .counts_out_frame_start, .counts_saturations(), .counts
   );
 endmodule

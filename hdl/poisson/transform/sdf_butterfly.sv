@@ -51,11 +51,9 @@ module sdf_butterfly #(
     localparam int QuarterBit = $clog2(RotateBlock) - 2;
     logic rotate, rotate_q;  // rotate_q: the word after this one, unless it begins a burst
     logic [PositionWidth-1:0] next;
-    logic unused_next;
     assign next = position + PositionWidth'(1);
-    assign unused_next = ^next;
     assign rotate = rotate_q & ~in_start;
-    always_ff @(posedge clk) if (en && active) rotate_q <= &next[QuarterBit+:2];
+    always_ff @(posedge clk) if (en && active) rotate_q <= &2'(next >> QuarterBit);
     assign minus_re = rotate & (Inverse != 0);
     assign minus_im = rotate & (Inverse == 0);
     assign b_re = $unsigned(rotate ? in_im : in_re) ^ {Width{minus_re}};
@@ -97,9 +95,8 @@ module sdf_butterfly #(
   end
 
   logic leaving;
-  logic [PositionWidth-1:0] unused_position;
   td_burst_counter #(.Words(Size)) u_leaving (
-    .clk, .rst, .en, .start(leaves_first_q), .position(unused_position), .active(leaving)
+    .clk, .rst, .en, .start(leaves_first_q), .position(), .active(leaving)
   );
   logic signed [Width-1:0] rounded_re, rounded_im;
   logic [1:0] clipped, clipped_q;

@@ -60,11 +60,6 @@ module twiddle_multiply #(
     assign {w_minus_im, w_im, w_re} = factor;
   end
 
-  if (PositionWidth > BlockWidth) begin : g_unused
-    logic unused_position;
-    assign unused_position = ^position[PositionWidth-1:BlockWidth];
-  end
-
   logic [1:0][InWidth-1:0] re_q, im_q;
   logic [ToSum-1:0] start_q, frame_start_q, active_q;
   always_ff @(posedge clk) begin
@@ -104,8 +99,6 @@ module twiddle_multiply #(
   end else begin : g_real_only
     assign rounded_im = '0;
     assign clipped[1] = 1'b0;
-    logic unused_w_im;
-    assign unused_w_im = ^w_im;
   end
 
   always_ff @(posedge clk) begin

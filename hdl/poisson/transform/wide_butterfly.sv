@@ -48,8 +48,6 @@ module wide_butterfly #(
       beat_qq <= beat_q;
     end
   end
-  logic unused_beat;
-  assign unused_beat = ^beat_qq;
 
   logic [2*Paths-1:0] clipped;  // real part, imaginary part of each path
   for (genvar pair = 0; pair < Paths / 2; pair++) begin : g_pair

@@ -41,9 +41,8 @@ module wide_dst_forward #(
 
   // Samples of odd index are the second half of the row, and of the paths.
   logic active, start_q, frame_start_q;
-  logic [$clog2(Beats)-1:0] unused_beat;
   td_burst_counter #(.Words(Beats)) u_counter (
-    .clk, .rst, .en, .start(in_start), .position(unused_beat), .active
+    .clk, .rst, .en, .start(in_start), .position(), .active
   );
   logic [1:0] active_q;
   logic [Words-1:0] clipped, clipped_q;
@@ -72,7 +71,6 @@ module wide_dst_forward #(
     .saturations(clipped_fft)
   );
 
-  logic [Words*OutWidth-1:0] unused_im;
   logic [$clog2(2*Words+1)-1:0] clipped_phase;
   wide_twiddle #(
     .InWidth(Width), .OutWidth(OutWidth), .CoeffWidth(CoeffWidth), .Drop(CoeffWidth - 1 + OutputDrop), .Paths(Words),
@@ -80,7 +78,7 @@ module wide_dst_forward #(
   ) u_phase (
     .clk, .rst, .en,
     .in_start(fft_start), .in_frame_start(fft_frame_start), .in_re(fft_re), .in_im(fft_im),
-    .out_start, .out_frame_start, .out_re(out_data), .out_im(unused_im), .saturations(clipped_phase)
+    .out_start, .out_frame_start, .out_re(out_data), .out_im(), .saturations(clipped_phase)
   );
 
   logic [CountWidth-1:0] count;

@@ -63,8 +63,6 @@ module wide_twiddle #(
 
     if (Ones[path]) begin : g_one
       // word - word / 2^Drop, the quotient rounded to even: a tie has an even word, so this is the product rounded.
-      logic [FactorWidth-1:0] unused_factor;
-      assign unused_factor = factors[path*FactorWidth+:FactorWidth];
       logic [1:0][InWidth-1:0] late, gained_q;
       td_delay_line #(.Width(2 * InWidth), .Delay(ToProduct)) u_late (
         .clk, .rst, .en, .in(word), .out(late)
@@ -92,8 +90,6 @@ module wide_twiddle #(
         );
       end else begin : g_real_only
         assign sum[1] = '0;
-        logic unused_w_im;
-        assign unused_w_im = ^w_im;
       end
       for (genvar part = 0; part < 2; part++) begin : g_round
         logic signed [OutWidth-1:0] rounded, rounded_q;
