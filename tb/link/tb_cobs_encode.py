@@ -15,9 +15,7 @@ built = of_parameters("Run")
 STRUCTURES = (built(254, on=BOTH), built(3, on=ICARUS, mutants=ICARUS), built(2))
 MUTANTS = Mutants(repeats=2)
 PROTOCOL = {"counts": "live & ~reset", "out_data": "counts & out_valid"}
-PROOFS = tuple(
-    Proof("the length of a run is only counted; an arbitrary byte is followed", {"Run": run}) for run in (2, 3)
-)
+PROOFS = tuple(Proof("COBS; runs that traces show; any byte is followed", {"Run": run}, steps=2) for run in (254, 3, 2))
 
 
 @cocotb.test()
