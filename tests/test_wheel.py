@@ -100,8 +100,11 @@ def git(place: Path, *arguments: str) -> str:
 def wheel(folder: Path, archive: Path) -> Any:
     """Build the wheel from the archive of sources."""
     if not list(folder.glob("*.whl")):
-        build: list[Any] = ["wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", folder, archive]
-        subprocess.run([sys.executable, "-m", "pip", *build], check=True, capture_output=True)
+        with tarfile.open(archive) as file:
+            file.extractall(folder / "unpacked", filter="data")
+        (sources,) = (folder / "unpacked").iterdir()
+        build = f"from setuptools import build_meta; build_meta.build_wheel({str(folder)!r})"
+        subprocess.run([sys.executable, "-c", build], cwd=sources, check=True, capture_output=True)
     (path,) = folder.glob("*.whl")
     return path
 
@@ -112,8 +115,9 @@ def environment(folder: Path, wheel: Any) -> Any:
     python = folder / "environment" / "bin" / "python"
     complete = folder / "complete"
     if not complete.exists():
-        subprocess.run([sys.executable, "-m", "venv", python.parent.parent], check=True)
-        install = [python, "-m", "pip", "install", "--disable-pip-version-check", "--no-compile", wheel]
+        subprocess.run([sys.executable, "-m", "venv", "--without-pip", python.parent.parent], check=True)
+        pip = [sys.executable, "-m", "pip", "--python", python, "--disable-pip-version-check"]
+        install = [*pip, "install", "--no-compile", wheel]
         ended = subprocess.run(install, capture_output=True, text=True, env=without_sources())
         output = ended.stdout + ended.stderr
         if ended.returncode and any(reason in output for reason in UNREACHABLE):
@@ -228,7 +232,7 @@ def names(text: str, module: str) -> bool:
     """Return True if a text names a module by its path, or imports it from its package."""
     package, _, name = module.rpartition(".")
     imports = rf"from {package} import (\(\s*)?(\w+( as \w+)?,\s*)*{name}\b"
-    return re.search(rf"\b{module}\b|{imports}".replace(".", r"\."), text) is not None
+    return name in text and re.search(rf"\b{module}\b|{imports}".replace(".", r"\."), text) is not None
 
 
 def package_files() -> list[Path]:
