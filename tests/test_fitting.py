@@ -34,14 +34,14 @@ from tests.ball_presses import (
 
 
 @pytest.fixture(scope="module")
-def sensor(folder: Path) -> Any:
-    return td.fit(folder, exposure_us=8000)
+def fit(presses: Any) -> Any:
+    """Fit of every model to the presses."""
+    return fit_presses(presses, name="presses", exposure_us=8000)
 
 
 @pytest.fixture(scope="module")
-def fit(presses: Any) -> Any:
-    """Fit of every model to the presses."""
-    return fit_presses(presses)
+def sensor(fit: Any) -> Any:
+    return fit.sensor
 
 
 @pytest.fixture(scope="module")
@@ -183,9 +183,10 @@ def test_presses_in_memory_give_the_same_sensor(sensor: Any) -> None:
     assert again.name == "mine"
 
 
-def test_a_background_may_be_a_pil_image(sensor: Any, folder: Path) -> None:
+def test_a_background_may_be_a_pil_image_and_the_name_is_that_of_the_folder(sensor: Any, folder: Path) -> None:
     image = Image.fromarray(pictures()["background.png"])
-    fitted = td.fit(folder, image, models="quadratic", quiet=True)
+    fitted = td.fit(folder, image, models="quadratic", exposure_us=8000, quiet=True)
+    assert (fitted.name, fitted.camera) == (sensor.name, sensor.camera)
     np.testing.assert_array_equal(fitted.coefficients, sensor.coefficients)
 
 
@@ -219,10 +220,12 @@ def test_pixels_that_are_not_square_give_the_same_millimetres(
     sensor: Any, found: Any, tmp_path: Path, circles: bool
 ) -> None:
     balls, background = in_memory(narrowed, circles, 0.8)
-    models, square = (MODELS, sensor) if circles else (("cubic",), found)
-    wide = td.fit(balls, background, pitch_mm=(PITCH, 1.25 * PITCH), models=models, quiet=True)
+    chosen: Any
+    chosen, square = ({}, sensor) if circles else ({"models": "cubic"}, found)
+    wide: td.Sensor = td.fit(balls, background, pitch_mm=(PITCH, 1.25 * PITCH), quiet=True, **chosen)
+    assert wide.models == square.models
     assert (wide.pixel_pitch_mm, wide.pixel_aspect) == (PITCH, 1.25)
-    for model in models:
+    for model in wide.models:
         error, other = wide.height_errors[model], square.height_errors[model]
         assert error.mean == pytest.approx(other.mean, abs=0.02)
         assert error.spread < max(1.3 * other.spread, 0.01)
