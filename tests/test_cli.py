@@ -427,12 +427,6 @@ def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) 
     assert capsys.readouterr().out == f"tactile-depth {td.__version__}\n"
 
 
-def test_it_runs_as_a_module() -> None:
-    ended = subprocess.run([sys.executable, "-m", "tactile_depth.cli", "--help"], capture_output=True, text=True)
-    assert ended.returncode == 0
-    assert ended.stdout.startswith("usage: tactile-depth")
-
-
 # Mesh and drawing.
 
 

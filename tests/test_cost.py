@@ -35,8 +35,11 @@ CASES = [
     {"columns": 32, "rows": 24, "solver": "tridiagonal", "neumann": True, "zero_offset": True},
     {"columns": 16, "rows": 24, "solver": "tridiagonal", "flat_field": True, "gradient_model": "quadratic"},
     {"columns": 512, "rows": 48, "solver": "tridiagonal", "bits_per_channel": 2},  # words three to a memory row
-    {"columns": 16, "rows": 9, "solver": "tridiagonal", "lanes": 2, "bits_per_channel": 2},
-    {"columns": 64, "rows": 21, "solver": "tridiagonal", "lanes": 8, "zero_offset": True, "neumann": True},
+    {"columns": 16, "rows": 9, "solver": "tridiagonal", "lanes": 2, "zero_offset": True, "neumann": True},
+    pytest.param(
+        {"columns": 64, "rows": 21, "solver": "tridiagonal", "lanes": 8, "zero_offset": True, "neumann": True},
+        marks=pytest.mark.regress,
+    ),
     pytest.param(
         {"columns": 64, "rows": 9, "solver": "tridiagonal", "lanes": 32, "bits_per_channel": 2},
         marks=pytest.mark.regress,
@@ -75,17 +78,17 @@ WIDE = {  # in wide_solver
 
 
 def elaborated(config: Configuration, folder: Path) -> Any:
-    """Return the cells of the whole pipeline, by name."""
+    """Return the multiplications and memories of the whole pipeline, by name."""
     write_roms(folder, synthetic(config.bits_per_channel), config)
     names = []
-    for path in repository.sources():
+    for path in repository.sources("tactile_depth"):
         (folder / path.name).write_text(path.read_text())
         names.append(path.name)
     parameters = " ".join(f"-G{name}={value}" for name, value in hdl_parameters(config).items())
     script = folder / "count.ys"
     script.write_text(
         f"read_slang --threads 1 --top tactile_depth {parameters} {' '.join(names)}\n"
-        "proc\nmemory_collect\nwrite_json cells.json\n"
+        "proc\nmemory_collect\ndelete c:* t:$mul %d t:$mem* %d\nwrite_json cells.json\n"
     )
     assert yosys.run(script, timeout_s=300) == ""
     (module,) = json.loads((folder / "cells.json").read_text())["modules"].values()
