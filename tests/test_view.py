@@ -18,7 +18,7 @@ from tactile_depth.base.errors import InputError
 from tactile_depth.chip.camera.camera_registers import CameraRegisters, camera_registers_parameters
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.registers.register_map import CAMERA_MAP
-from tactile_depth.chip.resampling import WHOLE, resampling
+from tactile_depth.chip.resampling import resampling
 from tactile_depth.cli.main import main
 from tactile_depth.device.tables import window_doubt
 from tactile_depth.pictures.grid_sampler import middle
@@ -291,7 +291,3 @@ def test_a_device_with_another_window_is_named(window: Any, right: bool) -> None
     if doubt is not None:
         assert "gelsight-mini is for 91,68,457,343 of a picture of 640 x 480" in str(doubt)
         assert "build the device with WINDOW=91,68,457,343" in str(doubt)
-
-
-def test_the_whole_is_the_default() -> None:
-    assert share_of((1.0, 1.0)) == WHOLE
