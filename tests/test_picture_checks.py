@@ -150,6 +150,13 @@ def pipeline(mini: td.Sensor, reference: np.ndarray) -> td.Pipeline:
     return td.Pipeline(mini, reference)
 
 
+@pytest.fixture(scope="module", params=BENCH)
+def drawn(request: pytest.FixtureRequest) -> tuple[td.Pipeline, np.ndarray]:
+    """Return a pipeline with a drawn reference, and the picture of a contact."""
+    sample = td.sample(request.param)
+    return td.Pipeline(sample.sensor, sample.reference), sample.image
+
+
 @pytest.fixture(scope="module")
 def real() -> tuple[td.Pipeline, np.ndarray, list[np.ndarray]]:
     """Return the pipeline of the real presses, their reference and each third of them."""
@@ -190,11 +197,10 @@ def test_right_pictures_are_certain(
     certain(pipeline, doubled)
 
 
-@pytest.mark.parametrize("name", BENCH)
-def test_drawn_contacts_are_certain(name: str) -> None:
-    sample = td.sample(name)
+def test_drawn_contacts_are_certain(drawn: tuple[td.Pipeline, np.ndarray]) -> None:
+    pipeline, picture = drawn
     for light in (1, 0.8, 1.1):
-        certain(td.Pipeline(sample.sensor, sample.reference), in_light(light)(sample.image))
+        certain(pipeline, in_light(light)(picture))
 
 
 @pytest.mark.parametrize("kind", REFUSED)
@@ -423,11 +429,11 @@ def test_presses_in_drifting_light_are_right_or_warned_of(real: Any) -> None:
 EXCHANGES = ["red and blue", "red and green", "green and blue", "blue first", "red last", "mirrored", "upside down"]
 
 
-@pytest.mark.parametrize("name", BENCH)
 @pytest.mark.parametrize("kind", [*EXCHANGES, "rotated"])
-def test_exchanges_are_warned_of_where_the_light_is_the_same_everywhere(name: str, kind: str) -> None:
-    sample = td.sample(name)
-    pipeline = td.Pipeline(sample.sensor, sample.reference)
+def test_exchanges_are_warned_of_where_the_light_is_the_same_everywhere(
+    drawn: tuple[td.Pipeline, np.ndarray], kind: str
+) -> None:
+    pipeline, picture = drawn
     with pytest.warns(td.InputWarning, match="as if colours were exchanged or sides mirrored|stands out|across it"):
-        result = pipeline(REFUSED[kind][0](sample.image))
+        result = pipeline(REFUSED[kind][0](picture))
     assert result.height_error is None
