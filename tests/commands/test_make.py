@@ -7,6 +7,7 @@ import re
 import shutil
 import stat
 import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from commands.common.repository import ROOT
 
 WITHOUT_COMMAND = ("help", "live-test", "system-tools", "setup", "clean")
 WITH_ICARUS = ("lint", "mutate", "netlists", "quick", "regress", "test", "upsets")
-SPY = """#!/usr/bin/env python3
+SPY = """#!/usr/bin/env -S python3 -IS
 import json, os, sys
 arguments = sys.argv[1:]
 with open("calls", "a") as log:
@@ -52,6 +53,7 @@ def place(tmp_path: Path) -> Any:
     tools |= {"apt-get": 'echo apt-get "$@" >> system', "sudo": 'echo sudo >> system; exec "$@"'}
     for name, script in tools.items():  # no test changes the system
         _program(tmp_path / "tools" / name, f"#!/bin/sh\n{script}\n")
+    (tmp_path / "tools" / "python3").symlink_to(sys.executable)  # itself, not a script around it
     (tmp_path / "submake").write_text("all:\n\t@true\n")
     for requirements in ROOT.glob("requirements*.txt"):
         (tmp_path / requirements.name).touch()

@@ -229,13 +229,13 @@ def test_pictures_with_a_reference(tmp_path: Path) -> None:
         io.imsave(folder / name, frame, check_contrast=False)
     report = run(
         tmp_path,
-        *("N=32", "SIM=icarus"),
+        *("N=16", "SIM=icarus"),
         f"FRAMES={folder}",
         f"REFERENCE={tmp_path / 'background.png'}",
         "CALIBRATION=gelsight-mini",
     )
     assert report["frames"] == 2
-    assert report["pixel_pitch_mm"] == pytest.approx(240 / 32 * load("gelsight-mini").pixel_pitch_mm)
+    assert report["pixel_pitch_mm"] == pytest.approx(240 / 16 * load("gelsight-mini").pixel_pitch_mm)
 
 
 def _press(tmp_path: Path) -> list[Any]:
