@@ -7,6 +7,7 @@ module, which has
 - the core's parameters, with the values that the paragraph gives to some of them, and those of the paragraph;
 - the core's inputs, but for those that the proof assigns, and those of the paragraph, such as a constant that is any;
 - the core's outputs, and the inputs that the proof assigns, as signals, and the core itself as `dut`;
+- `offer_stays u_<beginning> (.*);` as a claim on the output stream whose names begin so: what is offered stays;
 - the core's protocol as `u_protocol`, unless the proof instantiates it (protocol.py);
 - formal/assumed.sv, if the proof uses `started` or `allowed` and declares neither; `allowed` is what the protocol says,
   unless the proof assigns it.
@@ -18,7 +19,18 @@ from commands.common import header
 from commands.common.repository import ROOT, Core, code
 from commands.verify import protocol
 
+OFFERS = re.compile(r"^offer_stays u_(\w+) \(\.\*\);", re.M)
 FRONT = re.compile(r"(?://.*\n)*\n((?:(?:parameter|localparam|input) [^;]*;.*\n)*)")
+
+
+def stays(head: header.Header, beginning: str) -> str:
+    """Return the claim that a stream keeps what it offers; but where it does not count."""
+    names = [port.name for port in head.of("output") if port.name.startswith(beginning)]
+    word = f"{{{', '.join(names)}}}"
+    pins = ", ".join(f".{pin}({beginning}{pin})" for pin in ("valid", "ready", "holds"))
+    wires = f".clk, .rst(~u_protocol.counts_{beginning}valid), .reset(rst), .word({word}), {pins}"
+    stream = f"offer_stays #(.Width($bits({word}))) u_{beginning} ({wires});"
+    return f"logic {beginning}holds; {stream} always_comb {beginning}stays: assert ({beginning}holds);"
 
 
 def module(core: Core) -> str:
@@ -28,6 +40,7 @@ def module(core: Core) -> str:
     front = FRONT.match(text)
     assert front is not None, core.proof
     body, line = text[front.end() :], text.count("\n", 0, front.end()) + 1
+    body = OFFERS.sub(lambda found: stays(head, found[1]), body)
     words = re.findall(r"(?<!\.)\b\w+", code(body))
     assigned = re.findall(r"^assign (\w+) =", body, re.M)
     own = header.entries(code(front[1]).replace(";", ","))

@@ -13,14 +13,12 @@ assign taken = s_valid & s_ready;
 assign left = m_valid & m_ready;
 
 logic [2:0] held;  // words inside
-logic following, fresh, stalled;
+logic following, fresh;
 logic [2:0] ahead;  // words that leave before the one followed
-logic [Width-1:0] value, stalled_data;
+logic [Width-1:0] value;
 logic [2:0] passed;  // words that left, to show how far a trace goes
 always_ff @(posedge clk) begin
   fresh <= rst;
-  stalled <= m_valid & ~m_ready & ~rst;
-  stalled_data <= m_data;
   held <= held + 3'(taken) - 3'(left);
   passed <= passed + 3'(left && passed != 3'd7);
   if (!following) begin
@@ -38,12 +36,12 @@ always_ff @(posedge clk) begin
   end
 end
 
+offer_stays u_m_ (.*);
 always_comb begin
   if (started) begin
     capacity: assert (held <= 3'd2);
     offered: assert (m_valid == (held != 3'd0));  // at once, and nothing out of nothing
     ready: assert (s_ready == (held != 3'd2 && !fresh));
-    if (stalled) stable: assert (m_valid && m_data == stalled_data);
     if (following && ahead == 3'd0) in_place: assert (m_data == value);
     full: cover (held == 3'd2 && following && ahead == 3'd1);
     streams: cover (passed == 3'd7 && left && taken);

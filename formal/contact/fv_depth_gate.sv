@@ -18,12 +18,12 @@ assign room = (held != 2'd2) & ~fresh;
 assign given = moves & room & (in_position.frame_start | ~refused);
 assign leaves = m_valid & m_ready;
 
-logic [Width+2:0] word, value, sent, tapped, stalled_word;
+logic [Width+2:0] word, value, sent, tapped;
 assign word = {in_position, in_data};
 assign sent = {m_position, m_data};
 assign tapped = {tap_position, tap_data};
 
-logic stalled, drops_q, came_dropping, follows_out, follows_tap, waits, forced;
+logic drops_q, came_dropping, follows_out, follows_tap, waits, forced;
 logic [1:0] ahead_out, ahead_tap;  // words before the one followed
 logic leaves_now, tapped_now;
 assign leaves_now = follows_out & (ahead_out == 2'd0) & leaves;
@@ -36,8 +36,6 @@ always_ff @(posedge clk) begin
   came_dropping <= moves & drops;
   held <= held + 2'(given) - 2'(leaves);
   untapped <= untapped + 2'(moves) - 2'(tap_valid);
-  stalled <= m_valid & ~m_ready;
-  stalled_word <= sent;
   if (!follows_out && !follows_tap) begin
     follows_tap <= moves & pick;
     follows_out <= given & pick;
@@ -57,18 +55,17 @@ always_ff @(posedge clk) begin
     came_dropping <= 1'b0;
     held <= '0;
     untapped <= '0;
-    stalled <= 1'b0;
     follows_out <= 1'b0;
     follows_tap <= 1'b0;
   end
 end
 assign forced = waits & drops;  // it has waited, but what comes now does not
 
+offer_stays u_m_ (.*);
 always_comb begin
   if (started) begin
     enable_is_room: assert (dut.en == (dut.dropping ? dut.tap_room : dut.room));
     offered: assert (m_valid == (held != 2'd0));
-    if (stalled) stable: assert (m_valid && sent == stalled_word);
     if (follows_out && ahead_out == 2'd0) in_place: assert (sent == value);
     said: assert (event_dropped == (moves & ~given & (in_position.frame_start | ~refused)));
     if (!drops) nothing_refused: assert (!moves || given);

@@ -9,8 +9,7 @@ input logic [3:0] pick;
 
 logic [32*Words-1:0] newest, record_q;
 logic [3:0] watched, word;
-logic new_q, waits, offered, stalled, stalled_last, was_reset, packet_ends, first_bit, sent_bit;
-logic [31:0] stalled_data;
+logic new_q, waits, offered, was_reset, packet_ends, first_bit, sent_bit;
 assign packet_ends = m_event_tvalid & m_event_tready & m_event_tlast;
 assign first_bit = 1'(record_q >> {watched, 5'd0});
 
@@ -21,9 +20,6 @@ always_ff @(posedge clk) begin
   record_q <= record;
   waits <= new_valid | (waits & m_event_tvalid & ~packet_ends);
   offered <= m_event_tvalid & ~packet_ends;
-  stalled <= m_event_tvalid & ~m_event_tready;
-  stalled_data <= m_event_tdata;
-  stalled_last <= m_event_tlast;
   if (m_event_tvalid && !offered) sent_bit <= first_bit;
   if (m_event_tvalid && m_event_tready) word <= m_event_tlast ? 4'd0 : word + 4'd1;
   if (!m_event_tvalid) watched <= pick;
@@ -32,18 +28,17 @@ always_ff @(posedge clk) begin
     newest <= '0;
     waits <= 1'b0;
     offered <= 1'b0;
-    stalled <= 1'b0;
     word <= '0;
   end
 end
 always_comb assume (pick < 4'(Words));
 
+offer_stays u_m_event_t (.*);
 always_comb begin
   if (started) begin
     in_time: assert (record_valid == new_q);
     kept: assert (record == newest);
     if (was_reset) quiet: assert (!m_event_tvalid);
-    if (stalled) stable: assert (m_event_tvalid && m_event_tdata == stalled_data && m_event_tlast == stalled_last);
     if (offered) whole_packet: assert (m_event_tvalid);
     if (m_event_tvalid) begin
       last_of_packet: assert (m_event_tlast == (word == 4'(Words - 1)));

@@ -23,12 +23,10 @@ assign ends = leaves & in_packet & left == '0 & out_data == '0;
 assign decodes = leaves & in_packet & (left != '0 | (is_code & ~first & ~full));  // a byte, or the zero of the block
 
 logic [Width-1:0] held, ahead;  // bytes that came in and are not decoded; those before the one followed
-logic following, whole, stalled;
-logic [7:0] value, stalled_data;
+logic following, whole;
+logic [7:0] value;
 logic [1:0] packets;  // that ended, to show how far a trace goes
 always_ff @(posedge clk) begin
-  stalled <= out_valid & ~out_ready;
-  stalled_data <= out_data;
   held <= held + Width'(taken) - Width'(decodes);
   if (taken) whole <= in_last;
   if (leaves && !in_packet) begin
@@ -58,7 +56,6 @@ always_ff @(posedge clk) begin
     ahead <= ahead - Width'(1);
   end
   if (rst) begin
-    stalled <= 1'b0;
     held <= '0;
     whole <= 1'b0;
     in_packet <= 1'b0;
@@ -68,6 +65,7 @@ always_ff @(posedge clk) begin
   end
 end
 
+offer_stays u_out_ (.*);
 always_comb begin
   if (started) begin
     moves: assert (in_ready != out_valid);
@@ -86,7 +84,6 @@ always_comb begin
       if (Run < 9) behind_a_run: cover (full && packets == 2'd2);
       behind_a_zero: cover (empty && packets == 2'd1);
     end
-    if (stalled) stable: assert (out_valid && out_data == stalled_data);
     if (Run < 9) zero_behind_a_run: cover (is_code && full && !first && out_data == 8'd1 && whole);
     followed: cover (decodes && following && ahead == '0 && value == '0 && !first);
   end

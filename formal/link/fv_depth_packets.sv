@@ -20,6 +20,7 @@ logic [5:0] watched_byte;
 logic [3:0] word_q, word_q2;
 logic [31:0] record_q;
 logic watched_bit, read_q, read_q2, read_watched_q, read_watched_q2, word_watched_q;
+offer_stays u_depth_ (.*);
 always_comb begin
   assume (read_q2 || value_data == value_q);
   assume (word_q != word_q2 || record_data == record_q);
@@ -116,13 +117,10 @@ assign wide = 32'(watched_value);
 assign read_row = kind == 2'd3 ? 2 * row + 16'(reads[1]) : row;
 assign read_column = kind == 2'd3 ? 2 * column + 16'(reads[0]) : column;
 
-logic stalled, stalled_last, was_reset;
-logic [7:0] stalled_data;
+logic was_reset;
 logic [3:0] silent;
 always_ff @(posedge clk) begin
   was_reset <= rst;
-  stalled <= depth_valid & ~depth_ready & ~rst;
-  {stalled_data, stalled_last} <= {depth_data, depth_last};
   silent <= depth_valid | ~sending | rst ? '0 : silent + 4'd1;
 end
 
@@ -201,7 +199,6 @@ always_comb begin
       own: assert (!trailer && at >= 7'd9 && byte_of_value == '0 && reads < (kind == 2'd3 ? 3'd4 : 3'd1));
       place: assert (32'(value_address) == 32'(read_row) * Columns + 32'(read_column));
     end
-    if (stalled) stable: assert (depth_valid && depth_data == stalled_data && depth_last == stalled_last);
     in_time: assert (silent <= 4'd8);
     if (depth_valid) begin
       ends: assert (depth_last == packet_ends);

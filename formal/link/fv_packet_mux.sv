@@ -6,8 +6,7 @@
 // leaves.
 
 logic [3:0] valid, ready, turn, owner;  // a bit for each stream; whose packet begins, or passes
-logic passes, leaves, behind_record, stalled, stalled_last, whole;
-logic [7:0] stalled_data;
+logic passes, leaves, behind_record, whole;
 assign valid = {depth_valid, record_valid, reply_valid, status_valid};
 assign ready = {depth_ready, record_ready, reply_ready, status_ready};
 assign leaves = out_valid & out_ready;
@@ -21,17 +20,14 @@ always_ff @(posedge clk) begin
   if (!passes) owner <= turn;
   if (!passes && turn[3:2] != '0) behind_record <= turn[2];
   whole <= leaves ? out_last : whole;  // no packet has begun to leave
-  stalled <= out_valid & ~out_ready;
-  stalled_data <= out_data;
-  stalled_last <= out_last;
   if (rst) begin
     passes <= 1'b0;
     behind_record <= 1'b0;
     whole <= 1'b1;
-    stalled <= 1'b0;
   end
 end
 
+offer_stays u_out_ (.*);
 always_comb begin
   if (started) begin
     in_turn: assert (out_valid == (passes && (valid & owner) != '0));
@@ -45,7 +41,6 @@ always_comb begin
       others_wait: cover (owner[3] && leaves && out_last && valid == '1 && !whole);
       record_again: cover (owner[2] && leaves && out_last && behind_record && !whole);
     end
-    if (stalled && !rst) stable: assert (out_valid && out_data == stalled_data && out_last == stalled_last);
     depth_first: cover (!passes && valid == 4'b1100 && turn[3]);
   end
 end

@@ -25,9 +25,9 @@ assign kept = 12'(first) < Most ? 12'(first) : Most;
 assign ends = takes & (out_drop | (sent + 12'd1 == kept));
 
 // The byte followed: it is of the packet that comes, then of the second or the first that waits.
-logic following, complete, is_second, stalled, stalled_last, was_reset;
+logic following, complete, is_second, was_reset;
 logic [11:0] at;  // its place
-logic [7:0] value, stalled_data;
+logic [7:0] value;
 logic now;
 logic bank;  // its bank
 assign bank = !complete ? dut.stored[0] : dut.gone[0] ^ is_second;
@@ -36,9 +36,6 @@ assign now = following & complete & ~is_second & (at == sent);
 always_ff @(posedge clk) begin
   was_reset <= rst;
   bad_due <= in_end & ~stores;
-  stalled <= out_valid & ~out_ready;
-  stalled_data <= out_data;
-  stalled_last <= out_last;
   waiting <= waiting + 2'(stores) - 2'(ends);
   if (ends) first <= second;
   if (stores && waiting == 2'(ends)) first <= bytes[10:0];
@@ -63,12 +60,13 @@ always_ff @(posedge clk) begin
   end
   if (in_end) met_full <= 1'b0;
   if (rst) begin
-    {met_full, bad_due, stalled, following} <= '0;
+    {met_full, bad_due, following} <= '0;
     waiting <= '0;
     sent <= '0;
   end
 end
 
+offer_stays u_out_ (.*);
 always_comb begin
   if (started) begin
     said: assert (bad == bad_due);
@@ -77,7 +75,6 @@ always_comb begin
     if (out_valid) something_waits: assert (waiting != '0);
     if (out_valid) its_length: assert (out_length == first && out_length_mod3 == 2'(first % 11'd3));
     if (out_valid) its_last: assert (out_last == (sent + 12'd1 == kept));
-    if (stalled) stable: assert (out_valid && out_data == stalled_data && out_last == stalled_last);
     if (now && out_valid) as_it_came: assert (out_data == value);
     if (waiting != '0) within_it: assert (sent < kept);
     if (dut.fetched) read_now: assert (waiting != '0 && !out_valid && (!now || dut.read_data == value));

@@ -25,8 +25,8 @@ assign answered = (m_axil_bvalid & m_axil_bready) | (m_axil_rvalid & m_axil_rrea
 assign refused = write ? m_axil_bresp != '0 : m_axil_rresp != '0;
 assign size = write ? 10'd3 : 10'd3 + 10'(done) * 10'd4;
 
-logic stalled, stalled_last, replies, was_read;
-logic [7:0] stalled_data, word_read;
+logic replies, was_read;
+logic [7:0] word_read;
 logic [9:0] value_byte;  // place of the next byte among the values
 logic [31:0] word_before;
 assign replies = closed & ~due & ~open;
@@ -78,16 +78,15 @@ always_ff @(posedge clk) begin
   was_read <= dut.u_values.read_en;
   word_before <= dut.word;
   if (dut.u_values.read_en) word_read <= 8'(dut.u_values.read_address);
-  stalled <= reply_valid & ~reply_ready;
-  {stalled_data, stalled_last} <= {reply_data, reply_last};
   if (forget) known <= 1'b0;
   if (rst) begin
-    {begun, known, closed, due, open, address_left, data_left, read_left, stalled} <= '0;
+    {begun, known, closed, due, open, address_left, data_left, read_left} <= '0;
     sent <= '0;
   end
 end
 always_comb if (!was_read) assume (dut.word == word_before);
 
+offer_stays u_reply_ (.*);
 always_comb begin
   if (started) begin
     waits_for_its_end: assert (request_ready == (!due && !open && !closed));
@@ -112,7 +111,6 @@ always_comb begin
     if (dut.u_values.write_en) begin
       word_of_its_access: assert (8'(dut.u_values.write_address) == done && dut.u_values.write_data == m_axil_rdata);
     end
-    if (stalled) stable: assert (reply_valid && reply_data == stalled_data && reply_last == stalled_last);
 
     some_refused: cover (reply_last && reply_valid && idle_request && done == 8'd1 && write);
     longest: cover (reply_last && reply_valid && done == 8'(Accesses) && !write);
