@@ -140,13 +140,7 @@ module area_average #(
         row <= '0;
       end
     end
-    if (rst) begin
-      aborts <= '0;
-      completed <= '0;
-      out_valid <= 1'b0;
-      column <= '0;
-      row <= '0;
-    end
+    if (rst) {aborts, completed, out_valid, column, row} <= '0;
   end
 
 endmodule

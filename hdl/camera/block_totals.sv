@@ -83,10 +83,7 @@ module block_totals #(
       weight_q <= weight;
       sums_q <= in_sums;
     end
-    if (rst) begin
-      {ends_q, ends_q2, ends_q3} <= '0;
-      {complete_q, complete_q2, out_valid} <= '0;
-    end
+    if (rst) {ends_q, ends_q2, ends_q3, complete_q, complete_q2, out_valid} <= '0;
   end
   td_ram #(.Width(3 * TotalWidth), .Depth(Columns)) u_line (
     .clk, .write_en(en & ends_q3), .write_address(column_q3), .write_data(stored),

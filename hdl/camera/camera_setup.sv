@@ -213,10 +213,7 @@ module camera_setup #(
       xclk_count <= XclkWidth'(XclkHalfClocks - 1);
       xclk <= ~xclk;
     end
-    if (rst) begin
-      xclk_count <= '0;
-      xclk <= 1'b0;
-    end
+    if (rst) {xclk_count, xclk} <= '0;
   end
 
   if (AddressBytes < 1 || AddressBytes > 2) begin : g_refused_0

@@ -141,16 +141,7 @@ module camera_window #(
         row <= '0;
       end
     end
-    if (rst) begin
-      out_valid <= 1'b0;
-      out_abort <= 1'b0;
-      open <= 1'b0;
-      hunting <= 1'b0;
-      half <= 1'b0;
-      passed <= 1'b0;
-      column <= '0;
-      row <= '0;
-    end
+    if (rst) {out_valid, out_abort, open, hunting, half, passed, column, row} <= '0;
   end
 
   if (WordsPerPixel == 1) begin : g_word

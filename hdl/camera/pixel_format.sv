@@ -69,10 +69,7 @@ module pixel_format
         out_frame_start <= in_frame_start;
         out_abort <= in_abort;
       end
-      if (rst) begin
-        out_valid <= 1'b0;
-        out_abort <= 1'b0;
-      end
+      if (rst) {out_valid, out_abort} <= '0;
     end
   end else begin : g_yuyv
     // A pair is known with its second pixel. Its first leaves at once, its second in the next cycle.
@@ -113,11 +110,7 @@ module pixel_format
         frame_start <= {frame_start[1:0], pair ? first_frame_start : second_frame_start};
         abort <= {abort[2:0], in_abort};
       end
-      if (rst) begin
-        second_waits <= 1'b0;
-        valid <= '0;
-        abort <= '0;
-      end
+      if (rst) {second_waits, valid, abort} <= '0;
     end
 
     logic signed [Product-1:0] red_cr, green_cb, green_cr, blue_cb;

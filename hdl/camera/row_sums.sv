@@ -60,11 +60,7 @@ module row_sums #(
       weight_q2 <= weight_q;
       out_ends <= valid_q2 & ends_q2;
     end
-    if (rst) begin
-      valid_q <= 1'b0;
-      valid_q2 <= 1'b0;
-      out_ends <= 1'b0;
-    end
+    if (rst) {valid_q, valid_q2, out_ends} <= '0;
   end
 
   // The part of the sample in the present block, and the whole.

@@ -160,12 +160,7 @@ module contact_events
     if (late_valid && late_position.frame_end) last_level <= level_of_frame;
     if (sums_valid) last_sums <= sums;
     sums_held <= sums_valid;
-    if (rst) begin
-      frame <= '0;
-      last_any <= 1'b0;
-      sums_held <= 1'b0;
-      valid_delayed <= '0;
-    end
+    if (rst) {frame, last_any, sums_held, valid_delayed} <= '0;
   end
 
 endmodule

@@ -89,11 +89,7 @@ module zero_offset
       out_data <= rounded;
     end
     saturations <= en & zero_valid ? count : '0;
-    if (rst) begin
-      out_valid <= 1'b0;
-      begun <= 1'b0;
-      saturations <= '0;
-    end
+    if (rst) {out_valid, begun, saturations} <= '0;
   end
 
 endmodule

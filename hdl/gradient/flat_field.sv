@@ -121,12 +121,7 @@ module flat_field
     end
     dark <= en & valid_q[1] & dark_q[1];
     saturations <= en & valid_q[1] & ~dark_q[1] ? 2'(clipped[0]) + 2'(clipped[1]) + 2'(clipped[2]) : '0;
-    if (rst) begin
-      valid_q <= '0;
-      out_valid <= 1'b0;
-      dark <= 1'b0;
-      saturations <= '0;
-    end
+    if (rst) {valid_q, out_valid, dark, saturations} <= '0;
   end
 
 endmodule

@@ -98,10 +98,7 @@ module light_gains
       restart <= out_position.first_row & out_position.first_column;
     end
     saturations <= en & valid_q & ~blank_q ? 2'(clipped[0]) + 2'(clipped[1]) + 2'(clipped[2]) : '0;
-    if (rst) begin
-      {out_valid, valid_q, counts} <= '0;
-      saturations <= '0;
-    end
+    if (rst) {out_valid, valid_q, counts, saturations} <= '0;
   end
 
   // Pixels without contact, and whether they are enough.

@@ -225,11 +225,7 @@ module polynomial_gradient
       {out_gy, out_gx} <= slopes;
     end
     saturations <= (en && valid_q[ToSum-1]) ? 2'(clipped[0]) + 2'(clipped[1]) : '0;
-    if (rst) begin
-      valid_q <= '0;
-      out_valid <= 1'b0;
-      saturations <= '0;
-    end
+    if (rst) {valid_q, out_valid, saturations} <= '0;
   end
 
 endmodule

@@ -78,11 +78,7 @@ module depth_store
     if (ends) ended_bank <= write_bank;
     if (s_event_tvalid) word <= s_event_tlast ? '0 : word + 4'd1;
     awaited <= ends | (awaited & ~record_ends);
-    if (rst) begin
-      in_frame <= 1'b0;
-      awaited <= 1'b0;
-      word <= '0;
-    end
+    if (rst) {in_frame, awaited, word} <= '0;
   end
 
   td_ram #(.Width(32), .Depth(2 * RecordWords)) u_records (

@@ -57,11 +57,7 @@ module record_packet
     else if (leaves) place <= place + 6'd1;
     read_q <= read;
     loaded <= read_q | (loaded & ~word_ends);
-    if (rst) begin
-      word <= '0;
-      read_q <= 1'b0;
-      loaded <= 1'b0;
-    end
+    if (rst) {word, read_q, loaded} <= '0;
   end
 
 endmodule

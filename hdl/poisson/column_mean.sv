@@ -61,10 +61,7 @@ module column_mean #(
     end
     clipped[0] <= en & after[2] & clipped_now[0] & ends;
     clipped[1] <= en & after[4] & clipped_now[1] & ends;
-    if (rst) begin
-      after <= '0;
-      clipped <= '0;
-    end
+    if (rst) {after, clipped} <= '0;
   end
 
 endmodule

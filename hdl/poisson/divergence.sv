@@ -66,11 +66,7 @@ module divergence
       out_frame_start <= valid_q & first_row_q & first_column_q;
       out_data <= (OutWidth'(gx_q) - OutWidth'(gx_left)) + (OutWidth'(gy_q) - OutWidth'(gy_above));
     end
-    if (rst) begin
-      valid_q <= 1'b0;
-      out_valid <= 1'b0;
-      out_frame_start <= 1'b0;
-    end
+    if (rst) {valid_q, out_valid, out_frame_start} <= '0;
   end
 
 endmodule

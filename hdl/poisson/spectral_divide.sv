@@ -95,14 +95,7 @@ module spectral_divide #(
       out_frame_start <= frame_start_q[ToShifted-1];
     end
     saturations <= en & active_q[ToShifted-1] & clipped;
-    if (rst) begin
-      start_q <= '0;
-      frame_start_q <= '0;
-      active_q <= '0;
-      out_start <= 1'b0;
-      out_frame_start <= 1'b0;
-      saturations <= 1'b0;
-    end
+    if (rst) {start_q, frame_start_q, active_q, out_start, out_frame_start, saturations} <= '0;
   end
 
 endmodule

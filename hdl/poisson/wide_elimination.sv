@@ -85,13 +85,7 @@ module wide_elimination #(
       out_frame_start <= frame_start_q[ToState-1];
       shifts_q <= shifts;
     end
-    if (rst) begin
-      start_q <= '0;
-      frame_start_q <= '0;
-      active_q <= '0;
-      out_start <= 1'b0;
-      out_frame_start <= 1'b0;
-    end
+    if (rst) {start_q, frame_start_q, active_q, out_start, out_frame_start} <= '0;
   end
 
   // The row above: d and its c, side by side.

@@ -108,10 +108,7 @@ module wide_stack #(
       write_last_q <= {write_last_q[0], active & last_row};
       write_ahead_q <= {write_ahead_q[0], active & ~first_row & (row != RowWidth'(Rows))};
     end
-    if (rst) begin
-      write_last_q <= '0;
-      write_ahead_q <= '0;
-    end
+    if (rst) {write_last_q, write_ahead_q} <= '0;
   end
 
   // Reader: starts of the pairs, and behind them the reads.
@@ -155,15 +152,7 @@ module wide_stack #(
       read_slot_q <= !read_row | (read_time[BeatWidth-1:0] != BeatWidth'(Beats - 1)) ? read_slot
           : reads_down ? read_slot - SlotWidth'(1) : read_slot + SlotWidth'(1);
     end
-    if (rst) begin
-      down <= 1'b0;
-      pair <= '0;
-      out_start <= 1'b0;
-      out_frame_start <= 1'b0;
-      out_alone <= 1'b0;
-      start_q <= '0;
-      frame_start_q <= '0;
-    end
+    if (rst) {down, pair, out_start, out_frame_start, out_alone, start_q, frame_start_q} <= '0;
   end
 
   logic from_last_q;

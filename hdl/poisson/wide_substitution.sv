@@ -79,11 +79,7 @@ module wide_substitution #(
       active_q <= {active_q[ToSum-2:0], active & ~(alone & position[BeatWidth])};
       last_q <= {last_q[ToWords-4:0], row == RowWidth'(Rows - 1)};
     end
-    if (rst) begin
-      start_q <= '0;
-      frame_start_q <= '0;
-      active_q <= '0;
-    end
+    if (rst) {start_q, frame_start_q, active_q} <= '0;
   end
   assign out_start = start_q[ToWords-1];
   assign out_frame_start = frame_start_q[ToWords-1];

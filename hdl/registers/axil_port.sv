@@ -115,15 +115,7 @@ module axil_port
       s_axil_rresp <= (waiting[3] ? late_refused : read_refused) ? SlaveError : Okay;
     end
 
-    if (rst) begin
-      address_held <= 1'b0;
-      data_held <= 1'b0;
-      write <= 1'b0;
-      s_axil_bvalid <= 1'b0;
-      s_axil_rvalid <= 1'b0;
-      read <= 1'b0;
-      waiting <= '0;
-    end
+    if (rst) {address_held, data_held, write, s_axil_bvalid, s_axil_rvalid, read, waiting} <= '0;
   end
 
 endmodule

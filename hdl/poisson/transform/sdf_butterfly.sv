@@ -88,10 +88,7 @@ module sdf_butterfly #(
       leaving_re <= second ? sum_re : a_re;
       leaving_im <= second ? sum_im : a_im;
     end
-    if (rst) begin
-      leaves_first_q <= 1'b0;
-      leaves_frame_start <= 1'b0;
-    end
+    if (rst) {leaves_first_q, leaves_frame_start} <= '0;
   end
 
   logic leaving;
@@ -114,11 +111,7 @@ module sdf_butterfly #(
       out_im <= rounded_im;
     end
     clipped_q <= clipped & {2{en & leaving}};
-    if (rst) begin
-      out_start <= 1'b0;
-      out_frame_start <= 1'b0;
-      clipped_q <= '0;
-    end
+    if (rst) {out_start, out_frame_start, clipped_q} <= '0;
   end
   assign saturations = 2'(clipped_q[0]) + 2'(clipped_q[1]);
 

@@ -78,12 +78,7 @@ module transpose #(
       out_frame_start <= read_start;
       out_start <= read_active & (read_position[IndexWidth-1:0] == '0);
     end
-    if (rst) begin
-      read_start <= 1'b0;
-      read_transposed <= 1'b0;
-      out_start <= 1'b0;
-      out_frame_start <= 1'b0;
-    end
+    if (rst) {read_start, read_transposed, out_start, out_frame_start} <= '0;
   end
 
 endmodule

@@ -70,11 +70,7 @@ module twiddle_multiply #(
       frame_start_q <= {frame_start_q[ToSum-2:0], in_frame_start};
       active_q <= {active_q[ToSum-2:0], active};
     end
-    if (rst) begin
-      start_q <= '0;
-      frame_start_q <= '0;
-      active_q <= '0;
-    end
+    if (rst) {start_q, frame_start_q, active_q} <= '0;
   end
 
   logic signed [OutWidth-1:0] rounded_re, rounded_im;
@@ -109,11 +105,7 @@ module twiddle_multiply #(
       out_im <= rounded_im;
     end
     clipped_q <= clipped & {2{en & active_q[ToSum-1]}};
-    if (rst) begin
-      out_start <= 1'b0;
-      out_frame_start <= 1'b0;
-      clipped_q <= '0;
-    end
+    if (rst) {out_start, out_frame_start, clipped_q} <= '0;
   end
   assign saturations = 2'(clipped_q[0]) + 2'(clipped_q[1]);
 

@@ -118,15 +118,7 @@ module wide_butterfly #(
     end
     clipped_q <= clipped & {2 * Paths{en & active_q[2]}};
     saturations <= count;
-    if (rst) begin
-      active_q <= '0;
-      start_q <= 1'b0;
-      frame_start_q <= 1'b0;
-      out_start <= 1'b0;
-      out_frame_start <= 1'b0;
-      clipped_q <= '0;
-      saturations <= '0;
-    end
+    if (rst) {active_q, start_q, frame_start_q, out_start, out_frame_start, clipped_q, saturations} <= '0;
   end
 
 endmodule

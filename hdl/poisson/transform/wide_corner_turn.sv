@@ -154,14 +154,7 @@ module wide_corner_turn #(
         out_data[(2*w+1)*Width+:Width] <= read[1][w*Width+:Width];
       end
     end
-    if (rst) begin
-      active_q <= '0;
-      last_q <= '0;
-      write_bank <= 1'b0;
-      read_start <= 1'b0;
-      row_start_q <= '0;
-      frame_row_q <= '0;
-    end
+    if (rst) {active_q, last_q, write_bank, read_start, row_start_q, frame_row_q} <= '0;
   end
 
 endmodule

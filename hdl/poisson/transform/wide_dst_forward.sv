@@ -94,13 +94,7 @@ module wide_dst_forward #(
     end
     clipped_q <= clipped & {Words{en & active_q[1]}};
     saturations <= count;
-    if (rst) begin
-      active_q <= '0;
-      start_q <= 1'b0;
-      frame_start_q <= 1'b0;
-      clipped_q <= '0;
-      saturations <= '0;
-    end
+    if (rst) {active_q, start_q, frame_start_q, clipped_q, saturations} <= '0;
   end
 
 endmodule

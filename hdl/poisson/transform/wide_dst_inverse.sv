@@ -140,13 +140,7 @@ module wide_dst_inverse #(
     end
     clipped_q <= clipped & {Words{en & active_q[2]}} & {Paths{~alone_q, 1'b1}};
     saturations <= count;
-    if (rst) begin
-      active_q <= '0;
-      start_q <= '0;
-      frame_start_q <= '0;
-      clipped_q <= '0;
-      saturations <= '0;
-    end
+    if (rst) {active_q, start_q, frame_start_q, clipped_q, saturations} <= '0;
   end
 
 endmodule

@@ -80,10 +80,7 @@ module wide_fft #(
         re_q <= {re_q[0], fft_re};
         im_q <= {im_q[0], fft_im};
       end
-      if (rst) begin
-        start_q <= '0;
-        frame_start_q <= '0;
-      end
+      if (rst) {start_q, frame_start_q} <= '0;
     end
     assign out_re = re_q[1];
     assign out_im = im_q[1];

@@ -151,13 +151,7 @@ module wide_row_pairs #(
     end
     clipped_q <= clipped & {4 * Paths{en & b_active_q[2]}};
     saturations <= count;
-    if (rst) begin
-      b_active_q <= '0;
-      b_start_q <= '0;
-      b_frame_start_q <= '0;
-      clipped_q <= '0;
-      saturations <= '0;
-    end
+    if (rst) {b_active_q, b_start_q, b_frame_start_q, clipped_q, saturations} <= '0;
   end
   assign out_start = b_start_q[1];
   assign out_frame_start = b_frame_start_q[1];

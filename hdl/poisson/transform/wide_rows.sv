@@ -66,11 +66,7 @@ module wide_rows #(
       end
       read_start <= out_start;
     end
-    if (rst) begin
-      write_bank <= 1'b0;
-      read_bank <= 1'b0;
-      read_start <= 1'b0;
-    end
+    if (rst) {write_bank, read_bank, read_start} <= '0;
   end
 
 endmodule

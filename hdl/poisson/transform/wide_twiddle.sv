@@ -124,15 +124,7 @@ module wide_twiddle #(
     end
     clipped_q <= clipped & {2 * Paths{en & active_q[ToSum-1]}};
     saturations <= count;
-    if (rst) begin
-      start_q <= '0;
-      frame_start_q <= '0;
-      active_q <= '0;
-      out_start <= 1'b0;
-      out_frame_start <= 1'b0;
-      clipped_q <= '0;
-      saturations <= '0;
-    end
+    if (rst) {start_q, frame_start_q, active_q, out_start, out_frame_start, clipped_q, saturations} <= '0;
   end
 
 endmodule
