@@ -164,8 +164,3 @@ def test_an_unknown_scene_is_answered_with_the_known_ones() -> None:
         render("bal", 64)
     assert all(name in str(caught.value) for name in SCENES)
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize("size", SIZES)
-def test_the_sensor_is_as_wide_whatever_the_grid(size: int) -> None:
-    assert scene_pixel_pitch_mm(size) * size == pytest.approx(SENSOR_WIDTH_MM)

@@ -165,12 +165,11 @@ def test_a_press_without_contact_is_told(
 def test_a_device_of_another_configuration_leaves_no_file(
     tmp_path: Path,
     folder: Path,
-    presses: GridPresses,
+    fitted: td.Pipeline,
     simulate: Callable[[Setup], None],
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    sensor = fit_presses(presses, ("quadratic",)).sensor
-    other = td.Pipeline(sensor, folder / "background.png", grid=GRID, data_width=20)
+    other = td.Pipeline(fitted.sensor, folder / "background.png", grid=GRID, data_width=20)
     simulate(setup_of(other))
     out = tmp_path / "out" / "mine.npz"
     words = ["calibrate", "device:sim", str(folder), *OPTIONS, "--out", str(out)]
