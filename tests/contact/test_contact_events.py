@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""contact_events: RTL against the model, and the words of a record."""
+"""contact_events: the words of a record, and its fields by numpy alone."""
+
+from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.contact_events import WORDS, ContactEvents, Record, Settings, record
@@ -22,6 +26,32 @@ RECORDS = st.builds(Record, WORD, WORD, WORD, CODE, PLACE, CODE, WORD, PLACE, PL
 def test_words_are_read_as_they_were_written(sent: Record) -> None:
     assert len(sent.words) == WORDS
     assert record(sent.words) == sent
+
+
+@given(arrays(np.int64, (2, 5, 8), elements=st.integers(-32, 31)), *[st.integers(-40, 40)] * 3, st.booleans())
+def test_the_fields_of_a_record(maps: Any, on: int, off: int, setting: int, bottom_first: bool) -> None:
+    """Play two frames whose rows are counted from the top; the second finds the state and the peak of the first."""
+    model, touching, half_peak = ContactEvents(5, 8, 6, bottom_first), False, setting
+    for number, depth in enumerate(maps):
+        stream = depth[::-1] if bottom_first else depth
+        beats = [(int(code), at == 0, at % 8 == 7, at == 39) for at, code in enumerate(stream.ravel())]
+        found = [model.beat(*beat, Settings(on, off, setting, 2, 1), 7) for beat in beats][-1]
+        threshold = off if touching else on
+        level = int(np.clip(max(threshold, min(setting, half_peak)), -32, 31))
+        above, rows, columns = int(np.count_nonzero(depth > threshold)), *np.nonzero(depth > level)
+        peak, half_peak = (int(depth.max()), int(depth.max() // 2)) if above else (0, setting)
+        row, column = divmod(int(stream.argmax()), 8) if above else (0, 0)
+        row = 4 - row if bottom_first and above else row
+        weights = depth[rows, columns] - level
+        limits, middle = ((row, column), (row, column)), [16 * row, 16 * column]
+        if rows.size:
+            limits = (rows.min(), columns.min()), (rows.max(), columns.max())
+            moments = (int((weights * places).sum()) for places in (rows, columns))
+            middle = [round(16 * Fraction(moment, int(weights.sum()))) for moment in moments]
+        status = {(False, True): 3, (True, True): 1, (True, False): 4}.get((touching, above > 1), 0)
+        touching = above > 1
+        area = rows.size, *limits, weights.sum(), tuple(middle)
+        assert found == (status, number + 1, 7, peak, (row, column), level, *area)
 
 
 @pytest.mark.parametrize("solver", COLUMNS)

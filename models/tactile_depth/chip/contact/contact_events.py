@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -13,6 +14,8 @@ from tactile_depth.chip.contact import centroid
 from tactile_depth.chip.contact.contact_debounce import ContactDebounce
 from tactile_depth.chip.contact.contact_peak import ContactPeak, Peak, cycles_to_peak
 from tactile_depth.chip.contact.contact_sums import ContactSums, Sums, cycles_to_sums
+from tactile_depth.chip.contact.record_packets import RecordPackets
+from tactile_depth.chip.fixed_point import codes, joined
 from tactile_depth.chip.resources import DEPTH_MARKS, Memory, Parts, Words
 
 WORD_BITS = 32
@@ -27,6 +30,9 @@ class Settings(NamedTuple):
     area_threshold: int
     minimum_area: int
     debounce: int
+
+
+UNSIGNED = "minimum_area", "debounce"
 
 
 class Record(NamedTuple):
@@ -216,6 +222,49 @@ class ContactEvents:
         self.debounce = ContactDebounce()
         self.frames, self.last_peak, self.settings = 0, None, None
         self.peak.found, self.sums.threshold = None, None
+
+
+class EventsByClock:
+    """ContactEvents of beats, and what they change, on its way."""
+
+    def __init__(self, width: int, rows: int, columns: int, lanes: int, bottom_first: int) -> None:
+        self.width, self.lanes, self.latency = width, lanes, latency(rows, columns, lanes)
+        self.events, self.packets = ContactEvents(rows, columns, width, bool(bottom_first)), RecordPackets(WORDS)
+        self._clear()
+
+    def _clear(self) -> None:
+        self._touching = deque([False] * CYCLES_TO_TOUCHING)
+        self.due: deque[Record | None] = deque([None] * (self.latency - 1))
+
+    def clock(
+        self,
+        *,
+        rst: int,
+        in_valid: int,
+        in_position: int,
+        in_data: int,
+        in_time: int,
+        m_event_tready: int,
+        **settings: int,
+    ) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        due, record = self.due.popleft(), None
+        new = {"new_valid": due is not None, "new_record": joined(due.words if due else (), WORD_BITS)}
+        out: dict[str, int | None] = {"touching": self._touching.popleft()}
+        out |= self.packets.clock(rst=rst, **new, m_event_tready=m_event_tready)
+        if in_valid:
+            words = {name: word if name in UNSIGNED else _signed(word) for name, word in settings.items()}
+            for lane, depth in enumerate(codes(in_data, self.lanes, self.width)):
+                last = lane == self.lanes - 1
+                start, row_end, frame_end = (bool(in_position & mark) for mark in (4, 2, 1))
+                marks = start and not lane, row_end and last, frame_end and last
+                record = self.events.beat(depth, *marks, Settings(**words), in_time)
+        self._touching.append(self.events.touching)
+        self.due.append(record)
+        if rst:
+            self.events.reset()
+            self._clear()
+        return out
 
 
 def parts(config: Configuration) -> Parts:
