@@ -22,11 +22,12 @@ STRUCTURES = (
     built(15, 12),
 )
 REFUSED = {"DivisorWidth_must_be_at_least_1_and_QuotientWidth_at_least_2": "DivisorWidth=0, QuotientWidth=1"}
-PROOFS = (
-    Proof(
-        "every numerator and divisor; a bit is found in the same way at any width",
-        {"DivisorWidth": 3, "QuotientWidth": 4, "Latency": td_divide.cycles(4)},
-    ),
+PROOFS = tuple(
+    Proof(why, {"DivisorWidth": width, "QuotientWidth": bits, "Latency": td_divide.cycles(bits)}, steps)
+    for width, bits, steps, why in (
+        (3, 4, 0, "every numerator and divisor; a bit is found in the same way at any width"),
+        (2, 25, 34, "the longest quotient in use: its counter in full"),
+    )
 )
 
 
