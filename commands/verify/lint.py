@@ -13,7 +13,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from itertools import product
 from pathlib import Path
 
@@ -78,6 +78,7 @@ def modules(files: Iterable[Path]) -> list[str]:
     return [path.stem for path in files if path.stem != "frame_bench" and not path.stem.endswith("_pkg")]
 
 
+@cache
 def structures() -> list[Structure]:
     """Return the top with both solvers and boundaries, at the smallest, the default and the largest square grid.
 

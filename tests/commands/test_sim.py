@@ -45,6 +45,8 @@ def only(values: Any) -> Any:
     return values[0]
 
 
+# Icarus plays the smallest rectangles and lanes in `make test`, below.
+@pytest.mark.parametrize("simulator", ["verilator", pytest.param("icarus", marks=pytest.mark.regress)])
 @pytest.mark.parametrize("solver", SPECTRAL_IN_REGRESS)
 @pytest.mark.parametrize("size", [64, *(pytest.param(size, marks=pytest.mark.regress) for size in (128, 256))])
 def test_every_grid_on_every_simulator(tmp_path: Path, simulator: str, size: int, solver: str) -> None:
