@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import numpy as np
-from scipy.stats import mannwhitneyu
 
 from commands.common import published
 from commands.common.progress import progress_bar
@@ -227,6 +226,8 @@ def statistics(values: np.ndarray) -> dict[str, Any]:
 
 def rank_sum(near: np.ndarray, host: np.ndarray) -> dict[str, float]:
     """Return the two-sided Mann-Whitney U; 0: every trial near the sensor was faster than every other."""
+    from scipy.stats import mannwhitneyu  # it takes longer to import than all others
+
     result = mannwhitneyu(near, host, alternative="two-sided")
     return {"U": float(result.statistic), "p": float(result.pvalue)}
 

@@ -12,7 +12,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.ndimage import median_filter
-from scipy.signal import fftconvolve
 
 from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate.evaluation import Evaluation, scores_of
@@ -249,6 +248,8 @@ def doubtful_circles(presses: GridPresses) -> list[str]:
 
 def _change_in(view: View) -> tuple[float, float]:
     """Return the change of colour in a circle over the most in any of its size, and its ring of most change."""
+    from scipy.signal import fftconvolve  # it takes longer to import than all others
+
     change, press = np.linalg.norm(view.deviations, axis=-1), view.press
     reach = math.ceil(press.contact_radius)
     rows, columns = np.indices((2 * reach + 1,) * 2) - reach
