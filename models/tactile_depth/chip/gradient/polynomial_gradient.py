@@ -21,13 +21,18 @@ need coefficients of 8 and more: all these fraction bits are then fewer (`Config
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.calibration import Calibration
+from tactile_depth.chip.common.td_banked_table import BankedTable
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
+from tactile_depth.chip.common.td_table_port import TablePort
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.fixed_point import codes, joined
 from tactile_depth.chip.gradient.gradient_lookup import gradient_lookup
 from tactile_depth.chip.limits import (
     COLOUR_COEFFICIENT,
@@ -38,10 +43,12 @@ from tactile_depth.chip.limits import (
     FINE_BITS,
     POLYNOMIAL,
 )
+from tactile_depth.chip.registers.register_map import TABLES
 from tactile_depth.chip.resources import DISTRIBUTED, Multiplier, Parts, Words, banks
 
 UNIT_BITS = 12  # of the unit of a correction, from its first: a correction is right within 2**-12 of itself
 LATENCY = 12
+NO_PIXEL = (0, 0, None)
 
 TERMS = ("A", "B", "D", "T", "E", "F", "H", "U", "G", "W")
 DEGREES = ((0, 0), (1, 0), (2, 0), (3, 0), (0, 1), (0, 2), (1, 1), (0, 3), (1, 2), (2, 1))  # of column and row, by term
@@ -218,6 +225,109 @@ def gradient_parameters(config: Configuration) -> dict[str, int]:
         "CorrectionUnit": round(unit / 2.0**log2) << log2,
         "Drop": drop,
     }
+
+
+class PolynomialGradient:
+    """Tables, their port, and the pixels on their way: each valid, its position, and operands, then slopes and clips.
+
+    Attributes
+    ----------
+    tables : list of BankedTable
+        One for each colour, which changes over in its turn; the words are the same in all.
+    started : bool
+        A frame has begun since the last reset.
+    """
+
+    def __init__(self, entries: Sequence[int | None], largest: tuple[int, int], numbers: Mapping[str, int]) -> None:
+        self._numbers, self._largest = numbers, largest  # rows and columns of a frame, at most
+        self.tables = [BankedTable(entries) for _ in range(3)]
+        self.port = TablePort(TABLES["coefficients"], (len(entries) - 1).bit_length(), numbers["WordWidth"], signed=1)
+        self._index = 0  # of the word that is read
+        self._clear()
+
+    def _clear(self) -> None:
+        self.started, self._ended, self._clipped = False, True, 0
+        self._pixels: list[tuple[int, int, Any]] = [NO_PIXEL] * LATENCY
+
+    def _begin(self, words: Sequence[Any]) -> None:
+        """Begin a frame with these words, and forget one that is cut short."""
+        if not self._ended:
+            self._pixels = [(pixel[0], pixel[1], None) if pixel[0] else pixel for pixel in self._pixels]
+        self.started, self._row, self._column = True, 0, 0
+        self._factors = None
+        if None not in words:
+            width, fine, kept = (self._numbers[name] for name in ("WordWidth", "FineBits", "CoeffWidth"))
+            signed = np.array(codes(joined(words, width), len(words), width), np.int64).reshape(2, 3, len(TERMS))
+            self._factors = coefficients(signed, *self._largest, width, fine, kept)
+
+    def _take(self, position: int, colours: Sequence[int]) -> tuple[int, int, Any]:
+        """Return the next pixel of the frame, its operands None where they are not known."""
+        if position & 3 == 2:
+            self._row, self._column = self._row + 1, -1
+        if position & 3 != 3:
+            self._column += 1
+        self._ended = position >> 2 == 3
+        if self._factors is None:
+            return 1, position, None
+        width = self._numbers["DeviationWidth"]
+        deviations = np.array([codes(joined(colours, width), 3, width)])
+        return 1, position, (deviations, self._factors[:, :, self._row, self._column, None])
+
+    def _corrected(self, pixel: tuple[int, int, Any], corrections: Sequence[int]) -> tuple[int, int, Any]:
+        """Return a pixel with its slopes, and how many of them clip."""
+        if pixel[2] is None:
+            return pixel
+        _, position, (deviation, factors) = pixel
+        numbers, monitor = self._numbers, Monitor()
+        width = numbers["CorrectionWidth"]
+        added = np.array([codes(joined(corrections, width), 2, width)]) * numbers["CorrectionUnit"]
+        ((gx, gy),) = slope_codes(deviation, factors, numbers["Drop"], numbers["Width"], monitor, added).tolist()
+        return 1, position, (gx, gy, monitor.saturations.total())
+
+    def clock(
+        self, *, rst: int, en: int, table_command: int, table_bank: int, in_position: int, **pins: int
+    ) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        valid, position, slopes = self._pixels[-1]
+        gx, gy, _ = slopes or (None, None, None)
+        out: dict[str, int | None] = {
+            "out_valid": valid,
+            "saturations": self._clipped,
+            "table_in_use": self.tables[-1].in_use,
+        }
+        if valid:
+            out |= {"out_position": position, "out_gx": gx, "out_gy": gy}
+        free_word = self.tables[self._index // len(TERMS) % 3].free_word
+        bus = self.port.clock(rst=rst, table_command=table_command, free_word=free_word)
+        out["table_answer"], self._index = bus["table_answer"], bus["index"]
+        starts = pins["in_valid"] and in_position & 3 == 3
+        for (first, mark, _), table in zip(self._pixels, self.tables, strict=False):
+            table.clock(
+                rst=rst,
+                en=en,
+                table_bank=table_bank,
+                frame_start=starts,
+                change=first and mark & 3 == 3,
+                read=0,
+                free_write=bus["write"],
+                free_write_address=bus["index"],
+                free_write_word=bus["word"],
+                free_read=bus["read"],
+                free_read_address=bus["index"],
+            )
+        self._clipped = 0
+        if en:
+            if starts:
+                self._begin(self.tables[0].banks[table_bank])
+            if self._pixels[-2][0]:
+                self._clipped = self._pixels[-2][2] and self._pixels[-2][2][2]
+            colours = [pins[f"in_{colour}"] for colour in ("red", "green", "blue")]
+            pixel = self._take(in_position, colours) if pins["in_valid"] else NO_PIXEL
+            corrected = self._corrected(self._pixels[3], [pins["correction_gx"], pins["correction_gy"]])
+            self._pixels = [pixel, *self._pixels[:3], corrected, *self._pixels[4:-1]]
+        if rst:
+            self._clear()
+        return out
 
 
 def parts(_config: Configuration) -> Parts:
