@@ -19,13 +19,14 @@ picture has the gains at which its own deviations come to rest (`settled`).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_half_even, round_saturate
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.fixed_point import Format
+from tactile_depth.chip.fixed_point import Format, joined
 from tactile_depth.chip.limits import DEVIATION, LIGHT_GAIN, RATIO
 from tactile_depth.chip.resources import Multiplier, Parts, Words
 
@@ -187,6 +188,65 @@ class LightFilter:
         """Return the gains of frames, int64 (..., 3), that follow one another, from ratios (..., rows, columns, 3)."""
         pictures = ratios.reshape(-1, *ratios.shape[-3:])
         return np.array([self.take(picture) for picture in pictures]).reshape(*ratios.shape[:-3], 3)
+
+
+class LightGains:
+    """The gains, and the pixels on their way: each valid, its position, deviations, and how many of them clipped.
+
+    Attributes
+    ----------
+    used : int64 array (3,)
+        Gains of the frame, or of the next if none has begun.
+    frame : list of int64 array (3,)
+        Deviations of the frame so far.
+    """
+
+    def __init__(self, light: Light) -> None:
+        self.light, self._rates = light, [0, 0]
+        self._clear()
+
+    def _clear(self) -> None:
+        self._gains = self.used = np.full(3, self.light.unity)
+        self.frame: list[np.ndarray] = []
+        self._bad = self._clipped = 0
+        self._pixels: list[tuple[int, int, Sequence[int], int]] = [(0, 0, (), 0)] * LATENCY
+
+    def _take(self, position: int, ratios: Sequence[int]) -> tuple[int, int, Sequence[int], int]:
+        """Return the pixel of these ratios."""
+        monitor = Monitor()
+        deviations = self.light.deviations(np.array(ratios), self.used, monitor)
+        self.frame.append(deviations)
+        return 1, position, deviations.tolist(), monitor.saturations.total()
+
+    def clock(
+        self, *, rst: int, en: int, follow: int, rate: int, write: int, write_gain: int, in_bad: int, **pins: int
+    ) -> dict[str, int | None]:
+        """Advance by one clock edge; return the outputs before it, None where one does not count."""
+        (_, _, _, clips), (valid, position, deviations, _) = self._pixels
+        out: dict[str, int | None] = {"out_valid": valid, "saturations": self._clipped}
+        out["gains"] = joined(self._gains.tolist(), self.light.gain_width)
+        if valid:
+            out |= zip(("out_position", "out_red", "out_green", "out_blue"), (position, *deviations), strict=True)
+        self._clipped = en and clips
+        if en:
+            pixel: tuple[int, int, Sequence[int], int] = (0, 0, (), 0)
+            self._bad |= in_bad
+            if pins["in_valid"]:
+                pixel = self._take(pins["in_position"], [pins[f"in_{colour}"] for colour in ("red", "green", "blue")])
+            self._pixels = [pixel, *self._pixels[:-1]]
+            if len(self.frame) == self.light.rows * self.light.columns:
+                if follow and not self._bad:
+                    frame = np.array(self.frame).reshape(self.light.rows, self.light.columns, 3)
+                    self._gains = self.light.followed(frame, self._gains, self.used, self._rates[1])
+                self.frame, self._bad = [], 0
+        written = self.light.limited(np.array(write_gain))
+        self._gains = np.where([write >> c & 1 for c in range(3)], written, self._gains)
+        if not self.frame:
+            self.used = self._gains
+        self._rates = [rate, self._rates[0]]
+        if rst:
+            self._clear()
+        return out
 
 
 def parts(_config: Configuration) -> Parts:
