@@ -13,7 +13,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from commands.__main__ import COMMANDS
 from commands.common import repository
 from commands.common.repository import ROOT, git
 
@@ -47,6 +46,8 @@ def digest(sources: Iterable[Path], values: object = None) -> str:
 
 def sources(line: str) -> str:
     """Return the digest of the sources of a run, as its command computes it from its variables."""
+    from commands.__main__ import COMMANDS  # needs psutil, which the generator of FuseSoC does without
+
     _, command, *arguments = line.split()
     digest: str = importlib.import_module(f"commands.{COMMANDS[command]}.{command}").sources(arguments)
     return digest

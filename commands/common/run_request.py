@@ -12,7 +12,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from commands.common import simulator as simulation
 from commands.common import variables
 from commands.common.variables import Several
 from tactile_depth.base.errors import InputError
@@ -26,6 +25,7 @@ from tactile_depth.sensor.calibration_file import BUILT_IN
 from tactile_depth.sensor.presets import PRESETS, Preset
 from tactile_depth.sensor.scenes import NOISE, SCENES, SENSOR_WIDTH_MM, Press
 from tactile_depth.sensor.sensor import Sensor
+from tb.structures import BOTH
 
 DEFAULT_SCENE = "ball"
 WORST = "worst"  # a depth range that no slopes can exceed
@@ -133,7 +133,7 @@ def of_values(
         solver=choice("SOLVER", SOLVERS),
         boundary=choice("BOUNDARY", BOUNDARIES[::-1]),
         lanes=number("LANES", 1),  # see rows
-        simulator=choice("SIM", simulation.SIMULATORS),
+        simulator=choice("SIM", BOTH),
         numbers={name: number(each.variable, DEFAULTS[name]) for name, each in NUMBERS.items()},
         deepest_mm=math.inf if values.get(DEPTH_RANGE) == WORST else number(DEPTH_RANGE, 0, 1e-6, 1e6, float) or None,
         frames=values["FRAMES"],

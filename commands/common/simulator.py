@@ -33,8 +33,9 @@ from commands.common.repository import HDL, ROOT, sources
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, one_of
 from tb import start
+from tb.structures import BOTH
 
-SIMULATORS = ("verilator", "icarus")
+SIMULATORS = BOTH
 Simulator = Annotated[str, variables.one(SIMULATORS), "SIM"]
 VERILATOR = "verilator_bin"  # the program itself: the script around it starts three more, longer than most lints take
 RAM_CHECK = ROOT / "formal" / "ram_check.sv"  # each memory has one, with TD_SIMULATED alone

@@ -15,7 +15,6 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
-from commands.common import signals
 from tactile_depth.base import interruption
 from tactile_depth.base.errors import Argument, InputError, InputWarning, one_of
 from tactile_depth.base.files import cause
@@ -237,6 +236,8 @@ def reported(target: str, interrupted: str = "") -> Iterator[None]:
     expected shows its traceback, since it is a fault of the command, and gives 3. `interrupted` says what a signal
     leaves.
     """
+    from commands.common import signals  # needs psutil, which the generator of FuseSoC does without
+
     try:
         with interruption.stoppable(signals.end_children), warnings.catch_warnings():
             warnings.showwarning = show_warning(target)

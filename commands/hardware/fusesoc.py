@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The generator of tactile_depth.core: a configuration as a core of FuseSoC.
 
-Its parameters are NAME and the variables of `make sim` that choose a configuration; commands/common/run_request.py
-names them. The core holds the module tactile_depth_<NAME>, which a design instantiates, and its tables in a folder
-<NAME>.
+Its parameters are those of `make wrap`, NAME and the variables that choose a configuration and a camera. The core holds
+the module tactile_depth_<NAME>, or tactile_sensor_<NAME> with a camera, which a design instantiates, and its tables in
+a folder <NAME>. It needs numpy, scipy, Pillow and yaml.
 """
 
 import sys
@@ -15,12 +15,9 @@ sys.path[:0] = [str(ROOT), str(ROOT / "models")]  # FuseSoC runs it by its path
 try:
     import yaml
 
-    from commands.common import run_request, variables, wrapper
-    from commands.common.zero_offset import untouched
-    from commands.hardware import synthesis
+    from commands.common import run_request, variables
+    from commands.hardware import wrapped
     from tactile_depth.base.errors import InputError
-    from tactile_depth.chip.tactile_depth import top_parameters, write_roms
-    from tactile_depth.depth.twin import Twin
 except ImportError as error:
     sys.exit(f"tables of tactile_depth: {error} ({sys.executable}): run `make setup`, put {ROOT}/.venv/bin on PATH")
 
@@ -30,16 +27,14 @@ def generate(description: Path, folder: Path) -> None:
     wanted = yaml.safe_load(description.read_text())
     values = dict(wanted.get("parameters") or {})
     module = str(values.pop("NAME", ""))
-    if not wrapper.NAME.fullmatch(module):
-        raise InputError(f"NAME={module}: {wrapper.NAMES}")
+    wrapped.check_name(module)
     for key in values:
-        if key not in run_request.CONFIGURING:
-            raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(run_request.CONFIGURING)}")
-    request = run_request.parse([f"{key}={value}" for key, value in values.items()], preset="sensor", frames="")
-    frames, calibration, config = synthesis.design(request)
-    write_roms(folder, calibration, config, Twin(calibration, config, untouched(request, frames)).zero)
+        if key not in wrapped.CHOICES:
+            raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(wrapped.CHOICES)}")
+    words = [f"{key}={value}" for key, value in values.items()]
+    request = run_request.parse(words, wrapped.CHOICES, wrapped.PRESET, frames="")
+    path = wrapped.write(request, folder, module, f"{module}/")
     tables = [rom.name for rom in sorted(folder.glob("*.hex"))]
-    path = wrapper.write(folder, module, top_parameters(config, calibration.pixel_pitch_mm), f"{module}/")
     core = {
         "name": wanted["vlnv"],
         "filesets": {

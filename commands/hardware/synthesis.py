@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 
+import numpy as np
+
 from commands.common import recorded, repository, run_request
 from tactile_depth.base import files
 from tactile_depth.chip.configuration import Configuration
@@ -22,8 +24,8 @@ SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
 def design(request: run_request.Request, frames: Frames | None = None) -> tuple[Frames, Sensor, Configuration]:
     """Return frames, by default those of a request, calibration on their grid and configuration.
 
-    Without FRAMES the reference is the frame, because it gives the width of the camera's pixels on the grid. Without a
-    picture at all, what CAMERA sends is taken to be the sensor's full picture, unless CROP says what else.
+    Without FRAMES the reference is the frame, and shows all that the calibration's pictures show. Without a picture at
+    all, what CAMERA sends is taken to be the sensor's full picture, unless CROP says what else.
 
     Raises InputError.
     """
@@ -31,6 +33,7 @@ def design(request: run_request.Request, frames: Frames | None = None) -> tuple[
     run_request.check_grid(request)
     size = (request.rows, request.columns)
     flat = request.reference in (None, REST_SCENE)
+    named = frames is not None or bool(request.frames)
     without_picture = frames is None and not request.frames and flat and calibration.camera is not None
     crop = request.crop
     if crop is None and without_picture and request.camera is not None and calibration.view is not None:
@@ -41,7 +44,7 @@ def design(request: run_request.Request, frames: Frames | None = None) -> tuple[
     elif frames is None:
         source = request.frames or (run_request.DEFAULT_SCENE if flat else str(request.reference))
         frames = load_frames(source, size, request.reference, request.seed, request.press, request.camera, share)
-    calibration = on_grid(calibration, frames)
+    calibration = on_grid(calibration, frames, whole=not named)
     return frames, calibration, run_request.configure(request, calibration)
 
 
@@ -76,6 +79,7 @@ def read(
     parameters: Mapping[str, int | str] | None = None,
     extra: Sequence[Path] = (),
     options: str = "",
+    zero: np.ndarray | None = None,
 ) -> list[str]:
     """Write sources and ROMs of a configuration into a folder, and return the lines of Yosys that read them there.
 
@@ -84,9 +88,10 @@ def read(
     parameters : of `top`; those of the design by default
     extra : sources beside those of hdl/; they replace files of the same name
     options : of the front end
+    zero : depth codes in the table of the zero offset, for a bitstream
     """
     folder.mkdir(parents=True, exist_ok=True)
-    write_roms(folder, calibration, config)
+    write_roms(folder, calibration, config, zero)
     names = list({source.name: shutil.copy(source, folder) for source in [*repository.sources(), *extra]})
     of_top = hdl_parameters(config) if parameters is None else parameters
     values = " ".join(f"-G {name}={value}" for name, value in of_top.items())

@@ -12,40 +12,27 @@ that camera, and it has the pins of dvp_receive and camera_setup.
 import os
 from typing import Annotated
 
-from commands.common import repository, run_request, wrapper
+from commands.common import repository, run_request
 from commands.common.variables import Name
-from commands.common.zero_offset import untouched
-from commands.hardware import registers, synthesis
+from commands.hardware import registers, wrapped
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip import c_header
-from tactile_depth.chip.tactile_depth import top_parameters, write_roms
-from tactile_depth.depth.twin import Twin
-
-CHOICES = (*run_request.CONFIGURING, *run_request.CAMERA, "OUT")
+from tactile_depth.chip.hardware_files import PARAMETERS
 
 
 def main(
-    request: Annotated[run_request.Request, run_request.chosen(CHOICES, "chip", "")],
+    request: Annotated[run_request.Request, run_request.chosen((*wrapped.CHOICES, "OUT"), wrapped.PRESET, "")],
     name: Name = "",
     tables: Name = "./",
 ) -> None:
-    if not wrapper.NAME.fullmatch(name):
-        raise InputError(f"NAME={name}: {wrapper.NAMES}")
+    wrapped.check_name(name)
     if not tables.endswith("/") or '"' in tables:
         raise InputError(f"TABLES={tables}: accepted is the folder of the table files, with a / at its end")
     out = request.out or repository.ROOT / "build" / "wrap" / name
-    frames, calibration, config = synthesis.design(request)
-    zero = Twin(calibration, config, untouched(request, frames)).zero
-    with files.workspace(out) as work:
-        parameters = top_parameters(config, calibration.pixel_pitch_mm, frames.camera)
-        path = wrapper.write(work, name, parameters, tables)
-        write_roms(work, calibration, config, zero)
+    with files.new_files(out, PARAMETERS) as work:
+        path = wrapped.write(request, work, name, tables)
         count = len(list(work.glob("*.hex")))
-        (work / c_header.FILE).write_text(c_header.c_header(calibration, config, zero))
-        for of in registers.MAPS if frames.camera else (registers.PIPELINE,):
+        for of in registers.MAPS if request.camera else (registers.PIPELINE,):
             registers.ip_xact(of, work)
-        names = [file.name for file in work.iterdir()]
-        files.replace(work, names, out)
-    run_request.announce(request, config)
     print(f"wrote {os.path.relpath(out / path.name)}, {count} table files, {c_header.FILE} and IP-XACT beside it")

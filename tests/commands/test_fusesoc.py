@@ -55,6 +55,18 @@ def test_the_generator_without_its_libraries_says_what_to_do(tmp_path: Path) -> 
     assert "run `make setup`" in ended.stderr
 
 
+def test_the_generator_needs_the_package_and_yaml_alone(tmp_path: Path) -> None:
+    (tmp_path / "wanted.yml").write_text(yaml.safe_dump({"vlnv": "::tables:0", "parameters": {"NAME": "a", "N": 16}}))
+    absent = dict.fromkeys(("cocotb", "cocotb_tools", "find_libpython", "psutil", "pytest", "numba"))
+    generator = "commands.hardware.fusesoc"
+    code = f"import sys, runpy; sys.modules.update({absent}); runpy.run_module({generator!r}, run_name='__main__')"
+    places = os.pathsep.join(map(str, (repository.ROOT, repository.ROOT / "models")))
+    command, environment = [sys.executable, "-c", code, "wanted.yml"], os.environ | {"PYTHONPATH": places}
+    ended = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert ended.stdout.startswith("preset chip: ")
+
+
 def test_the_generator_writes_a_module_and_its_tables(tmp_path: Path) -> None:
     assert (
         generated(

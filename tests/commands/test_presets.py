@@ -2,15 +2,13 @@
 """Presets: what a command begins with, and what the variables that are given make of it."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 from PIL import Image
 
-from commands.common import repository, run_request, variables, wrapper
+from commands.common import run_request, variables
 from commands.hardware import fpga, synth, synthesis
 from commands.run import sim
 from commands.study import tune
@@ -21,7 +19,7 @@ from tactile_depth.chip.configuration import DEFAULTS, NUMBERS, Configuration
 from tactile_depth.chip.tactile_depth import default_parameters, top_parameters
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.sensor.built_in import load
-from tactile_depth.sensor.presets import CHIP, PRESETS, SENSOR
+from tactile_depth.sensor.presets import PRESETS, SENSOR
 from tests.drawn_light import no_contact
 
 SIZES: dict[str, tuple[int, int]] = {
@@ -132,19 +130,3 @@ def test_the_first_line_names_the_preset(tmp_path: Path, capsys: pytest.CaptureF
     assert sim.run(run_request.parse(["N=16", "SIM=icarus", f"OUT={tmp_path}"])) == 0
     first = capsys.readouterr().out.splitlines()[0]
     assert first == "preset published: spectral, dirichlet, 16 x 16, lut"
-
-
-def test_the_module_of_a_reference_is_that_of_the_python_package(tmp_path: Path) -> None:
-    """`make wrap NAME=.. REFERENCE=..` writes the fields and the tables that `Pipeline.hardware` writes."""
-    picture, out = background(tmp_path), tmp_path / "out"
-    words = ["NAME=finger", f"REFERENCE={picture}", f"OUT={out}"]
-    command = [sys.executable, "-m", "commands", "wrap", *words]
-    result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=True)
-    assert result.stdout.startswith(
-        "preset chip: tridiagonal, neumann, 96 x 128, cubic, flat field, zero offset, light gains\n"
-    )
-    pipeline = Pipeline(load("gelsight-mini"), reference=picture, **CHIP.words)  # type: ignore[arg-type]
-    described = json.loads(pipeline.hardware(tmp_path / "hardware").read_text())
-    assert (out / "tactile_depth_finger.sv").read_text() == wrapper.wrapper("finger", described["fields"])
-    for name in described["tables"]:
-        assert (out / name).read_text() == (tmp_path / "hardware" / name).read_text()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Wrappers with a configuration inside, and the package of default parameters."""
 
+import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,7 @@ from commands.hardware import registers
 from tactile_depth.chip.c_header import FILE, c_header
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.depth.zero_capture import captured_zero
+from tactile_depth.chip.hardware_files import PARAMETERS
 from tactile_depth.chip.tactile_depth import tactile_depth, top_parameters, write_roms
 from tactile_depth.depth.pipeline import SYNTHETIC_GRID
 from tactile_depth.sensor.scenes import render
@@ -75,7 +77,9 @@ def test_the_command_writes_the_module_and_its_tables(run_command: Callable[...,
     write_roms(tmp_path / "direct", synthetic(4), Configuration(columns=16, solver="tridiagonal"))
     written = {path.name: path.read_text() for path in tmp_path.glob("*.hex")}
     assert written == {path.name: path.read_text() for path in (tmp_path / "direct").glob("*.hex")}
-    header = c_header(SENSOR, Configuration(columns=16, solver="tridiagonal"))
+    registers_of = json.loads((tmp_path / PARAMETERS).read_text())["registers"]
+    assert registers_of["THRESHOLD"] > 0
+    header = c_header(SENSOR, Configuration(columns=16, solver="tridiagonal"), thresholds=registers_of)
     assert (tmp_path / FILE).read_text() == header
     (tmp_path / "described").mkdir()
     described = registers.ip_xact(registers.PIPELINE, tmp_path / "described")
@@ -92,7 +96,8 @@ def test_the_zero_offset_is_in_its_table(run_command: Callable[..., Any], tmp_pa
     assert np.abs(zero).max() > 0
     write_roms(tmp_path / "direct", synthetic(4), config, zero)
     assert (tmp_path / "zero_0.hex").read_text() == (tmp_path / "direct" / "zero_0.hex").read_text()
-    assert (tmp_path / FILE).read_text() == c_header(SENSOR, config, zero)
+    registers_of = json.loads((tmp_path / PARAMETERS).read_text())["registers"]
+    assert (tmp_path / FILE).read_text() == c_header(SENSOR, config, zero, thresholds=registers_of)
 
 
 @pytest.mark.parametrize("form", [("CAMERA=raw10_lsb", "BAYER=grbg"), ("CAMERA=yuyv_bytes",)], ids=lambda form: form[0])
@@ -113,7 +118,7 @@ def test_with_a_camera_the_module_is_a_tactile_sensor(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((), "NAME=: accepted are small letters"),
+        ((), "NAME=: accepted are small letters, digits and _, beginning with a letter, as NAME=finger"),
         (("NAME=Finger",), "NAME=Finger: accepted are small letters"),
         (("NAME=finger", "TABLES=finger"), "with a / at its end"),
         (("NAME=finger", "LANES=2", "SOLVER=spectral"), "LANES"),

@@ -12,6 +12,7 @@ import numpy as np
 from tactile_depth.base.files import new_files
 from tactile_depth.chip import c_header
 from tactile_depth.chip.calibration import Calibration
+from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.tactile_depth import config_value, top_parameters, write_roms
 
@@ -26,7 +27,25 @@ def write_hardware(
     gains: np.ndarray,
     thresholds: Mapping[str, int],
 ) -> Path:
-    """Write the files of a configuration into a folder, and return the path of `PARAMETERS` there.
+    """Write the files of a configuration into a folder, all or none, and return the path of `PARAMETERS` there.
+
+    The arguments are those of `write_files`.
+    """
+    with new_files(folder, PARAMETERS) as unfinished:
+        write_files(unfinished, sensor, config, zero, gains, thresholds)
+    return folder / PARAMETERS
+
+
+def write_files(
+    folder: Path,
+    sensor: Calibration,
+    config: Configuration,
+    zero: np.ndarray | None,
+    gains: np.ndarray | None,
+    thresholds: Mapping[str, int],
+    camera: CameraConfiguration | None = None,
+) -> dict[str, int]:
+    """Write the files of a configuration into an empty folder, and return the fields of Config.
 
     Parameters
     ----------
@@ -37,23 +56,22 @@ def write_hardware(
     thresholds : mapping
         Depth code of each register of a threshold, by the name of the register.
     """
-    with new_files(folder, PARAMETERS) as unfinished:
-        write_roms(unfinished, sensor, config, zero, gains)
-        fields = top_parameters(config, sensor.pixel_pitch_mm)
-        description = {
-            "parameters": {"Config": config_value(fields)},
-            "fields": fields,
-            "registers": dict(thresholds),
-            "grid": [config.rows, config.columns],
-            "depth_lsb_mm": config.depth_lsb_px * sensor.pixel_pitch_mm,
-            "pixel_pitch_mm": sensor.pixel_pitch_mm,
-            "pixel_aspect": sensor.pixel_aspect,
-            "gradient_lsb": config.gradient_lsb,
-            "calibration": sensor.name,
-            "gradient_model": config.gradient_model,
-            "tables": sorted(path.name for path in unfinished.iterdir()),
-            "c_header": c_header.FILE,
-        }
-        (unfinished / PARAMETERS).write_text(json.dumps(description, indent=1) + "\n")
-        (unfinished / c_header.FILE).write_text(c_header.c_header(sensor, config, zero, gains, thresholds))
-    return folder / PARAMETERS
+    write_roms(folder, sensor, config, zero, gains)
+    fields = top_parameters(config, sensor.pixel_pitch_mm, camera)
+    description = {
+        "parameters": {"Config": config_value(fields)},
+        "fields": fields,
+        "registers": dict(thresholds),
+        "grid": [config.rows, config.columns],
+        "depth_lsb_mm": config.depth_lsb_px * sensor.pixel_pitch_mm,
+        "pixel_pitch_mm": sensor.pixel_pitch_mm,
+        "pixel_aspect": sensor.pixel_aspect,
+        "gradient_lsb": config.gradient_lsb,
+        "calibration": sensor.name,
+        "gradient_model": config.gradient_model,
+        "tables": sorted(path.name for path in folder.glob("*.hex")),
+        "c_header": c_header.FILE,
+    }
+    (folder / PARAMETERS).write_text(json.dumps(description, indent=1) + "\n")
+    (folder / c_header.FILE).write_text(c_header.c_header(sensor, config, zero, gains, thresholds))
+    return fields

@@ -23,9 +23,10 @@ from tactile_depth.chip.hardware_files import write_hardware
 from tactile_depth.chip.limits import BOUNDARIES, LIGHT_GAIN, Boundary, Model, Solver, is_grid_of_hardware
 from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.chip.tactile_depth import zeroed
+from tactile_depth.depth.make_words import Sources, make_words
 from tactile_depth.depth.result import Recorder, Result, settings_of, thresholds_of
 from tactile_depth.depth.stream import Stream, timed, times
-from tactile_depth.depth.twin import Twin
+from tactile_depth.depth.twin import PICTURES, Twin, require_flat_field, require_zero_offset
 from tactile_depth.pictures.blocks import Rest
 from tactile_depth.pictures.doubts import Doubt, UnusablePicture, Warned, doubt, tell
 from tactile_depth.pictures.frames import camera_scale
@@ -43,7 +44,7 @@ SYNTHETIC_GRID = (128, 128)
 ARITHMETICS = ("chip", "float")
 Arithmetic = Literal["chip", "float"]
 THRESHOLD_MM, AREA_THRESHOLD_MM = 0.07, 0.3  # of a contact
-PICTURES, REFERENCE = Argument("pictures"), Argument("reference")
+REFERENCE = Argument("reference")
 
 
 def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]:
@@ -135,6 +136,7 @@ class Pipeline:
             require_flag(Argument("light_gains", light_gains))
         one_of(Argument("arithmetic", arithmetic), ARITHMETICS)
         one_of(Argument("boundary", boundary), BOUNDARIES)
+        self._sources = Sources(sensor, crop, zero_offset)
         sensor, share = shown(sensor, crop)
         sensor.require_reference(reference is not None)
         rows, columns = self._grid = default_grid(sensor, solver) if grid is None else grid
@@ -167,8 +169,11 @@ class Pipeline:
         self._zero = no_zero(self.config)
         self._exact_zero = np.zeros(self.grid)
         self._use_reference(rest)
-        if zero_offset and rest is not None:
-            self._use_zero(rest)
+        if reference is not None and rest is not None:
+            self._sources.take_reference(reference)
+            if zero_offset:
+                self._use_zero(rest)
+                self._sources.take_zero(reference)
         self._settle(rest)
 
     def __call__(
@@ -358,6 +363,7 @@ class Pipeline:
         require_flat_field(self.config)
         frames = self._rest_of(pictures, PICTURES, largest_log2_frames(self.config))
         self._use_reference(frames)
+        self._sources.take_reference(pictures)
         self._settle(frames)
 
     def capture_zero(self, pictures: Pictures) -> None:
@@ -373,10 +379,13 @@ class Pipeline:
         power_of_two_of(len(frames), LARGEST_LOG2, PICTURES)
         self._zero_doubts = check_zero(frames, self._rest, PICTURES)
         self._use_zero(frames)
+        self._sources.take_zero(pictures)
         self._settle(frames)
 
-    def hardware(self, folder: str | Path) -> Path:
+    def hardware(self, folder: str | Path, *, quiet: bool = False) -> Path:
         """Write the parameters of the top module and the tables, with which the RTL computes the same depth.
+
+        It prints the words of make that give the same, unless it is `quiet`.
 
         Parameters
         ----------
@@ -399,7 +408,10 @@ class Pipeline:
             remedy = ("make the pipeline with ", Argument("arithmetic", "chip"), " and a grid that it takes")
             raise InputError(Argument("grid", self.grid), problem, remedy=remedy)
         thresholds = thresholds_of(self._recorder.settings)
-        return write_hardware(Path(folder), self.sensor, self.config, self._zero, self._gains, thresholds)
+        index = write_hardware(Path(folder), self.sensor, self.config, self._zero, self._gains, thresholds)
+        if not quiet:
+            print(f"in words: {make_words(self.config, self.pixel_pitch_mm, self._sources.words())}")
+        return index
 
     def _use_reference(self, frames: np.ndarray | None) -> None:
         if frames is not None:
@@ -483,17 +495,3 @@ class Pipeline:
 def is_whole(number: object) -> bool:
     """Return True for a whole number."""
     return isinstance(number, int | np.integer) and not isinstance(number, bool)
-
-
-def require_flat_field(config: Configuration) -> None:
-    """Refuse the capture of a reference that no colour is relative to."""
-    if not config.flat_field:
-        problem = ": this pipeline takes colours as sent"
-        raise InputError(PICTURES, problem, remedy=("make it with ", Argument("reference", "<picture>")))
-
-
-def require_zero_offset(config: Configuration) -> None:
-    """Refuse the capture of a zero offset that is not subtracted."""
-    if not config.zero_offset:
-        problem = ": this pipeline has no zero offset"
-        raise InputError(PICTURES, problem, remedy=("make it with ", Argument("zero_offset", True)))

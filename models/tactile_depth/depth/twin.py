@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration, ExactConfiguration
 from tactile_depth.chip.depth.zero_capture import captured_zero
@@ -20,6 +21,7 @@ from tactile_depth.chip.tactile_depth import Tables, light_of, slope_tables, slo
 from tactile_depth.depth import reference
 from tactile_depth.sensor.sensor import Sensor
 
+PICTURES = Argument("pictures")
 PIXELS_AT_ONCE = 1 << 16  # pixels of a batch of frames, whose arrays stay in a cache
 
 
@@ -153,3 +155,17 @@ class Twin:
     def depth_px(self, frames: np.ndarray, monitor: Monitor | None = None) -> np.ndarray:
         """Return the depth of `codes` in grid pixels."""
         return self.codes(frames, monitor) * self.config.depth_lsb_px
+
+
+def require_flat_field(config: Configuration) -> None:
+    """Refuse the capture of a reference that no colour is relative to."""
+    if not config.flat_field:
+        problem = ": this pipeline takes colours as sent"
+        raise InputError(PICTURES, problem, remedy=("make it with ", Argument("reference", "<picture>")))
+
+
+def require_zero_offset(config: Configuration) -> None:
+    """Refuse the capture of a zero offset that is not subtracted."""
+    if not config.zero_offset:
+        problem = ": this pipeline has no zero offset"
+        raise InputError(PICTURES, problem, remedy=("make it with ", Argument("zero_offset", True)))

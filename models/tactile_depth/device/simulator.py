@@ -76,7 +76,7 @@ class Simulator:
         self._process: subprocess.Popen | None = None
         try:
             folder = self._folder.enter_context(files.temporary())
-            pipeline.hardware(folder)
+            pipeline.hardware(folder, quiet=True)
             command, root = command_of(folder, pins)
             self._start(command, root)
         except BaseException:

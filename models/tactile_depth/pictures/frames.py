@@ -146,8 +146,12 @@ def _check_camera(name: str, height: int, width: int) -> None:
         )
 
 
-def on_grid(sensor: Sensor, frames: Frames) -> Sensor:
-    """Return a sensor on the grid of frames, with the frames' reference and the pitch of the grid."""
+def on_grid(sensor: Sensor, frames: Frames, whole: bool = False) -> Sensor:
+    """Return a sensor on the grid of frames, with the frames' reference and the pitch of the grid.
+
+    The pictures of a real sensor show what its camera shows, whatever their size; so do those of the synthetic sensor
+    if they are `whole`, otherwise their pixels are as wide as its own.
+    """
     if sensor.camera is not None and frames.picture_size is None:
         raise InputError(
             f"{frames.name}: a scene is drawn for the synthetic sensor, not for {sensor.name}",
@@ -158,11 +162,14 @@ def on_grid(sensor: Sensor, frames: Frames) -> Sensor:
     if frames.no_contact is not None:
         check_reference(sensor, middle(frames.no_contact[None], frames.share), share=frames.share)
     placed = sensor
+    scale = frames.pixel_scale / zoom
+    if frames.camera is None and (whole or sensor.camera is not None):
+        scale = grid_scale(sensor, frames.pixels.shape[1:3])
     if frames.camera is not None:
         columns, rows = frames.camera.centre_shift
         pitch_mm = sensor.pixel_pitch_mm / zoom
         placed = sensor.centred_at(columns * pitch_mm, rows * pitch_mm)
-    return placed.scaled(frames.pixel_scale / zoom, frames.reference)
+    return placed.scaled(scale, frames.reference)
 
 
 def load_frames(
@@ -272,10 +279,15 @@ def read_stack(source: str | Path, name: str = "") -> np.ndarray:
 
 def camera_scale(sensor: Sensor, config: Configuration) -> float:
     """Return the camera pixels per grid pixel, for full pictures of a sensor's camera."""
+    return grid_scale(sensor, (config.rows, config.columns))
+
+
+def grid_scale(sensor: Sensor, grid: tuple[int, ...]) -> float:
+    """Return `camera_scale` for a grid (rows, columns)."""
+    rows, columns = grid
     if sensor.camera is None:
-        return scene_pixel_pitch_mm(min(config.rows, config.columns)) / SYNTHETIC_PIXEL_PITCH_MM
-    camera = (sensor.camera.rows, sensor.camera.columns)
-    return grid_sampler(sensor.name, camera, (config.rows, config.columns)).scale
+        return scene_pixel_pitch_mm(min(rows, columns)) / SYNTHETIC_PIXEL_PITCH_MM
+    return grid_sampler(sensor.name, (sensor.camera.rows, sensor.camera.columns), (rows, columns)).scale
 
 
 def _scene(

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Hardware of a request: the module around its configuration, its tables and its C header, for every command.
+
+`make wrap`, the generator of FuseSoC and `make fpga` begin with the preset `PRESET`. They write what
+`Pipeline.hardware` writes for the same words, by the same function.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from commands.common import run_request, wrapper
+from commands.common.zero_offset import untouched
+from commands.hardware import synthesis
+from tactile_depth.base.errors import InputError
+from tactile_depth.chip.hardware_files import write_files
+from tactile_depth.depth.make_words import make_words
+from tactile_depth.depth.pipeline import AREA_THRESHOLD_MM, THRESHOLD_MM
+from tactile_depth.depth.result import settings_of, thresholds_of
+from tactile_depth.depth.twin import Twin
+from tactile_depth.pictures.frames import Frames
+
+PRESET = "chip"
+CHOICES = (*run_request.CONFIGURING, *run_request.CAMERA)
+
+
+def check_name(name: str) -> None:
+    """Refuse a NAME that no module can have. Raises InputError."""
+    if not wrapper.NAME.fullmatch(name):
+        raise InputError(f"NAME={name}: {wrapper.NAMES}, as NAME=finger")
+
+
+def write(request: run_request.Request, folder: Path, name: str, tables: str = "./") -> Path:
+    """Write the module <top>_<name>, its tables, `PARAMETERS` and its C header into a folder; return the module's path.
+
+    It prints the preset, and all words with which any command writes the same hardware. Raises InputError.
+
+    Parameters
+    ----------
+    tables : folder of the tables for simulator and synthesis, with a / at its end
+    """
+    frames, calibration, config = synthesis.design(request)
+    twin = Twin(calibration, config, untouched(request, frames))
+    thresholds = _thresholds(twin, frames)
+    fields = write_files(folder, calibration, config, twin.zero, None, thresholds, frames.camera)
+    path = wrapper.write(folder, name, fields, tables)
+    run_request.announce(request, config)
+    print(f"in words: {make_words(config, calibration.pixel_pitch_mm, sources(request))}", flush=True)
+    return path
+
+
+def _thresholds(twin: Twin, frames: Frames) -> dict[str, int]:
+    """Return the thresholds of `td.Pipeline` as words of registers; none where its depth range is smaller."""
+    config, sensor = twin.config, twin.sensor
+    lsb_mm = config.depth_lsb_px * sensor.pixel_pitch_mm
+    if THRESHOLD_MM / lsb_mm >= 2 ** (config.data_width - 1):
+        return {}
+    at_rest = np.zeros((config.rows, config.columns), np.int32)
+    if frames.reference is not None:
+        at_rest = twin.codes(frames.reference[None])[0]
+    pixel_mm2 = sensor.pixel_pitch_mm**2 * sensor.pixel_aspect
+    return thresholds_of(settings_of(THRESHOLD_MM, THRESHOLD_MM, AREA_THRESHOLD_MM, lsb_mm, pixel_mm2, at_rest))
+
+
+def sources(request: run_request.Request) -> dict[str, str]:
+    """Return the words of a request that no configuration holds."""
+    rows, columns = request.camera_size or (0, 0)
+    camera = request.camera
+    return {
+        "CALIBRATION": request.calibration,
+        "CAMERA_SIZE": f"{columns}x{rows}" if rows else "",
+        "CROP": request.crop or "",
+        "REFERENCE": request.reference or "",
+        "ZERO": request.zero or "",
+        "CAMERA": camera.pixel_format if camera else "",
+        "BAYER": camera.phase if camera else "",
+        "WINDOW": ",".join(map(str, camera.window)) if camera and camera.window else "",
+    }
