@@ -33,7 +33,7 @@ def generate(description: Path, folder: Path) -> None:
             raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(wrapped.CHOICES)}")
     words = [f"{key}={value}" for key, value in values.items()]
     request = run_request.parse(words, wrapped.CHOICES, wrapped.PRESET, frames="")
-    path = wrapped.write(request, folder, module, f"{module}/")
+    (path,) = wrapped.write(request, folder, module, f"{module}/").modules
     tables = [rom.name for rom in sorted(folder.glob("*.hex"))]
     core = {
         "name": wanted["vlnv"],

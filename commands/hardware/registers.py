@@ -4,7 +4,7 @@
 There are two maps: tactile_depth.rdl of the pipeline, and camera.rdl of the camera front end. Three files of each are
 committed, so that nobody needs these tools to use them: the page by peakrdl-markdown, a package of SystemVerilog,
 because no exporter writes one that Icarus 11 reads, and the JSON that register_map.py reads, because a run then needs
-no compiler of 40 MB. The C header by peakrdl-cheader, the IP-XACT of IEEE 1685-2014 by peakrdl-ipxact and the Python
+no compiler of 40 MB. The C header by peakrdl-cheader, the IP-XACT components of both tops (ip_xact.py) and the Python
 access layer of peakrdl-python go to build/: they have thousands of lines.
 
 The files of hdl/ are listed for FuseSoC, and in the README of each folder with the first sentence of their headers.
@@ -293,7 +293,7 @@ def c_header(of: Map, folder: Path) -> Path:
 
 
 def ip_xact(of: Map, folder: Path) -> Path:
-    """Write the IP-XACT component of a map into a folder."""
+    """Write the registers of a map into a folder, as an IP-XACT component without ports or files."""
     identity = re.search(r"^name: .*:(\w+):([\w.]+)$", FUSESOC.read_text(), re.MULTILINE)
     assert identity is not None
     name, version = identity.groups()
@@ -348,5 +348,7 @@ def main() -> None:
         print(f"{'wrote' if changed else 'same '} {path.relative_to(ROOT)}")
     BUILT.mkdir(parents=True, exist_ok=True)
     python_layer(BUILT)
-    for path in (BUILT / LAYER_NAME, *(write(of, BUILT) for of in MAPS for write in (c_header, ip_xact))):
+    from commands.hardware import ip_xact as components  # it reads the maps from here
+
+    for path in (BUILT / LAYER_NAME, *(c_header(of, BUILT) for of in MAPS), *components.tops(BUILT)):
         print(f"wrote {path.relative_to(ROOT)}")

@@ -3,18 +3,20 @@
 
 Takes NAME, OUT, TABLES (where simulator and synthesis find the table files) and the variables of `make sim` that choose
 a configuration. The module has the ports of tactile_depth. It, its table files, a C header that loads the same tables
-over the registers, and the registers in IP-XACT go into the folder OUT; with ZERO the table of the zero offset holds
-what a capture of those frames measures. Modules for several configurations fit into one design, if each has its own
-folder of tables. With CAMERA, and BAYER and WINDOW, the module is tactile_sensor_finger: its s_axis takes the words of
-that camera, and it has the pins of dvp_receive and camera_setup.
+over the registers, and its IP-XACT component go into the folder OUT; with ZERO the table of the zero offset holds what
+a capture of those frames measures. Modules for several configurations fit into one design, if each has its own folder
+of tables. With CAMERA, and BAYER and WINDOW, the module is tactile_sensor_finger: its s_axis takes the words of that
+camera, and it has the pins of dvp_receive and camera_setup. SHELL=verilog adds tactile_depth_finger_shell, Verilog-2005
+with tkeep, which the component then describes.
 """
 
 import os
+from pathlib import Path
 from typing import Annotated
 
-from commands.common import repository, run_request
-from commands.common.variables import Name
-from commands.hardware import registers, wrapped
+from commands.common import repository, run_request, wrapper
+from commands.common.variables import Name, one
+from commands.hardware import ip_xact, wrapped
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip import c_header
@@ -25,14 +27,36 @@ def main(
     request: Annotated[run_request.Request, run_request.chosen((*wrapped.CHOICES, "OUT"), wrapped.PRESET, "")],
     name: Name = "",
     tables: Name = "./",
+    shell: Annotated[str, one(("verilog",))] = "",
 ) -> None:
     wrapped.check_name(name)
     if not tables.endswith("/") or '"' in tables:
         raise InputError(f"TABLES={tables}: accepted is the folder of the table files, with a / at its end")
     out = request.out or repository.ROOT / "build" / "wrap" / name
     with files.new_files(out, PARAMETERS) as work:
-        path = wrapped.write(request, work, name, tables)
+        written = wrapped.write(request, work, name, tables, with_shell=bool(shell))
+        component = described(written, work, out, tables)
         count = len(list(work.glob("*.hex")))
-        for of in registers.MAPS if request.camera else (registers.PIPELINE,):
-            registers.ip_xact(of, work)
-    print(f"wrote {os.path.relpath(out / path.name)}, {count} table files, {c_header.FILE} and IP-XACT beside it")
+    names = ", ".join(os.path.relpath(out / path.name) for path in written.modules)
+    print(f"wrote {names}, {count} table files, {c_header.FILE} and {component.name} (IP-XACT) beside it")
+
+
+def described(written: wrapped.Written, work: Path, out: Path, tables: str) -> Path:
+    """Write the IP-XACT component of the outermost module, and return its path."""
+    top = written.modules[-1]
+    module = ip_xact.Module(
+        name=top.stem,
+        language="verilog" if top.suffix == ".v" else "systemverilog",
+        ports=(wrapper.shell_ports if top.suffix == ".v" else wrapper.outer_ports)(written.fields),
+        camera=bool(written.fields["Camera"]),
+        sets={
+            "rtl": [
+                *repository.sources(wrapper.top_of(written.fields)),
+                *(out / path.name for path in written.modules),
+            ],
+            "tables": [out / path.name for path in sorted(work.glob("*.hex"))],
+            ip_xact.SOFTWARE: [out / c_header.FILE],
+        },
+        tables=tables,
+    )
+    return ip_xact.write(module, work / f"{top.stem}.xml", out)

@@ -5,6 +5,8 @@
 `Pipeline.hardware` writes for the same words, by the same function.
 """
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -30,8 +32,18 @@ def check_name(name: str) -> None:
         raise InputError(f"NAME={name}: {wrapper.NAMES}, as NAME=finger")
 
 
-def write(request: run_request.Request, folder: Path, name: str, tables: str = "./") -> Path:
-    """Write the module <top>_<name>, its tables, `PARAMETERS` and its C header into a folder; return the module's path.
+@dataclass(frozen=True)
+class Written:
+    """Modules, the outermost last, and the fields of Config."""
+
+    modules: tuple[Path, ...]
+    fields: Mapping[str, int]
+
+
+def write(
+    request: run_request.Request, folder: Path, name: str, tables: str = "./", with_shell: bool = False
+) -> Written:
+    """Write the module <top>_<name>, its tables, `PARAMETERS` and its C header into a folder.
 
     It prints the preset, and all words with which any command writes the same hardware. Raises InputError.
 
@@ -43,10 +55,12 @@ def write(request: run_request.Request, folder: Path, name: str, tables: str = "
     twin = Twin(calibration, config, untouched(request, frames))
     thresholds = _thresholds(twin, frames)
     fields = write_files(folder, calibration, config, twin.zero, None, thresholds, frames.camera)
-    path = wrapper.write(folder, name, fields, tables)
+    modules = [wrapper.write(folder, name, fields, tables)]
+    if with_shell:
+        modules.append(wrapper.write_shell(folder, name, fields, tables))
     run_request.announce(request, config)
     print(f"in words: {make_words(config, calibration.pixel_pitch_mm, sources(request))}", flush=True)
-    return path
+    return Written(tuple(modules), fields)
 
 
 def _thresholds(twin: Twin, frames: Frames) -> dict[str, int]:
