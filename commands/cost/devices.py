@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Multipliers and memories of the two devices that `make synth` knows, and what a product or an array takes of them."""
+"""Multipliers and memories of the devices that `make synth` knows, and what a product or an array takes of them."""
 
 from __future__ import annotations
 
@@ -28,6 +28,8 @@ class Device:
     lut_inputs : int
     lut_rams : tuple of (int, int, int)
         Words, bits and LUTs of a memory built of LUTs, the smallest first.
+    halves : bool
+        Half of a block memory can be used by itself.
     """
 
     name: str
@@ -39,6 +41,7 @@ class Device:
     ultra_shape: tuple[int, int] | None
     lut_inputs: int
     lut_rams: tuple[tuple[int, int, int], ...]
+    halves: bool = True
 
     def multipliers(self, a: int, b: int) -> int:
         """Return the multipliers of a product of `a` by `b` bits, with the operands on the ports that give fewer."""
@@ -63,25 +66,21 @@ class Device:
         An ECP5's RAM is built of slices of one block in height (boards/ecp5/td_ram.sv).
         """
         shapes = self.block_shapes
-        if self.ultra_shape and any(words <= deep and width <= wide / 2 for deep, wide in shapes if wide > 1):
+        if self.halves and any(words <= deep and width <= wide / 2 for deep, wide in shapes if wide > 1):
             return 0.5
-        if not self.ultra_shape and not rom and words > SLICED_WORDS:
+        if self == ECP5 and not rom and words > SLICED_WORDS:
             shapes = tuple(shape for shape in shapes if shape[0] >= words) or shapes
         return min(math.ceil(words / deep) * math.ceil(width / wide) for deep, wide in shapes)
 
 
 SLICED_WORDS = 2048  # of an ECP5: a RAM of more words is built of slices
 
-XCZU7EV = Device(
-    "XCZU7EV",
-    "DSP48E2",
-    (27, 18),
-    1,
-    "BRAM36",
-    ((512, 72), (1024, 36), (2048, 18), (4096, 9), (8192, 4), (16384, 2), (32768, 1)),
-    (4096, 72),
-    6,
-    ((32, 6, 4), (64, 3, 4)),
+BRAM36 = ((512, 72), (1024, 36), (2048, 18), (4096, 9), (8192, 4), (16384, 2), (32768, 1))
+LUT6_RAMS = ((32, 6, 4), (64, 3, 4))
+XCZU7EV = Device("XCZU7EV", "DSP48E2", (27, 18), 1, "BRAM36", BRAM36, (4096, 72), 6, LUT6_RAMS)
+XC7A35T, XC7A100T, XC7Z020 = (
+    Device(name, "DSP48E1", (25, 18), 1, "BRAM36", BRAM36, None, 6, LUT6_RAMS)
+    for name in ("XC7A35T", "XC7A100T", "XC7Z020")
 )
 ECP5 = Device(
     "LFE5U-85F",
@@ -93,4 +92,5 @@ ECP5 = Device(
     None,
     4,
     ((16, 4, 4),),
+    halves=False,
 )

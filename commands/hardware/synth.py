@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make synth`: resources of a configuration on an FPGA, by Yosys: of the design, of each core, of each memory.
 
-Takes TARGET=xczu7ev or ecp5, the variables of `make sim` that choose a configuration, and OUT. GRIDS=64,128 gives a
-table over grids and both solvers. Exit status: 0 when the design fits, 1 when not, 2 on bad input.
+Takes TARGET, a key of commands/hardware/targets.py, the variables of `make sim` that choose a configuration, and OUT.
+GRIDS=64,128 gives a table over grids and both solvers. Exit status: 0 when the design fits, 1 when not, 2 on bad input.
 
 The cores of the top and of the solver keep their boundaries, so that each has its figures and the design is their sum.
 With CAMERA, BAYER and WINDOW the camera front end comes along, in a row of its own. commands/hardware/targets.py has
@@ -34,7 +34,7 @@ from commands.common.variables import numbers, one
 from commands.cost.cost import cost
 from commands.hardware import ecp5, synthesis, yosys
 from commands.hardware.fpga_memory import BLOCKS_PER_ULTRA, TOP, Memory, memories, path_of
-from commands.hardware.targets import DEFAULT_TARGET, LOGIC, MEMORY, SHIFT, TARGETS, Target
+from commands.hardware.targets import DEFAULT_TARGET, LOGIC, MEMORY, SEVEN_SERIES, SHIFT, TARGETS, Target
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.chip.camera_configuration import CameraConfiguration
@@ -93,7 +93,7 @@ class SynthRun:
     request: Annotated[
         run_request.Request, run_request.chosen((*run_request.CONFIGURING, *run_request.CAMERA, "OUT"), "sensor", "")
     ]
-    target: Annotated[str, one(tuple(TARGETS))] = DEFAULT_TARGET
+    target: Annotated[str, one((*TARGETS, *SEVEN_SERIES))] = DEFAULT_TARGET
     grids: Annotated[tuple[int, ...], _sizes] = ()
 
 
@@ -243,11 +243,11 @@ def camera_unit(
 
 
 def modelled(config: Configuration, target: Target) -> dict[str, float]:
-    """Return the resources of a configuration by commands/cost/cost.py."""
+    """Return the resources of a configuration by commands/cost/cost.py, LUTs only where it knows the device's."""
     count, device = cost(config), target.device
     found = {device.multiplier: count.multipliers_of(device), device.block: count.blocks_of(device)}
     ultra = {"UltraRAM": count.ultras_of(device)} if "UltraRAM" in target.has else {}
-    return found | ultra | {"LUT": count.luts_of(device)}
+    return found | ultra | ({"LUT": count.luts_of(device)} if target in TARGETS.values() else {})
 
 
 def in_ultras(arrays: Sequence[Memory]) -> dict[str, float]:
@@ -348,7 +348,7 @@ def text(design: Design, target: Target) -> str:
 def resources_of(document: Mapping[str, Any]) -> Table:
     """Return the table of the designs of a resources.json beside the published one."""
     target = document.get("target", DEFAULT_TARGET)
-    resources = TARGETS[target].has
+    resources = (TARGETS | SEVEN_SERIES)[target].has
     rows = []
     stated: set[int] = set()
     for design in document["designs"]:
@@ -402,7 +402,7 @@ def recordable(built: Sequence[Design], target: str) -> dict[str, Any]:
 def main(of: SynthRun) -> int:
     """Run the flow and return the exit status."""
     name, grids, request = of.target, of.grids, of.request
-    target = TARGETS[name]
+    target = (TARGETS | SEVEN_SERIES)[name]
     if not Path(yosys.YOSYS).exists():
         raise InputError("Yosys is not installed in this Python environment: run `make setup`")
     requests = designs(request, grids)

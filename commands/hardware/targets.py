@@ -3,8 +3,9 @@
 
 XCZU7EV: every design is mapped twice at the same time. The mapping to UltraScale+ ends at multipliers and memories:
 DSP48E2, block RAM, UltraRAM. LUTs and registers come from a mapping to 7-series logic, the only one for which Yosys
-packs registers and adders into multipliers; its DSP gets the 27 x 18 bits of a DSP48E2. LFE5U-85F: the synthesis of
-`make fpga`; a carry cell is two LUTs there, and a memory of 16 x 4 bits is four, as nextpnr counts them.
+packs registers and adders into multipliers; its DSP gets the 27 x 18 bits of a DSP48E2. Artix-7 and Zynq-7000: one
+mapping to 7-series cells; memories that are UltraRAM elsewhere are block RAM. LFE5U-85F: the synthesis of `make fpga`;
+a carry cell is two LUTs there, and a memory of 16 x 4 bits is four, as nextpnr counts them.
 """
 
 import math
@@ -14,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from commands.common import repository
-from commands.cost.devices import ECP5, XCZU7EV, Device
+from commands.cost.devices import ECP5, XC7A35T, XC7A100T, XC7Z020, XCZU7EV, Device
 
 LOGIC, MEMORY, SHIFT = "LUT as logic", "LUT as memory", "LUT as shift register"
 Cells = Mapping[str, tuple[str, float]]  # resource and number of it, by cell
@@ -72,6 +73,23 @@ def _each(resource: str, *cells: str, number: float = 1) -> dict[str, tuple[str,
     return dict.fromkeys(cells, (resource, number))
 
 
+LOGIC_OF_7_SERIES = (
+    _each(LOGIC, *(f"LUT{inputs}" for inputs in range(1, 7)), "INV")  # it may go into the next LUT
+    | _each(SHIFT, "SRL16E", "SRLC32E")
+    | _each(MEMORY, "RAM32X1S", "RAM64X1S")
+    | _each(MEMORY, "RAM128X1S", "RAM32X1D", "RAM64X1D", number=2)
+    | _each(MEMORY, "RAM256X1S", "RAM128X1D", "RAM32M", "RAM64M", number=4)
+    | _each("FF", "FDRE", "FDSE", "FDCE", "FDPE")
+    | _each("", "CARRY4", "MUXF7", "MUXF8")
+)
+DELAYS_OF_7_SERIES = (
+    "setattr -mod -unset keep_hierarchy *",
+    "flatten -noscopeinfo",  # sta follows no path into another module
+    "autoname",
+    # The mapping ends with bare boxes for registers and carries, so the library is read again for their delays.
+    "delete =$paramod*",
+    "read_verilog -overwrite -lib -specify +/xilinx/cells_sim.v",
+)
 XILINX = "synth_xilinx -flatten -noiopad -noclkbuf"
 DEFAULT_TARGET = "xczu7ev"
 TARGETS = {
@@ -104,13 +122,7 @@ TARGETS = {
             | _each("UltraRAM", "URAM288")
             | _each("BRAM36", "RAMB36E2")
             | _each("BRAM36", "RAMB18E2", number=0.5),
-            "logic": _each(LOGIC, *(f"LUT{inputs}" for inputs in range(1, 7)), "INV")  # it may go into the next LUT
-            | _each(SHIFT, "SRL16E", "SRLC32E")
-            | _each(MEMORY, "RAM32X1S", "RAM64X1S")
-            | _each(MEMORY, "RAM128X1S", "RAM32X1D", "RAM64X1D", number=2)
-            | _each(MEMORY, "RAM256X1S", "RAM128X1D", "RAM32M", "RAM64M", number=4)
-            | _each("FF", "FDRE", "FDSE", "FDCE", "FDPE")
-            | _each("", "CARRY4", "MUXF7", "MUXF8", "DSP48E1", "RAMB36E1", "RAMB18E1"),
+            "logic": LOGIC_OF_7_SERIES | _each("", "DSP48E1", "RAMB36E1", "RAMB18E1"),
         },
         (
             "LUT, FF: before placement, each core by itself; an inverter is a LUT, and no two functions share one.",
@@ -121,14 +133,7 @@ TARGETS = {
             "No clock: nothing is placed or routed. constraints/xczu7ev_ooc.tcl does that with Vivado.",
         ),
         ("UltraRAM", "BRAM36"),
-        (
-            "setattr -mod -unset keep_hierarchy *",
-            "flatten -noscopeinfo",  # sta follows no path into another module
-            "autoname",
-            # The mapping ends with bare boxes for registers and carries, so the library is read again for their delays.
-            "delete =$paramod*",
-            "read_verilog -overwrite -lib -specify +/xilinx/cells_sim.v",
-        ),
+        DELAYS_OF_7_SERIES,
     ),
     "ecp5": Target(
         ECP5,
@@ -149,3 +154,33 @@ TARGETS = {
         ),
     ),
 }
+"""Devices that the cost model knows."""
+
+
+def _of_7_series(device: Device, multipliers: int, blocks: int, luts: int) -> Target:
+    """Return the target of a device of the 7 series, which has two registers beside each LUT."""
+    return Target(
+        device,
+        {"DSP48E1": multipliers, "BRAM36": blocks, "LUT": luts, "FF": 2 * luts},
+        {"logic": ['setattr -set ram_style "block" m:* a:ram_style=ultra %i', f"{XILINX} -family xc7"]},
+        {
+            "logic": LOGIC_OF_7_SERIES
+            | _each("DSP48E1", "DSP48E1")
+            | _each("BRAM36", "RAMB36E1")
+            | _each("BRAM36", "RAMB18E1", number=0.5)
+        },
+        (
+            "LUT, FF: before placement, each core by itself; an inverter is a LUT, and no two functions share one.",
+            "Logic depth: by Yosys' delays of 7-series cells, without wires, across the cores.",
+            "No clock: nothing is placed or routed. The cost model has no LUTs of this device.",
+        ),
+        delays=DELAYS_OF_7_SERIES,
+    )
+
+
+SEVEN_SERIES = {
+    "xc7a35t": _of_7_series(XC7A35T, 90, 50, 20_800),
+    "xc7a100t": _of_7_series(XC7A100T, 240, 135, 63_400),
+    "xc7z020": _of_7_series(XC7Z020, 220, 140, 53_200),
+}
+"""Devices of `make synth` alone."""

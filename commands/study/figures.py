@@ -25,7 +25,7 @@ from commands.common.tabular import Table
 from commands.common.zero_offset import untouched
 from commands.cost.cost import CAMERAS, KINDS, cost
 from commands.hardware import estimate, lut_runs, memory_model, synth, synthesis
-from commands.hardware.targets import DEFAULT_TARGET, TARGETS
+from commands.hardware.targets import DEFAULT_TARGET, SEVEN_SERIES, TARGETS
 from commands.run.sim_table import coefficient_words
 from commands.study import baselines, budget, presses, trade_front
 from commands.study.accuracy import errors
@@ -229,6 +229,18 @@ def synthesized(over_grids: bool, target: str = DEFAULT_TARGET) -> Table:
     return Table(head, rows)
 
 
+def on_7_series() -> Table:
+    """Return the table of designs on Artix-7 and Zynq-7000, each resource with its share of the device."""
+    rows, head = [], ("design", "grid", *SEVEN_SERIES["xc7z020"].has, *SOURCE)
+    for name, figures, source in runs("synth"):
+        if target := SEVEN_SERIES.get(figures.get("target", "")):
+            for design in figures["designs"]:
+                used = design["totals"]
+                cells = (f"{used[cell]:,g} ({100 * used[cell] / has:.0f} %)" for cell, has in target.has.items())
+                rows.append((name, "{} x {}".format(*design["configuration"]["grid"]), *cells, *source))
+    return Table(head, rows)
+
+
 def clocks(figures: dict[str, Any]) -> str:
     """Return the routed clock in MHz: the median (and that of each seed)."""
     each = ", ".join(f"{mhz:.1f}" for mhz in figures["fmax_mhz_by_seed"].values())
@@ -375,6 +387,7 @@ TABLES: dict[str, Callable[[], Table | Iterable[Table]]] = {
     "make synth over grids": partial(synthesized, True),
     "make synth": partial(synthesized, False),
     "make synth TARGET=ecp5": partial(synthesized, False, "ecp5"),
+    "make synth on the 7 series": on_7_series,
     "make fpga": routed,
     "make fpga TARGET=nexus": routed_alone,
     "make asic": in_cells,

@@ -77,6 +77,38 @@ def test_a_multiplication_of_27_by_18_bits_is_one_dsp_with_its_registers(tmp_pat
     assert synth.depth_text(design) == [f"logic depth: {path['ns']:.2f} ns, {path['start']} -> {path['end']}"]
 
 
+def test_the_7_series_has_multipliers_of_25_bits_and_no_ultraram(tmp_path: Path) -> None:
+    """Map two products and a memory for UltraRAM: 25 x 18 bits are one DSP, 26 x 18 two, and the memory is blocks."""
+    (tmp_path / "top.sv").write_text(f"""
+module {synth.TOP}(input wire clk, input wire signed [25:0] a, input wire signed [17:0] b, input wire [12:0] place,
+  input wire we, output logic signed [42:0] one, output logic signed [43:0] two, output logic [17:0] word);
+  (* ram_style = "ultra" *) logic [17:0] words [8192];
+  always_ff @(posedge clk) begin
+    one <= $signed(a[24:0]) * b;
+    two <= a * b;
+    if (we) words[place] <= b;
+    word <= words[place];
+  end
+endmodule
+""")
+    target = synth.SEVEN_SERIES["xc7z020"]
+    lines = [f"read_slang --threads 1 --top {synth.TOP} top.sv", f"hierarchy -top {synth.TOP}", "proc"]
+    counts = synth.counted(target, synth.mapped(target, lines, [], [], tmp_path, ""), synth.TOP, [], [])
+    device = target.device
+    assert counts["DSP48E1"] == device.multipliers(25, 18) + device.multipliers(26, 18) == 3
+    assert counts["BRAM36"] == device.blocks(8192, 18) == 4
+    assert synth.logic_depth(tmp_path / synth.DEPTH)["ns"] > 1
+
+
+@pytest.mark.regress
+@pytest.mark.parametrize("lanes", [1, 2])
+def test_a_design_on_the_7_series_has_the_multipliers_and_memories_of_the_model(tmp_path: Path, lanes: int) -> None:
+    config, target = replace(TINY, lanes=lanes), synth.SEVEN_SERIES["xc7a35t"]
+    design = synth.synthesize(config, synthetic(TINY.bits_per_channel), target, tmp_path)
+    assert design.model == {name: design.totals[name] for name in ("DSP48E1", "BRAM36")}
+    assert "sum by the model" in synth.text(design, target)
+
+
 def test_a_device_without_delays_has_no_logic_depth(tmp_path: Path) -> None:
     assert synth.logic_depth(tmp_path / synth.DEPTH) == {}
     (tmp_path / synth.DEPTH).write_text("No timing paths found.\n")
