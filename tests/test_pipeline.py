@@ -14,7 +14,7 @@ import tactile_depth as td
 from tactile_depth.chip.contact.contact_events import ContactEvents, Settings
 from tactile_depth.chip.resampling import resampling
 from tactile_depth.chip.tactile_depth import light_of, slope_tables, tactile_depth
-from tactile_depth.depth.pipeline import default_grid
+from tactile_depth.pictures.reader import default_grid
 from tests.drawn_light import no_contact
 
 SMALL = (24, 32)

@@ -18,7 +18,7 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.depth.zero_capture import captured_zero
 from tactile_depth.chip.hardware_files import PARAMETERS
 from tactile_depth.chip.tactile_depth import default_parameters, tactile_depth, top_parameters, write_roms
-from tactile_depth.depth.pipeline import SYNTHETIC_GRID
+from tactile_depth.pictures.reader import SYNTHETIC_GRID
 from tactile_depth.sensor.scenes import render
 from tactile_depth.sensor.synthetic import synthetic
 from tb.structures import Structure

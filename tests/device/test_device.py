@@ -7,7 +7,7 @@ import itertools
 import re
 import textwrap
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -61,6 +61,17 @@ def require_equal(frames: list[td.DeviceFrame], results: list[td.Result]) -> Non
         if frame.recorder == result.recorder:  # without hysteresis
             assert frame.contacts == result.contacts
         assert frame.threshold_mm == result.threshold_mm
+        require_known(frame, result)
+
+
+def require_known(frame: td.DeviceFrame, result: td.Result) -> None:
+    """Require that a frame of a picture that was sent knows of it what the package does."""
+    for name in ("warnings", "saturations", "light_gains", "dark", "outside"):
+        np.testing.assert_equal(getattr(frame, name), getattr(result, name), name)
+
+
+def singles(pipeline: td.Pipeline, pictures: Sequence[np.ndarray]) -> list[td.Result]:
+    return [pipeline(picture, name=f"pictures[{index}]") for index, picture in enumerate(pictures)]
 
 
 @pytest.mark.parametrize("name", CONFIGURATIONS)
@@ -68,7 +79,7 @@ def test_depth_is_that_of_the_package(name: str, sample: td.Sample, pictures: li
     pipeline = td.Pipeline(sample.sensor, reference=sample.reference, **{"grid": GRID, **CONFIGURATIONS[name]})
     with td.Device(plug(pipeline).address, pipeline) as device:
         device.load()
-        require_equal(list(device.depth(pictures)), list(pipeline.stream(pictures)))
+        require_equal(list(device.depth(iter(pictures))), list(pipeline.stream(pictures)))
 
 
 @pytest.mark.parametrize("name", CONFIGURATIONS)
@@ -79,19 +90,17 @@ def test_a_picture_that_stands_for_itself(name: str, sample: td.Sample, pictures
     with td.Device(plug(pipeline).address, pipeline) as device:
         device.load()
         for _ in range(2):
-            require_equal(list(device.depth(pictures, stream=False)), list(pipeline(np.stack(pictures))))
+            require_equal(list(device.depth(pictures)), singles(pipeline, pictures))
         assert device.registers["LIGHT.follow"] == 1
-        require_equal(list(device.depth(pictures)), list(pipeline.stream(pictures)))
+        require_equal(list(device.depth(pictures, stream=True)), list(pipeline.stream(pictures)))
+        require_equal(list(device.depth(iter(pictures), stream=False)), singles(pipeline, pictures))
 
 
-def test_a_picture_for_itself_needs_a_reference_that_is_known(
-    cable: Cable, pipeline: td.Pipeline, sample: td.Sample
-) -> None:
-    with td.Device(cable.address, pipeline) as device:
-        with pytest.raises(td.InputError, match=r"stream=False: the reference of the device is not known: call load"):
-            next(device.depth(sample.image, stream=False))
-        with pytest.raises(td.InputError, match="stream=False: without pictures: give pictures"):
-            next(device.depth(stream=False))
+def test_the_depth_of_a_camera_is_a_stream(device: td.Device) -> None:
+    with pytest.raises(td.InputError, match="stream=False: without pictures: give pictures"):
+        next(device.depth(stream=False))
+    with pytest.raises(td.InputError, match="stream=1: accepted are True, False"):
+        next(device.depth(stream=1))  # type: ignore[arg-type]
 
 
 def test_a_sensor_without_reference(plug: Plug) -> None:
@@ -118,7 +127,7 @@ def test_each_call_of_depth_begins_a_stream(
     """The light gains that pictures in other light have moved do not act on the next stream."""
     dim = [(0.9 * picture).astype(np.uint8) for picture in pictures]
     for _ in range(2):
-        require_equal(list(device.depth(dim)), list(pipeline.stream(dim)))
+        require_equal(list(device.depth(iter(dim))), list(pipeline.stream(dim)))
 
 
 @pytest.mark.parametrize("kind", ["array", "generator", "path", "single"])
@@ -128,16 +137,26 @@ def test_pictures_are_those_of_a_pipeline(
     stack = np.stack([sample.reference, sample.image])
     np.save(tmp_path / "stack.npy", stack)
     given: Any = {"array": stack, "generator": iter(stack), "path": tmp_path / "stack.npy", "single": sample.image}
-    wanted = [sample.image] if kind == "single" else stack
-    require_equal(list(device.depth(given[kind])), list(pipeline.stream(wanted)))
+    if kind == "generator":
+        expected = list(pipeline.stream(stack))
+    else:
+        expected = [pipeline(given[kind])] if kind == "single" else list(pipeline(given[kind]))
+    require_equal(list(device.depth(given[kind])), expected)
 
 
-def test_a_picture_that_gives_no_depth_is_left_out_and_counted(device: td.Device, sample: td.Sample) -> None:
+def test_a_stream_leaves_out_and_counts_a_picture_that_gives_no_depth_and_a_list_refuses_it(
+    device: td.Device, pipeline: td.Pipeline, sample: td.Sample
+) -> None:
     pictures = [sample.image, np.zeros_like(sample.image), sample.image]
     with pytest.warns(td.InputWarning, match="left out and counted"):
-        frames = list(device.depth(pictures))
+        frames = list(device.depth(iter(pictures)))
     assert [(frame.picture, frame.lost) for frame in frames] == [(0, 0), (2, 1)]
     assert device.status().lost == 1
+    frames_of_each = device.depth(pictures)
+    next(frames_of_each)
+    with pytest.raises(td.InputError, match=r"^pictures\[1\]: it is black"):
+        next(frames_of_each)
+    require_equal(list(device.depth(iter(pictures[:1]))), list(pipeline.stream(pictures[:1])))
 
 
 def test_captures_are_those_of_the_package(device: td.Device, sample: td.Sample, pictures: list[np.ndarray]) -> None:
@@ -147,10 +166,10 @@ def test_captures_are_those_of_the_package(device: td.Device, sample: td.Sample,
     expected = td.Pipeline(sample.sensor, reference=sample.reference, grid=GRID)
     expected.capture_reference(untouched)
     device.capture_reference(untouched)
-    require_equal(list(device.depth(pictures)), list(expected.stream(pictures)))
+    require_equal(list(device.depth(iter(pictures))), list(expected.stream(pictures)))
     expected.capture_zero(untouched[:2])
     device.capture_zero(untouched[:2])
-    require_equal(list(device.depth(pictures)), list(expected.stream(pictures)))
+    require_equal(list(device.depth(iter(pictures))), list(expected.stream(pictures)))
     assert device.registers["LIGHT.follow"] == 1
 
 
@@ -159,14 +178,14 @@ def test_load_replaces_captures(
 ) -> None:
     device.capture_reference((0.9 * sample.reference).astype(np.uint8))
     device.load()
-    require_equal(list(device.depth(pictures)), list(pipeline.stream(pictures)))
+    require_equal(list(device.depth(iter(pictures))), list(pipeline.stream(pictures)))
 
 
 def test_load_ends_a_capture_that_was_left(device: td.Device, pipeline: td.Pipeline, sample: td.Sample) -> None:
     device.registers["REFERENCE_CAPTURE"] = 1 << 8 | 2
     device.registers["ZERO_CAPTURE"] = 1 << 8 | 3
     device.load()
-    require_equal(list(device.depth([sample.image])), list(pipeline.stream([sample.image])))
+    require_equal(list(device.depth([sample.image])), singles(pipeline, [sample.image]))
 
 
 @pytest.mark.parametrize("count", [0, 3])
@@ -185,7 +204,7 @@ def test_thresholds(device: td.Device, sample: td.Sample) -> None:
     )
     codes = {name: device.registers[name] for name in ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA")}
     assert tuple(codes.values()) == expected.settings(0.05, 0.03, 0.2)[:-1]
-    require_equal(list(device.depth([sample.image])), list(expected.stream([sample.image])))
+    require_equal(list(device.depth([sample.image])), singles(expected, [sample.image]))
     device.load()
     assert {name: device.registers[name] for name in codes} == codes, "load keeps them"
     device.set_thresholds(0.08)
@@ -216,7 +235,7 @@ def test_thresholds_that_are_refused(wanted: dict[str, Any], message: str, devic
 
 def test_frames_have_numbers_and_times(device: td.Device, sample: td.Sample) -> None:
     began = time.time()
-    frames = list(device.depth([sample.image] * 3))
+    frames = list(device.depth(iter([sample.image] * 3)))
     assert np.diff([frame.number for frame in frames]).tolist() == [1, 1]
     times = [began, *(frame.time_s for frame in frames), time.time()]
     assert times == sorted(times)
@@ -232,7 +251,7 @@ def test_a_loop_that_is_left_disturbs_nothing(
     for frame in device.depth(itertools.cycle(pictures)):
         if frame.picture == 2:
             break
-    require_equal(list(device.depth(pictures)), list(pipeline.stream(pictures)))
+    require_equal(list(device.depth(iter(pictures))), list(pipeline.stream(pictures)))
     assert device.status().lost == 0
 
 
@@ -250,13 +269,13 @@ def test_a_loop_that_ends_after_its_device_is_closed(
 
 
 def test_registers_between_the_frames_of_a_loop(device: td.Device, pictures: list[np.ndarray]) -> None:
-    counts = [device.registers["FRAMES_OUT"] for _ in device.depth(pictures)]
+    counts = [device.registers["FRAMES_OUT"] for _ in device.depth(iter(pictures))]
     assert np.diff(counts).tolist() == [1, 1, 1]
 
 
 def test_status(device: td.Device, sample: td.Sample) -> None:
     before = device.status()
-    assert len(list(device.depth([sample.image] * 2))) == 2
+    assert len(list(device.depth(iter([sample.image] * 2)))) == 2
     status = device.status()
     assert (status.rows, status.columns, status.data_width) == (*GRID, 24)
     assert [after - past for past, after in zip(before[4:17], status[4:17], strict=True)] == [
@@ -348,7 +367,7 @@ def test_several_devices_at_once(
     with one, other:
         one.load()
         other.load()
-        pairs = list(zip(one.depth(pictures), other.depth(pictures), strict=True))
+        pairs = list(zip(one.depth(iter(pictures)), other.depth(iter(pictures)), strict=True))
     require_equal([frame for frame, _ in pairs], list(pipeline.stream(pictures)))
     require_equal([frame for _, frame in pairs], list(steady.stream(pictures)))
 

@@ -78,8 +78,8 @@ def test_depth_is_that_of_the_package_in_each_format(
     with td.Device(plug(pipeline).address, pipeline, depth_format=name) as device:
         assert device.depth_format == name
         device.load()
-        frames = list(device.depth(pictures))
-        single = list(device.depth(pictures[0], stream=False))
+        frames = list(device.depth(iter(pictures)))
+        single = list(device.depth(pictures[0]))
         assert device.status().lost == 0
     for frame, result in zip(frames, pipeline.stream(pictures), strict=True):
         require_sent(frame, result, name)
@@ -127,7 +127,7 @@ def test_captures_do_not_depend_on_the_format(
         device.load()
         device.capture_reference(untouched)
         device.capture_zero(untouched)
-        for frame, result in zip(device.depth(pictures), expected.stream(pictures), strict=True):
+        for frame, result in zip(device.depth(iter(pictures)), expected.stream(pictures), strict=True):
             require_sent(frame, result, name)
 
 

@@ -47,7 +47,7 @@ def test_the_same_program_as_on_a_serial_line(
     simulate(setup_of(pipeline))
     with td.Device(address, pipeline) as device:
         device.load()
-        frames = list(device.depth(pictures))
+        frames = list(device.depth(iter(pictures)))
     for frame, result in zip(frames, pipeline.stream(pictures), strict=True):
         np.testing.assert_array_equal(frame.height_mm, result.height_mm.astype(np.float32))
 

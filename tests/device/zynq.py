@@ -20,6 +20,7 @@ from tactile_depth.chip.contact.contact_events import Record
 from tactile_depth.chip.link.depth_formats import DepthFormat, to_bytes
 from tactile_depth.chip.registers.axil_registers import Events, Live
 from tactile_depth.chip.table_entries import table_entries
+from tactile_depth.depth.result import thresholds_of
 from tactile_depth.device import vdma
 from tactile_depth.device.mapped_words import MappedWords
 from tactile_depth.pictures.reader import Reader
@@ -186,11 +187,11 @@ class Zynq:
             path.write_text(text)
 
     def load(self, pipeline: td.Pipeline) -> None:
-        """Put the tables and the threshold of a pipeline into the device."""
+        """Put the tables and the thresholds of a pipeline into the device."""
         for name, entries in table_entries(pipeline.sensor, pipeline.config, pipeline.zero_codes).items():
             self.model.tables[name][:] = entries
-        threshold = round(pipeline.threshold_mm / pipeline.depth_lsb_mm)
-        self.model.registers.values |= {"THRESHOLD": threshold, "OFF_THRESHOLD": threshold}
+        settings = pipeline.settings(pipeline.threshold_mm, pipeline.threshold_mm, pipeline.area_threshold_mm)
+        self.model.registers.values |= thresholds_of(settings)
 
     def _offer(self, codes: np.ndarray, record: Record) -> None:
         self._offered = codes, record

@@ -6,7 +6,7 @@ import os
 import sys
 import warnings
 from collections.abc import Callable, Iterable
-from numbers import Real
+from numbers import Integral, Real
 from typing import Any, NamedTuple
 
 LONGEST = 1000  # characters
@@ -15,6 +15,11 @@ LONGEST = 1000  # characters
 def is_number(value: object) -> bool:
     """Return True for a real number; True and False are none."""
     return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def is_whole(value: object) -> bool:
+    """Return True for a whole number; True and False are none."""
+    return isinstance(value, Integral) and not isinstance(value, bool)
 
 
 class Argument(NamedTuple):

@@ -12,26 +12,24 @@ import numpy as np
 from tactile_depth.base.errors import InputError, InputWarning
 from tactile_depth.calibrate.presses import GridPresses, PressPictures, View
 from tactile_depth.depth.pipeline import Pipeline
-from tactile_depth.depth.result import Result
 from tactile_depth.device.addresses import SIM, open_channel
 from tactile_depth.device.device import Device
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.frame import DeviceFrame
+from tactile_depth.pictures.doubts import UnusablePicture
 from tactile_depth.sensor.synthetic import synthetic
 
 DEVICE = "device:"
-SENT = 4  # times that each press is sent, so that the light gains have settled at the last
 TRIES = 3  # for a frame that gets lost on the line
 NAME_WIDTH = 22
 
 
 class Measured(NamedTuple):
-    """A press as device and package read it: height RMS in mm of each, touching, and whether their codes are equal."""
+    """A press as device and package read it: height RMS in mm of each, and touching."""
 
     device_mm: float
     package_mm: float
     is_touching: bool
-    is_equal: bool
 
 
 def address_of(word: str) -> str:
@@ -98,11 +96,6 @@ def measure(address: str, pipeline: Pipeline, presses: GridPresses, pictures: Pr
             numbers = f"{1000 * read.device_mm:>22.1f}{1000 * read.package_mm:>9.1f}"
             print(f"{name[-NAME_WIDTH:]:<{NAME_WIDTH}}  {touching:<10}{numbers}", flush=True)
     print(summary(presses.views, results))
-    differing = [name for name, read in results.items() if not read.is_equal]
-    if differing:
-        what = f"the depth of the device is not that of the package in {', '.join(differing)}"
-        remedy = "make sure that no camera of the device sends pictures meanwhile"
-        warnings.warn(InputWarning(what, remedy=remedy), stacklevel=2)
     untouched = [name for name, read in results.items() if not read.is_touching]
     if untouched:
         warnings.warn(InputWarning(f"the device sees no contact in {', '.join(untouched)}"), stacklevel=2)
@@ -114,30 +107,28 @@ def summary(views: Sequence[View], results: dict[str, Measured]) -> str:
     if not whole:
         return "the device gave depth of no whole press"
     device, package = 1000 * np.mean([(read.device_mm, read.package_mm) for read in whole], axis=0)
-    differing = sum(not read.is_equal for read in results.values())
-    equal = f"depth codes differ in {differing} of {len(results)} presses" if differing else "all depth codes are equal"
-    return f"height RMS of {len(whole)} whole presses: device {device:.1f} um, package {package:.1f} um; {equal}"
+    return f"height RMS of {len(whole)} whole presses: device {device:.1f} um, package {package:.1f} um"
 
 
 def _read(device: Device, pipeline: Pipeline, view: View, picture: np.ndarray) -> Measured | None:
     """Send the picture of a press; return None if it gives no depth."""
-    sent = [picture] * SENT
-    expected: list[Result] = list(pipeline.stream(sent))
-    if len(expected) < SENT:
+    try:
+        result = pipeline(picture, name=view.press.name)
+    except UnusablePicture as error:
+        warnings.warn(InputWarning("left out: ", *error.parts), stacklevel=2)
         return None
-    frame, pitch_mm = _last(device, sent), pipeline.pixel_pitch_mm
-    device_mm, package_mm = (
-        view.press.height_rms(each.depth_mm / pitch_mm) * pitch_mm for each in (frame, expected[-1])
-    )
-    is_equal = np.array_equal(frame.codes, expected[-1].codes)
-    return Measured(device_mm, package_mm, frame.contact.touching, is_equal)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)  # those of the pipeline have been told
+        frame = _sent(device, picture)
+    pitch_mm = pipeline.pixel_pitch_mm
+    device_mm, package_mm = (view.press.height_rms(each.depth_mm / pitch_mm) * pitch_mm for each in (frame, result))
+    return Measured(device_mm, package_mm, frame.contact.touching)
 
 
-def _last(device: Device, pictures: Sequence[np.ndarray]) -> DeviceFrame:
-    """Return the depth frame of the last picture of a stream. Raises DeviceError if it gets lost again and again."""
+def _sent(device: Device, picture: np.ndarray) -> DeviceFrame:
+    """Return the depth frame of a picture. Raises DeviceError if it gets lost again and again."""
     for _ in range(TRIES):
-        for frame in device.depth(pictures):
-            if frame.picture == len(pictures) - 1:
-                return frame
+        for frame in device.depth(picture):
+            return frame
     problem = f"{device.address}: the depth of a picture got lost {TRIES} times"
     raise DeviceError(problem, remedy="use a shorter cable, or a lower baud rate")

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from copy import copy
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, require_flag, warn
+from tactile_depth.base.errors import Argument, InputError, Part, is_number, is_whole, one_of, require_flag
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration, ExactConfiguration
 from tactile_depth.chip.contact.contact_events import Settings
@@ -30,28 +31,19 @@ from tactile_depth.depth.twin import PICTURES, Twin, require_flat_field, require
 from tactile_depth.pictures.blocks import Rest
 from tactile_depth.pictures.doubts import Doubt, UnusablePicture, Warned, doubt, tell
 from tactile_depth.pictures.frames import camera_scale
-from tactile_depth.pictures.grid_sampler import picture_grid
 from tactile_depth.pictures.light_check import doubts_of
 from tactile_depth.pictures.picture_check import Checked, check_picture
 from tactile_depth.pictures.pictures import Picture, Pictures, pictures_of
-from tactile_depth.pictures.reader import Reader, power_of_two_of
+from tactile_depth.pictures.reader import Reader, default_grid, power_of_two_of
 from tactile_depth.pictures.reference_check import check_reference, check_zero
 from tactile_depth.sensor.presets import SENSOR
 from tactile_depth.sensor.sensor import Sensor
 from tactile_depth.sensor.view import Crop, shown
 
-SYNTHETIC_GRID = (128, 128)
 ARITHMETICS = ("chip", "float")
 Arithmetic = Literal["chip", "float"]
 THRESHOLD_MM, AREA_THRESHOLD_MM = 0.07, 0.3  # of a contact
 REFERENCE = Argument("reference")
-
-
-def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]:
-    """Return rows and columns of the grid that covers the full picture of a sensor, as `picture_grid`."""
-    if sensor.camera is None:
-        return SYNTHETIC_GRID
-    return picture_grid((sensor.camera.rows, sensor.camera.columns), solver)
 
 
 class Pipeline:
@@ -210,14 +202,19 @@ class Pipeline:
             The heights of a picture are uncertain.
         """
         frames, checked, single = self._checked(pictures, name or PICTURES)
-        captured = None if captured_at is None else times(captured_at, len(frames))
+        captured = times(captured_at, len(frames))
+        result = replace(self.result_of(frames, checked, stream), captured_at=captured)
+        return result[0] if single else result
+
+    def result_of(self, frames: np.ndarray, checked: Sequence[Checked], stream: Stream | None) -> Result:
+        """Return the depth of frames on the grid, uint8 (frames, rows, columns, 3), and warn, as a call does."""
         monitor = Monitor()
         slopes, depth, gains = self._solved(frames, monitor, None if stream is None else stream.light)
         codes, depth_mm = np.rint(depth).astype(np.int32), depth * self.depth_lsb_mm
         streamed = None
         if stream is not None:
             streamed = tuple(self._recorder.next(frame, stream.events) for frame in codes)
-        result = Result(
+        return Result(
             codes,
             depth_mm,
             slopes if self.sensor.pixel_aspect == 1 else slopes / (self.sensor.pixel_aspect, 1),
@@ -232,9 +229,7 @@ class Pipeline:
             streamed,
             self._warned(checked, gains, depth_mm, slopes, monitor, None if stream is None else stream.warned),
             self.sensor.pixel_aspect,
-            captured,
         )
-        return result[0] if single else result
 
     def stream(
         self, pictures: str | Path | Iterable[Picture | tuple[Picture, float]], stream: Stream | None = None
@@ -269,9 +264,7 @@ class Pipeline:
             try:
                 result = self(picture, stream, f"picture {stream.taken - 1}", captured_at)
             except UnusablePicture as error:
-                stream.failed += 1
-                if stream.failed == 1:
-                    warn(InputWarning("left out and counted: ", *error.parts))
+                stream.leave_out(error)
                 continue
             yield result
 
@@ -279,6 +272,14 @@ class Pipeline:
         """Return the state of a stream before its first picture: light gains of 1, untouched gel."""
         light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
         return Stream(light, self._recorder.events(self._at_rest))
+
+    def of_device(self, lanes: int) -> Pipeline:
+        """Return a copy with the lanes of a device, on which last bits depend, and with captures of its own."""
+        other = copy(self)
+        other._sources = copy(self._sources)
+        other._config = replace(self.config, lanes=lanes)
+        other._twin = replace(self._twin, config=other.config)
+        return other
 
     def __repr__(self) -> str:
         rows, columns = self.grid
@@ -294,6 +295,11 @@ class Pipeline:
     def reader(self) -> Reader:
         """Reader of pictures onto the grid."""
         return self._reader
+
+    @property
+    def twin(self) -> Twin:
+        """Both arithmetics, on frames of the grid."""
+        return self._twin
 
     @property
     def rest(self) -> Rest | None:
@@ -490,8 +496,3 @@ class Pipeline:
             tell(doubts if warned is None else warned.new(doubts))
             texts.append(tuple(map(str, (*self._doubts, *self._zero_doubts, *doubts))))
         return tuple(texts)
-
-
-def is_whole(number: object) -> bool:
-    """Return True for a whole number."""
-    return isinstance(number, int | np.integer) and not isinstance(number, bool)

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError, is_number
+from tactile_depth.base.errors import Argument, InputError, InputWarning, is_number, warn
 from tactile_depth.chip.contact.contact_events import ContactEvents
 from tactile_depth.chip.gradient.light_gains import LightFilter
-from tactile_depth.pictures.doubts import Warned
+from tactile_depth.pictures.doubts import UnusablePicture, Warned
 from tactile_depth.pictures.pictures import Picture
 
 
@@ -37,6 +37,12 @@ class Stream:
     failed: int = 0
     warned: Warned = field(default_factory=Warned)
 
+    def leave_out(self, error: UnusablePicture) -> None:
+        """Count a picture that gives no right depth, and warn of the first."""
+        self.failed += 1
+        if self.failed == 1:
+            warn(InputWarning("left out and counted: ", *error.parts))
+
 
 def timed(item: Picture | tuple[Picture, float]) -> tuple[Picture, float | None]:
     """Return a picture of a stream and when it was captured."""
@@ -47,8 +53,10 @@ def timed(item: Picture | tuple[Picture, float]) -> tuple[Picture, float | None]
     return item, None
 
 
-def times(captured_at: float | Sequence[float] | np.ndarray, frames: int) -> np.ndarray:
-    """Return the capture time of each frame, float64 (frames,)."""
+def times(captured_at: float | Sequence[float] | np.ndarray | None, frames: int) -> np.ndarray | None:
+    """Return the capture time of each frame, float64 (frames,); None if it is not known."""
+    if captured_at is None:
+        return None
     seconds = np.asarray(captured_at)
     if seconds.dtype.kind not in "iuf" or seconds.shape not in ((), (frames,)):
         accepted = "seconds since the epoch, one number or one for each picture"

@@ -7,17 +7,10 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext, suppress
 
-import numpy as np
-
 from tactile_depth.base.npy import Bytes
-from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.gradient.flat_field import pixel_gains
-from tactile_depth.chip.limits import LIGHT_GAIN
-from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.chip.registers.axil_registers import GAINS
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.registers.table_banks import CAPTURES
-from tactile_depth.chip.tactile_depth import Tables, light_of
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import CAMERA_S, Exchange
@@ -26,7 +19,6 @@ from tactile_depth.device.tables import wait_in_use
 
 ATTEMPTS = 3
 LIGHT = REGISTERS["LIGHT"]
-UNITY = 1 << LIGHT_GAIN.width - 1
 
 
 def write_gains(line: Channel, gains: Sequence[int]) -> None:
@@ -47,21 +39,6 @@ def held_light(line: Channel) -> Iterator[None]:
     finally:
         with suppress(DeviceError) if failed else nullcontext():  # the first error says what happened
             write_words(line, [(LIGHT.name, light)])
-
-
-def gains_of(frames: Bytes, reference: np.ndarray, config: Configuration) -> list[list[int]]:
-    """Return the light gains of pictures that stand for themselves, (pictures, 3).
-
-    Parameters
-    ----------
-    frames : uint8 array (pictures, rows, columns, 3)
-    reference : int64 array (node rows, node columns, 3)
-        Gains of the reference that the device has.
-    """
-    tables = Tables(pixel_gains(reference, config), np.empty(0, np.int64))
-    gains = light_of(frames, tables, config, cores=fastest())
-    assert gains is not None
-    return gains.tolist()
 
 
 def capture_of_pictures(line: Channel, table: str, frames: Bytes, gains: Sequence[Sequence[int]] | None = None) -> None:

@@ -3,38 +3,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, MutableMapping, Sequence
-from contextlib import AbstractContextManager, ExitStack, contextmanager
-from pathlib import Path
-from typing import cast
+from collections.abc import Iterable, Iterator, MutableMapping
+from contextlib import AbstractContextManager, closing, contextmanager
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, is_number, one_of, require_flag, warn
+from tactile_depth.base.errors import Argument, InputError, is_number, one_of, require_flag, warn
 from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
-from tactile_depth.chip.gradient.flat_field import captured_gains, reference_gains, require_light
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.depth.pipeline import PICTURES, Pipeline, require_flat_field, require_zero_offset
-from tactile_depth.depth.result import Recorder, thresholds_of
-from tactile_depth.device import captures
+from tactile_depth.chip.registers.table_banks import CAPTURES
+from tactile_depth.depth.pipeline import Pipeline
+from tactile_depth.depth.result import Recorder, Result, thresholds_of
+from tactile_depth.depth.twin import PICTURES, require_flat_field, require_zero_offset
+from tactile_depth.device import captures, sent
 from tactile_depth.device.addresses import open_channel
 from tactile_depth.device.channel import Arrival, Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import Exchange, camera_frames
-from tactile_depth.device.frame import DeviceFrame
+from tactile_depth.device.frame import DeviceFrame, seen_as
 from tactile_depth.device.registers import Registers, read_words, write_words
 from tactile_depth.device.status import COUNTERS, DeviceStatus
 from tactile_depth.device.tables import load_tables, require_same, wait_in_use, window_doubt
-from tactile_depth.pictures.doubts import UnusablePicture
 from tactile_depth.pictures.frames import GREY
-from tactile_depth.pictures.picture_check import check_picture
-from tactile_depth.pictures.pictures import Picture, Pictures, is_array
-from tactile_depth.pictures.reader import power_of_two_of
-from tactile_depth.pictures.reference_check import check_reference, check_zero
+from tactile_depth.pictures.pictures import Picture, Pictures
 
+LIGHT = REGISTERS["LIGHT"]
+CALIBRATION = "calibration"
 CAPTURED = 8
 """Pictures of the device's camera that a capture takes the mean of."""
 
@@ -43,7 +40,8 @@ class Device(AbstractContextManager["Device"]):
     """Device with the pipeline, on a serial line, in a simulator or in a Zynq. Several may be open at once.
 
     After a DeviceError the next call works if its cause is gone. A device that was unplugged is opened anew. After a
-    reset of the device, or a loss of its power, call `load` again: its settings are those of power-up.
+    reset of the device, or a loss of its power, call `load` again: its settings are those of power-up. Depth of other
+    tables or settings than the pipeline's is refused: that of pictures by the depth that the host computes of them.
 
     Parameters
     ----------
@@ -96,9 +94,10 @@ class Device(AbstractContextManager["Device"]):
             "area_mm": pipeline.area_threshold_mm,
         }
         self._settings = pipeline.settings(**self._thresholds_mm)
-        self._reference_gains: np.ndarray | None = None  # of the device, if they are known
+        self._unknown: set[str] = set()  # tables of the device whose content this host does not know
         self._is_closed = self._is_window_checked = False
         self._line: Channel | None = self._connect()
+        self._twin = pipeline.of_device(self._lanes)  # with what the device holds, by what is known
 
     def __exit__(self, *raised: object) -> None:
         self.close()
@@ -122,9 +121,9 @@ class Device(AbstractContextManager["Device"]):
             The device has another configuration than the pipeline.
         DeviceError
         """
-        config = self.pipeline.config
         with self._open_line() as line:
-            require_same(line, self.pipeline)
+            self._lanes = require_same(line, self.pipeline)
+            self._unknown.add(CALIBRATION)  # until the end
             with Exchange(line) as exchange:
 
                 def untouched() -> None:
@@ -132,9 +131,10 @@ class Device(AbstractContextManager["Device"]):
 
                 load_tables(line, self.pipeline, untouched)
                 self._settings = self.pipeline.settings(**self._thresholds_mm)
-                write_words(line, list(thresholds_of(self._settings).items()))
+                write_words(line, [*self._words.items(), (LIGHT.name, LIGHT.pack(follow=1))])
                 wait_in_use(line, untouched)
-        self._reference_gains = reference_gains(self.pipeline.sensor, config) if config.flat_field else None
+        self._twin = self.pipeline.of_device(self._lanes)
+        self._unknown.clear()
 
     def capture_reference(self, pictures: Pictures | None = None, *, frames: int = CAPTURED) -> None:
         """Take the mean of pictures without contact as the reference, in the device.
@@ -155,39 +155,33 @@ class Device(AbstractContextManager["Device"]):
             The number of pictures is not accepted, they are no reference, or the pipeline takes colours as sent.
         DeviceError
         """
-        config = self.pipeline.config
-        require_flat_field(config)
-        largest = largest_log2_frames(config)
+        require_flat_field(self.pipeline.config)
         if pictures is None:
-            self._capture_of_camera("reference", frames, largest)
-            self._reference_gains = None
+            self._capture_of_camera("reference", frames, largest_log2_frames(self.pipeline.config))
             return
-        images, taken = self.pipeline.reader.reference(pictures, PICTURES, largest)
-        check_reference(self.pipeline.reader.sensor, images, PICTURES, self.pipeline.reader.share)
-        gains = captured_gains(taken, config)
-        require_light(gains, config, PICTURES)
-        with self._open_line() as line:
+        twin = self._twin.of_device(self._lanes)
+        twin.capture_reference(pictures)
+        taken = twin.sensor.reference
+        assert taken is not None
+        with self._capturing("reference", twin) as line:
             captures.capture_of_pictures(line, "reference", taken)
-        self._reference_gains = gains
 
     def capture_zero(self, pictures: Pictures | None = None, *, frames: int = CAPTURED) -> None:
         """Take the depth of pictures without contact as the zero offset, in the device.
 
         For parameters and errors see `capture_reference`.
         """
-        config = self.pipeline.config
-        require_zero_offset(config)
+        require_zero_offset(self.pipeline.config)
         if pictures is None:
             self._capture_of_camera("zero", frames, LARGEST_LOG2)
             return
-        taken = np.stack([frame for _, frame in self.pipeline.reader.pictures(pictures, PICTURES)[0]])
-        power_of_two_of(len(taken), LARGEST_LOG2, PICTURES)
-        check_zero(taken, self.pipeline.rest, PICTURES)
-        gains = None
-        if config.light_gains and self._reference_gains is not None:
-            gains = captures.gains_of(taken, self._reference_gains, config)
-        with self._open_line() as line:
-            captures.capture_of_pictures(line, "zero", taken, gains)
+        self._require_known("reference")
+        twin = self._twin.of_device(self._lanes)
+        twin.capture_zero(pictures)
+        taken = np.stack([frame for _, frame in twin.reader.pictures(pictures, PICTURES)[0]])
+        gains = twin.twin.light(taken)
+        with self._capturing("zero", twin) as line:
+            captures.capture_of_pictures(line, "zero", taken, None if gains is None else gains.tolist())
 
     def set_thresholds(
         self, touch_mm: float | None = None, release_mm: float | None = None, area_mm: float | None = None
@@ -230,12 +224,14 @@ class Device(AbstractContextManager["Device"]):
         self._thresholds_mm, self._settings = thresholds_mm, settings
 
     def depth(
-        self, pictures: Pictures | Iterable[Picture] | None = None, *, stream: bool = True
+        self, pictures: Pictures | Iterable[Picture] | None = None, *, stream: bool | None = None
     ) -> Iterator[DeviceFrame]:
         """Send pictures and give the depth frame of each; without pictures, give what the device's camera gives.
 
-        The frames of pictures are those of `pipeline.stream(pictures)`: light gains begin at 1 and follow the
-        pictures. With `stream=False` they are those of `pipeline(pictures)`: each picture stands for itself.
+        Pictures as a call of a pipeline takes them give the frames of `pipeline(pictures)`: each stands for itself. The
+        host sets the light gains of each, and sends it twice, so that its contact does not depend on the one before.
+        Those of an iterator, as of a camera, give the frames of `pipeline.stream(pictures)`: light gains begin at 1 and
+        follow the pictures. The host computes the same and compares; frames have the warnings of the pipeline.
 
         A picture whose depth gets lost on the line gives no frame and is counted in `lost`; `DeviceFrame.picture` tells
         which one is missing. The frames of a camera do not end.
@@ -244,44 +240,39 @@ class Device(AbstractContextManager["Device"]):
         ----------
         pictures : as for a call of a pipeline, or an iterable of pictures, optional
             Full pictures of the sensor's camera.
-        stream : bool
-            False: the host computes the light gains of each picture, and sends it twice, so that its contact does not
-            depend on the picture before. The device must have a reference that the host knows: by `load`, or by
-            `capture_reference` with pictures.
+        stream : bool, optional
+            True: the pictures are a stream, whatever holds them. False: each stands for itself.
 
         Raises
         ------
         InputError
-            A picture is not accepted.
+            A picture is not accepted. A stream leaves out and counts one that gives no right depth.
         DeviceError
+            The device computes another depth than the pipeline: it needs `load`; or it does not answer.
+
+        Warns
+        -----
+        InputWarning
+            The heights of a picture are uncertain; of a stream once for each kind of doubt.
         """
-        require_flag(Argument("stream", stream))
-        has_gains = self.pipeline.config.light_gains
-        if not stream and (pictures is None or (has_gains and self._reference_gains is None)):
-            problem = ": without pictures" if pictures is None else ": the reference of the device is not known"
-            remedy = "give pictures" if pictures is None else "call load() first, or capture_reference(pictures)"
-            raise InputError(Argument("stream", stream), problem, remedy=remedy)
-        with ExitStack() as stack:
-            line = stack.enter_context(self._open_line())
+        if stream is not None:
+            require_flag(Argument("stream", stream))
+        if pictures is None and stream is False:
+            raise InputError(Argument("stream", stream), ": without pictures", remedy="give pictures")
+        with self._open_line() as line:
+            light = self._require_settings(line)
+            self._require_known(CALIBRATION)
             if pictures is None:
                 self._check_window(line)
-                yield from (self._frame(arrival, None) for arrival in camera_frames(line))
+                yield from (self._frame(arrival) for arrival in camera_frames(line))
                 return
-            exchange = stack.enter_context(Exchange(line))
-            if has_gains and not stream:
-                stack.enter_context(captures.held_light(line))
-            elif has_gains:
-                captures.write_gains(line, [captures.UNITY] * len(captures.GAINS))
-            for index, pixels in self._usable(pictures, line):
-                if has_gains and not stream:
-                    assert self._reference_gains is not None
-                    gains = captures.gains_of(pixels[None], self._reference_gains, self.pipeline.config)
-                    captures.write_gains(line, gains[0])
-                arrival = exchange.depth_of(pixels)
-                if arrival is not None and not stream:
-                    arrival = exchange.depth_of(pixels)
-                if arrival is not None:
-                    yield self._frame(arrival, index)
+            self._require_known(*CAPTURES)
+            if stream or (stream is None and not sent.are_whole(pictures)):
+                frames = sent.streamed(line, self._twin, pictures, light)
+            else:
+                frames = sent.single(line, self._twin, pictures)
+            with closing(frames):
+                yield from (self._frame(arrival, index, result) for index, arrival, result in frames)
 
     def status(self) -> DeviceStatus:
         """Return the state of the device and of the link."""
@@ -307,7 +298,7 @@ class Device(AbstractContextManager["Device"]):
                 problem = f", but the device has {grid}, rows and columns"
                 remedy = ("make the pipeline with ", Argument("grid", grid), ", or build the device for it")
                 raise InputError(Argument("grid", tuple(self.pipeline.grid)), problem, remedy=remedy)
-            require_same(line, self.pipeline)
+            self._lanes = require_same(line, self.pipeline)
         except BaseException:
             line.close()
             raise
@@ -340,35 +331,46 @@ class Device(AbstractContextManager["Device"]):
             return np.full((*self.pipeline.grid, 3), GREY, np.uint8)
         return reference.reshape(-1, *self.pipeline.grid, 3)[-1]
 
-    def _usable(self, pictures: Pictures | Iterable[Picture], line: Channel) -> Iterator[tuple[int, Bytes]]:
-        """Give pictures on the grid, each with its number; leave out and count what gives no right depth."""
-        rest, failed = self.pipeline.rest, False
-        for index, (name, frame) in enumerate(self._on_grid(pictures)):
-            try:
-                check_picture(frame, rest, name)
-            except UnusablePicture as error:
-                if not failed:
-                    warn(InputWarning("left out and counted: ", *error.parts))
-                failed = True
-                line.count_lost()
-                continue
-            yield index, frame
-
-    def _on_grid(self, pictures: Pictures | Iterable[Picture]) -> Iterator[tuple[Part, Bytes]]:
-        """Give pictures on the grid, each with its name; those of an iterable one by one."""
-        if is_array(pictures) or isinstance(pictures, str | Path | Sequence) or not isinstance(pictures, Iterable):
-            yield from self.pipeline.reader.pictures(cast(Pictures, pictures), PICTURES)[0]
-            return
-        for index, picture in enumerate(pictures):
-            yield from self.pipeline.reader.pictures(picture, f"picture {index}")[0]
-
     def _capture_of_camera(self, table: str, count: int, largest_log2: int) -> None:
         accepted = [1 << power for power in range(largest_log2 + 1)]
         if count not in accepted:
             raise InputError(Argument("frames", count), accepted=[str(number) for number in accepted])
-        with self._open_line() as line:
+        with self._capturing(table) as line:
             self._check_window(line)
             captures.capture_of_camera(line, table, count, lambda: line.send(self._untouched))
+
+    @contextmanager
+    def _capturing(self, table: str, twin: Pipeline | None = None) -> Iterator[Channel]:
+        """Give the line for the capture of a table, which is then known as that of `twin`."""
+        with self._open_line() as line:
+            self._unknown.add(table)
+            yield line
+        if twin is not None:
+            self._twin = twin
+            self._unknown.discard(table)
+
+    def _require_known(self, *tables: str) -> None:
+        """Raise DeviceError if this host does not know one of these tables of the device."""
+        unknown = sorted(self._unknown.intersection(tables))
+        if unknown:
+            problem = f"the {unknown[0]} of the device is not known to this program"
+            raise DeviceError(problem, remedy="call load() first, or capture from pictures")
+
+    def _require_settings(self, line: Channel) -> int:
+        """Return the word of `LIGHT`; raise DeviceError unless the other settings are those that this host wrote."""
+        words = read_words(line, [*self._words, LIGHT.name])
+        differing = [
+            name for name, word in self._words.items() if (words[name] ^ word) & REGISTERS[name].fields[0].mask
+        ]
+        if differing:
+            problem = f"settings of the device are not those of this program ({', '.join(differing)})"
+            raise DeviceError(problem, remedy="call load() first")
+        return words[LIGHT.name]
+
+    @property
+    def _words(self) -> dict[str, int]:
+        """Words of the registers that depth and contact depend on."""
+        return {**thresholds_of(self._settings), "DARK_LEVEL": 0}
 
     def _check_window(self, line: Channel) -> None:
         """Warn once if what the device takes of its camera's pictures is not what the calibration is for."""
@@ -376,14 +378,15 @@ class Device(AbstractContextManager["Device"]):
             warn(doubt)
         self._is_window_checked = True
 
-    def _frame(self, arrival: Arrival, picture: int | None) -> DeviceFrame:
+    def _frame(self, arrival: Arrival, picture: int | None = None, result: Result | None = None) -> DeviceFrame:
         pipeline, frame = self.pipeline, arrival.frame
         recorder = Recorder.of(pipeline.config, self._settings)
         pitch_mm = span_of(frame.depth_format) * pipeline.pixel_pitch_mm
         units = pipeline.depth_lsb_mm, pitch_mm, pipeline.sensor.pixel_aspect
         counts = frame.number, arrival.time_s, arrival.lost
         form = self.depth_format, (pipeline.config.rows, pipeline.config.columns)
-        return DeviceFrame(frame.codes, frame.record, *counts, picture, recorder, *units, *form)
+        made = DeviceFrame(frame.codes, frame.record, *counts, picture, recorder, *units, *form)
+        return made if result is None else seen_as(made, result)
 
     @property
     def _limit_mm(self) -> float:

@@ -50,6 +50,16 @@ class DeviceFrame(ByValue):
         Format in which the depth came: `words`, `16-bit` or `averaged`.
     grid : tuple of int
         Rows and columns of the device, in whose pixels `record` counts.
+    warnings : tuple of str, or None
+        Why the heights are uncertain, as of a `Result`: empty if nothing is known against them. None: not known, for a
+        picture of the device's camera, which the host does not see.
+    saturations : dict of str to int, or None
+        Values clipped, by node; None: not known.
+    dark, outside : bool array (rows, columns), or None
+        Pixels without light, and those whose slopes lie outside the calibrated range: of averaged depth the values with
+        such a pixel; None: not known.
+    light_gains : float64 array (3,), or None
+        Light of the reference over that of the picture, of red, green and blue; None: not known, or no light gains.
     """
 
     codes: Codes
@@ -64,6 +74,11 @@ class DeviceFrame(ByValue):
     pixel_aspect: float
     depth_format: DepthFormatName
     grid: tuple[int, int]
+    warnings: tuple[str, ...] | None = None
+    saturations: dict[str, int] | None = None
+    dark: Flags | None = None
+    outside: Flags | None = None
+    light_gains: Floats | None = None
 
     def __repr__(self) -> str:
         rows, columns = self.codes.shape
@@ -150,3 +165,15 @@ class DeviceFrame(ByValue):
     @property
     def _span(self) -> int:
         return span_of(FORMATS[self.depth_format])
+
+
+def seen_as(frame: DeviceFrame, result: Result) -> DeviceFrame:
+    """Return a frame with what the package knows of its picture."""
+    (rows, columns), span, first = frame.codes.shape, frame._span, frame._first_row
+
+    def of_values(pixels: Flags) -> Flags:
+        sent = pixels[first:][: span * rows]
+        return np.asarray(sent.reshape(rows, span, columns, span).any(axis=(1, 3)))
+
+    known = {name: getattr(result, name) for name in ("warnings", "saturations", "light_gains")}
+    return replace(frame, dark=of_values(result.dark), outside=of_values(result.outside), **known)

@@ -36,10 +36,10 @@ def build_of(pipeline: Pipeline) -> Build:
     return Build(top_parameters(pipeline.config, pipeline.pixel_pitch_mm))
 
 
-def require_same(line: Channel, pipeline: Pipeline) -> None:
+def require_same(line: Channel, pipeline: Pipeline) -> int:
     """Raise InputError, which names what differs, unless a device has the configuration of a pipeline.
 
-    The lanes may differ. Raises DeviceError if the device is no tactile_depth, or does not answer.
+    The lanes may differ, and are returned. Raises DeviceError if the device is no tactile_depth, or does not answer.
     """
     words = read_words(line, ["ID", *DESCRIPTION])
     if words["ID"] != REGISTERS["ID"].reset:
@@ -55,6 +55,7 @@ def require_same(line: Channel, pipeline: Pipeline) -> None:
     ]
     if differing:
         raise InputError(f"the device has another configuration: {'; '.join(differing)}", remedy=REMEDY)
+    return REGISTERS["DEVICE"].unpack(words["DEVICE"])["lanes"]
 
 
 def window_doubt(line: Channel, pipeline: Pipeline) -> InputWarning | None:

@@ -9,9 +9,18 @@ import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, Part
 from tactile_depth.chip.resampling import WHOLE, Share
-from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler, middle
+from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler, middle, picture_grid
 from tactile_depth.pictures.pictures import Pictures, pictures_of
 from tactile_depth.sensor.sensor import Sensor
+
+SYNTHETIC_GRID = (128, 128)
+
+
+def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]:
+    """Return rows and columns of the grid that covers the full picture of a sensor, as `picture_grid`."""
+    if sensor.camera is None:
+        return SYNTHETIC_GRID
+    return picture_grid((sensor.camera.rows, sensor.camera.columns), solver)
 
 
 class Reader:

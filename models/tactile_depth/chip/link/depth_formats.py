@@ -90,3 +90,12 @@ def from_bytes(values: bytes, count: int) -> Codes:
     wide = np.zeros((len(values) // count, 4), np.uint8)
     wide[:, 4 - count :] = np.frombuffer(values, np.uint8).reshape(-1, count)
     return (wide.view("<i4")[:, 0] >> 8 * (4 - count)).astype(np.int32, copy=False)
+
+
+def received(codes: Codes, depth_format: DepthFormat, width: int, shift: int, bottom_first: bool) -> Codes:
+    """Return the codes that a host gets of those of a frame (rows, columns), both in the order of the picture."""
+    if depth_format == DepthFormat.WORDS:
+        return codes
+    order = slice(None, None, -1 if bottom_first else 1)
+    values = from_bytes(to_bytes(codes[order], depth_format, width, shift), value_bytes(depth_format, width))
+    return values.reshape(sent_shape(depth_format, *codes.shape))[order] << shift

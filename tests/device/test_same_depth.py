@@ -1,0 +1,317 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a device gives of pictures is what the package gives, with its doubts; another depth is refused."""
+
+from __future__ import annotations
+
+import re
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Any, get_args
+
+import numpy as np
+import pytest
+
+import tactile_depth as td
+from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, received
+from tactile_depth.chip.tactile_depth import zeroed
+from tactile_depth.depth.twin import Twin
+from tests.device.cable import Cable
+from tests.device.conftest import Plug
+from tests.device.test_device import require_equal, singles
+from tests.device.test_serial_line import until
+
+GRID = (24, 32)
+NAMES: tuple[DepthFormatName, ...] = get_args(DepthFormatName)
+LIGHTS = (0.9, 1.0, 1.05, 1.1, 1.2)
+FIRST = r"call load\(\) first"
+
+
+@pytest.fixture(scope="module")
+def pipeline(sample: td.Sample) -> td.Pipeline:
+    return td.Pipeline(sample.sensor, reference=sample.reference, grid=GRID, model="quadratic")
+
+
+@pytest.fixture
+def cable(pipeline: td.Pipeline, plug: Plug) -> Cable:
+    return plug(pipeline)
+
+
+@pytest.fixture
+def device(cable: Cable, pipeline: td.Pipeline) -> Iterator[td.Device]:
+    with td.Device(cable.address, pipeline) as device:
+        device.load()
+        yield device
+
+
+def in_light(image: np.ndarray, light: Any) -> np.ndarray:
+    return np.clip(np.rint(image * light), 0, 255).astype(np.uint8)
+
+
+def told(call: Callable[[], Any]) -> tuple[Any, list[str]]:
+    """Return what a call returns, and the warnings that it gives."""
+    with warnings.catch_warnings(record=True) as given:
+        warnings.simplefilter("always")
+        result = call()
+    return result, [str(each.message) for each in given]
+
+
+@pytest.fixture(scope="module")
+def doubtful(sample: td.Sample) -> list[np.ndarray]:
+    """Pictures with and without doubts: other light, light that changes across, clipped pixels, gel that stands out."""
+    across = np.linspace(0.95, 1.05, sample.image.shape[1])[:, None]
+    return [
+        *(in_light(sample.image, light) for light in LIGHTS),
+        in_light(sample.image, across),
+        in_light(sample.image, across[::-1]),
+        in_light(sample.image, 0.8),
+    ]
+
+
+def test_pictures_have_the_doubts_of_the_package(
+    device: td.Device, pipeline: td.Pipeline, doubtful: list[np.ndarray]
+) -> None:
+    frames, warned = told(lambda: list(device.depth(doubtful)))
+    results, expected = told(lambda: singles(pipeline, doubtful))
+    require_equal(frames, results)
+    assert warned == expected
+    assert len(set(map(str, warned))) >= 3
+    assert any(frame.warnings for frame in frames)
+
+
+def test_a_stream_has_the_doubts_of_the_package_and_warns_once_of_each_kind(
+    device: td.Device, pipeline: td.Pipeline, doubtful: list[np.ndarray]
+) -> None:
+    pictures = [picture for picture in doubtful for _ in range(3)]
+    frames, warned = told(lambda: list(device.depth(iter(pictures))))
+    results, expected = told(lambda: list(pipeline.stream(pictures)))
+    require_equal(frames, results)
+    assert warned == expected
+    assert len(warned) < sum(bool(frame.warnings) for frame in frames)
+
+
+def test_a_picture_in_other_light_is_that_of_a_pipeline(
+    device: td.Device, pipeline: td.Pipeline, sample: td.Sample
+) -> None:
+    for light in LIGHTS:
+        picture = in_light(sample.image, light)
+        (frame,) = device.depth([picture])
+        np.testing.assert_array_equal(frame.codes, pipeline(picture).codes)
+
+
+def test_right_light_has_no_doubt(device: td.Device, sample: td.Sample) -> None:
+    pictures = [in_light(sample.image, 1 + 0.002 * np.sin(index)) for index in range(20)]
+    assert not any(frame.warnings for frame in device.depth(iter(pictures)))
+
+
+def test_the_rate_of_the_light_is_that_of_the_device(
+    device: td.Device, pipeline: td.Pipeline, sample: td.Sample
+) -> None:
+    device.registers["LIGHT.rate"] = 2
+    stream = pipeline.new_stream()
+    assert stream.light is not None
+    stream.light.rate = 2
+    pictures = [in_light(sample.image, 0.93)] * 4
+    require_equal(list(device.depth(iter(pictures))), list(pipeline.stream(pictures, stream)))
+
+
+def test_light_that_changes_over_a_line_that_loses_packets(cable: Cable, device: td.Device, sample: td.Sample) -> None:
+    """Depth that got lost behind the device has moved its light gains, a picture that got lost before it has not."""
+    pictures = [in_light(sample.image, 1 + 0.05 * np.sin(index)) for index in range(40)]
+    assert cable.setup is not None
+    cable.setup.damage["drop"] = 0.05
+    frames: list[td.DeviceFrame] = []
+    while device.status().lost < 3:
+        frames += device.depth(iter(pictures))
+    cable.setup.damage.clear()
+    assert frames
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("grid", [GRID, (25, 32)])
+def test_masks_have_the_values_of_the_depth(
+    name: DepthFormatName, grid: tuple[int, int], sample: td.Sample, plug: Plug
+) -> None:
+    reference = sample.reference.copy()
+    reference[:40, :50, 0] = 1
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        pipeline = td.Pipeline(sample.sensor, reference, grid=grid, model="quadratic")
+        with td.Device(plug(pipeline).address, pipeline, depth_format=name) as device:
+            device.load()
+            (frame,) = device.depth(sample.image)
+        result = pipeline(sample.image)
+    assert result.dark.any()
+    for wanted, mask in ((result.dark, frame.dark), (result.outside, frame.outside)):
+        assert mask is not None
+        if name == "averaged":
+            low = wanted[grid[0] % 2 :]
+            wanted = low[::2, ::2] | low[1::2, ::2] | low[::2, 1::2] | low[1::2, 1::2]
+        np.testing.assert_array_equal(mask, wanted)
+    assert frame.warnings == result.warnings
+    assert frame.saturations == result.saturations
+
+
+def test_what_a_camera_sees_is_not_known(steady: td.Pipeline, sample: td.Sample, plug: Plug) -> None:
+    ((_, camera),) = steady.reader.pictures(sample.image, "picture")[0]
+    cable = plug(steady, camera=camera[None], camera_s=0.002)
+    with td.Device(cable.address, steady) as device:
+        device.load()
+        frame = next(device.depth())
+    known = frame.warnings, frame.saturations, frame.dark, frame.outside, frame.light_gains
+    assert known == (None,) * len(known)
+
+
+def test_a_device_with_lanes(pipeline: td.Pipeline, sample: td.Sample, plug: Plug) -> None:
+    """The last bits of its depth are those of its lanes."""
+    lanes = replace(pipeline.config, lanes=4)
+    cable = plug(pipeline)
+    cable.unplug()
+    assert cable.setup is not None
+    cable.setup.config = lanes
+    cable.plug()
+    with td.Device(cable.address, pipeline) as device:
+        device.load()
+        (frame,) = device.depth([sample.image])
+        device.capture_reference([sample.reference])
+        device.capture_zero([sample.reference])
+        assert len(list(device.depth([sample.image]))) == 1
+    twin = Twin(pipeline.sensor, lanes)
+    ((_, picture),) = pipeline.reader.pictures(sample.image, "picture")[0]
+    expected = twin.upright(zeroed(twin.chip(picture[None])[1], lanes, zero=pipeline.zero_codes))
+    np.testing.assert_array_equal(frame.codes, expected[0])
+    assert not np.array_equal(frame.codes, pipeline(sample.image).codes)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("bottom_first", [True, False])
+def test_codes_that_are_received_are_those_of_words_in_each_format(name: DepthFormatName, bottom_first: bool) -> None:
+    codes = np.random.default_rng(2).integers(-(1 << 23), 1 << 23, (5, 8), np.int32)
+    got = received(codes, FORMATS[name], 24, 8, bottom_first)
+    if name == "words":
+        np.testing.assert_array_equal(got, codes)
+        return
+    values = codes.astype(float)
+    if name == "averaged":
+        values = (values[1:] if bottom_first else values[:4]).reshape(2, 2, 4, 2).mean(axis=(1, 3))
+    np.testing.assert_array_equal(got, np.rint(values / 256).clip(-32768, 32767) * 256)
+
+
+# Devices that do not hold what the pipeline has.
+
+
+@pytest.fixture(params=["single", "stream"])
+def depth(request: pytest.FixtureRequest, sample: td.Sample) -> Callable[[td.Device], list[td.DeviceFrame]]:
+    """Return a function that sends a press."""
+    pictures = [sample.image]
+    return lambda device: list(device.depth(pictures, stream=request.param == "stream"))
+
+
+Depth = Callable[[td.Device], list[td.DeviceFrame]]
+
+
+def test_a_device_that_was_never_loaded(cable: Cable, pipeline: td.Pipeline, depth: Depth) -> None:
+    with td.Device(cable.address, pipeline) as device:
+        for _ in range(2):
+            with pytest.raises(td.DeviceError, match=FIRST):
+                depth(device)
+        device.load()
+        assert len(depth(device)) == 1
+
+
+@pytest.mark.parametrize("loss", ["reset", "power_up"])
+def test_a_device_that_was_reset(loss: str, cable: Cable, device: td.Device, depth: Depth) -> None:
+    cable.serving.wanted.add(loss)
+    until(lambda: not cable.serving.wanted)
+    time.sleep(0.1)
+    with pytest.raises(td.DeviceError, match="was reset or lost its power"):
+        depth(device)
+    with pytest.raises(td.DeviceError, match=FIRST):
+        depth(device)
+    with pytest.raises(td.DeviceError, match=FIRST):
+        next(device.depth())
+    device.load()
+    assert len(depth(device)) == 1
+
+
+def test_a_device_that_lost_its_power_and_has_the_thresholds_alone(
+    cable: Cable, device: td.Device, depth: Depth
+) -> None:
+    device.close()
+    cable.serving.wanted.add("power_up")
+    until(lambda: not cable.serving.wanted)
+    with td.Device(cable.address, device.pipeline) as opened:
+        with pytest.raises(td.DeviceError, match=f"settings of the device are not those of this program .*{FIRST}"):
+            depth(opened)
+        opened.set_thresholds()
+        with pytest.raises(
+            td.DeviceError, match=rf"0.*: the device computes another depth than the pipeline, .*{FIRST}"
+        ):
+            depth(opened)
+
+
+def test_a_device_that_is_opened_again_needs_no_load(cable: Cable, device: td.Device, depth: Depth) -> None:
+    device.close()
+    with td.Device(cable.address, device.pipeline) as opened:
+        assert len(depth(opened)) == 1
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_reference_of_another_program(
+    name: DepthFormatName, cable: Cable, pipeline: td.Pipeline, sample: td.Sample, depth: Depth
+) -> None:
+    other = td.Pipeline(sample.sensor, in_light(sample.reference, 0.8), grid=GRID, model="quadratic")
+    with td.Device(cable.address, other) as device:
+        device.load()
+    with td.Device(cable.address, pipeline, depth_format=name) as device:
+        with pytest.raises(td.DeviceError, match=rf"another depth than the pipeline, in \d+ of \d+ values: {FIRST}"):
+            depth(device)
+        device.load()
+        assert len(depth(device)) == 1
+
+
+def test_a_cable_that_is_pulled_during_a_load(device: td.Device, depth: Depth, monkeypatch: pytest.MonkeyPatch) -> None:
+    def pulled(*_: object, **__: object) -> None:
+        raise td.DeviceError("the port is gone")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("tactile_depth.device.device.wait_in_use", pulled)
+        with pytest.raises(td.DeviceError, match="the port is gone"):
+            device.load()
+    for call in (depth, lambda device: next(device.depth())):
+        with pytest.raises(
+            td.DeviceError, match=f"the calibration of the device is not known to this program: {FIRST}"
+        ):
+            call(device)
+    device.load()
+    assert len(depth(device)) == 1
+
+
+def test_a_capture_of_the_camera_is_not_known(steady: td.Pipeline, sample: td.Sample, plug: Plug, depth: Depth) -> None:
+    ((_, camera),) = steady.reader.pictures(in_light(sample.reference, 0.9), "picture")[0]
+    cable = plug(steady, camera=camera[None], camera_s=0.002)
+    with td.Device(cable.address, steady) as device:
+        device.load()
+        device.capture_reference(frames=1)
+        with pytest.raises(td.DeviceError, match=rf"the reference of the device is not known .*: {FIRST}"):
+            depth(device)
+        with pytest.raises(td.DeviceError, match=FIRST):
+            device.capture_zero(sample.reference)
+
+
+def test_a_dark_level_that_a_program_left(device: td.Device, depth: Depth) -> None:
+    device.registers["DARK_LEVEL"] = 40
+    with pytest.raises(td.DeviceError, match=rf"\(DARK_LEVEL\): {FIRST}"):
+        depth(device)
+    device.load()
+    assert len(depth(device)) == 1
+
+
+def test_the_message_names_the_picture(cable: Cable, device: td.Device, sample: td.Sample) -> None:
+    model = cable.serving.device
+    frames = device.depth(iter([sample.image] * 3))
+    next(frames)
+    model.tables["coefficients"][:, 3] += 1 << 8
+    with pytest.raises(td.DeviceError, match=re.escape("picture 1: the device computes another depth")):
+        next(frames)
