@@ -29,6 +29,8 @@ from tactile_depth.pictures.picture_check import check_picture
 from tactile_depth.pictures.pictures import Picture, Pictures, is_array
 from tactile_depth.pictures.reader import Reader
 
+REMEDY = "call load() first; if that was done, build the device for this calibration"
+
 
 class Sent(NamedTuple):
     """A picture that was sent.
@@ -126,6 +128,5 @@ def _require_equal(arrival: Arrival, result: Result, name: Part) -> None:
     differing = int(np.count_nonzero(frame.codes != expected))
     if differing:
         where = f"in {differing:,} of {expected.size:,} values"
-        raise DeviceError(
-            f"{name}: the device computes another depth than the pipeline, {where}", remedy="call load() first"
-        )
+        problem = f"{name}: the device computes another depth than the pipeline, {where}"
+        raise DeviceError(problem, remedy=REMEDY)
