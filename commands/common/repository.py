@@ -20,6 +20,7 @@ from tb.structures import Mutants, Structure
 
 ROOT = Path(__file__).resolve().parents[2]
 HDL = ROOT / "hdl"
+WAIVERS = sorted(HDL.glob("*.vlt"))  # of Verilator
 GENERATED = ROOT / "docs" / "generated"  # pages and drawings that commands write as a whole
 BOARDS = {name: sorted((ROOT / "boards" / name).glob("*.sv")) for name in ("ulx3s", "nexus")}
 TECHNOLOGY = sorted((ROOT / "boards" / "ecp5").glob("*.sv"))  # in place of cores of the same name

@@ -29,7 +29,7 @@ from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import Runner, Verilator, get_runner
 
 from commands.common import signals, variables
-from commands.common.repository import HDL, ROOT, sources
+from commands.common.repository import ROOT, WAIVERS, sources
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, one_of
 from tb import start
@@ -139,7 +139,7 @@ def build(
         if not visible.exists() or visible.read_text() != text:  # a newer file is a reason to build again
             visible.write_text(text)
         waivers_first = sorted(files, key=lambda file: file.suffix != ".vlt")
-        files = [HDL / "verilator.vlt", visible, *waivers_first]
+        files = [*WAIVERS, visible, *waivers_first]
         # The testbench of a core compiles longer than it runs; -O2 saves only 5 % of a long run.
         level = "-O1" if fast else "-O0"
         settings = {
@@ -178,7 +178,7 @@ def build(
 def state(values: Sequence[object], sources: Iterable[Path]) -> str:
     """Return a number, in hexadecimal, of all that a model is built from: values, sources and tools."""
     key = hashlib.sha256(json.dumps([*values, versions()]).encode())
-    for source in (*sources, RAM_CHECK, HDL / "verilator.vlt", Path(__file__)):
+    for source in (*sources, RAM_CHECK, *WAIVERS, Path(__file__)):
         key.update(source.read_bytes())
     return key.hexdigest()[:16]
 

@@ -3,7 +3,7 @@
 
 pytest runs each check as an item of tests/commands/test_lint.py, two at a time.
 
-With CORE=a,b it checks these cores alone. Waivers, each with its reason, are in hdl/verilator.vlt, hdl/verible.rules
+With CORE=a,b it checks these cores alone. Waivers, each with its reason, are in hdl/*.vlt, hdl/verible.rules
 and slang_lint.py; Yosys, Icarus and mypy have none, ruff's are in pyproject.toml.
 """
 
@@ -127,7 +127,7 @@ def unless_clean(values: Sequence[object], files: Iterable[Path], check: Callabl
 def verilator(structure: Structure, files: Sequence[Path]) -> str:
     parameters = [f"-G{name}={value}" for name, value in structure.parameters.items()]
     options = ["--lint-only", "-Wall", "--quiet", "--top-module", structure.top, *parameters]
-    return of_files([simulation.VERILATOR, *options, repository.HDL / "verilator.vlt", *files])
+    return of_files([simulation.VERILATOR, *options, *repository.WAIVERS, *files])
 
 
 def icarus(structure: Structure, files: Sequence[Path]) -> str:

@@ -98,7 +98,6 @@ WAIVERS = (
         lambda f: "_map_pkg" in f.place,
         "a register map is generated whole; no core uses every reset value and bit",
     ),
-    Waiver("unused-wildcard-import", lambda f: "build/" in f.place, "a generated wrapper imports every package"),
 )
 
 # Only for one structure or one core, which does not use other cores and all constants of the packages.

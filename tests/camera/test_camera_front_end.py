@@ -26,7 +26,7 @@ def test_verilator_has_no_warning_at_any_ratio(form: str, ratio: Fraction) -> No
     camera = CameraConfiguration((math.ceil(GRID[0] * ratio), int(GRID[1] * ratio)), GRID, form)
     parameters = [f"-G{name}={value}" for name, value in camera_front_end_parameters(camera).items()]
     top = ["--top-module", "camera_front_end"]
-    sources = [repository.HDL / "verilator.vlt", *repository.sources("camera_front_end")]
+    sources = [*repository.WAIVERS, *repository.sources("camera_front_end")]
     command = [simulator.VERILATOR, "--lint-only", "-Wall", "--quiet", *top, *parameters, *map(str, sources)]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stdout + result.stderr

@@ -127,7 +127,8 @@ def test_a_project_that_depends_on_this_one_is_linted(tmp_path: Path) -> None:
     (files,) = tmp_path.rglob("*.vc")
     listed = files.read_text().split()
     names = [Path(name).name for name in listed]
-    assert names.index("verilator.vlt") < names.index("td_config_pkg.sv")
+    waivers = [names.index(path.name) for path in repository.WAIVERS]
+    assert max(waivers) < names.index("td_config_pkg.sv")
     assert "-Wall" in listed
 
 

@@ -104,7 +104,7 @@ def test_tools_elaborate_the_module(wrapped: Wrapped) -> None:
         "icarus": ["iverilog", "-g2012", "-t", "null", "-s", wrapped.top],
         "verilator": [
             *(simulator.VERILATOR, "--lint-only", "--quiet", "-Wall", "--top-module", wrapped.top),
-            *("--default-language", "1800-2017", "+1364-2005ext+v", str(repository.HDL / "verilator.vlt")),
+            *("--default-language", "1800-2017", "+1364-2005ext+v", *map(str, repository.WAIVERS)),
         ],
     }
     for name, command in commands.items():
