@@ -102,7 +102,7 @@ def test_real_presses() -> None:
         device.load()
         device.capture_reference(background)
         device.capture_zero(background)
-        frames = list(device.depth(presses))
+        frames = list(device.depth(iter(presses)))
     assert [frame.lost for frame in frames] == [0] * PRESSES
     for frame, result in zip(frames, captured.stream(presses), strict=True):
         assert seen(frame) == seen(result)
