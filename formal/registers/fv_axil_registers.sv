@@ -2,9 +2,8 @@
 // fv_axil_registers: the rules of AXI4-Lite, and every register as docs/generated/registers.md has it, at the widths in
 // use.
 //
-// Nothing is assumed of the master, the pipeline, the tables or reset; the registers of the camera answer at their offsets
-// alone. The registers of the specification change by
-// what was seen on the ports alone.
+// Nothing is assumed of the master, the pipeline, the tables or reset; the registers of the camera answer at their
+// offsets alone. The registers of the specification change by what was seen on the ports alone.
 
 parameter int Polynomial = 0, Corrections = 0, Camera = 0, DepthMantissa = 24'hABCDEF, DepthExponent = -41,
     SlopeMantissa = 24'h812345, SlopeExponent = 3, PitchNm = 63400;
@@ -50,8 +49,8 @@ assign w = s_axil_wvalid & s_axil_wready;
 assign b = s_axil_bvalid & s_axil_bready;
 assign ar = s_axil_arvalid & s_axil_arready;
 assign r = s_axil_rvalid & s_axil_rready;
-logic has_address, has_data, answered, asked;  // of the write, of the read in flight
-logic [AddressWidth-1:0] address;
+logic has_address, has_data, answered, asked, reads;  // of the write, of the read in flight; reads: asked a clock ago
+logic [AddressWidth-1:0] address, read_address;
 logic [31:0] data;
 logic [3:0] strobes;
 
@@ -156,7 +155,7 @@ end
 logic [31:0] word, word_q, now;
 logic known, known_q;
 int read_offset;
-assign read_offset = 32'(s_axil_araddr) / 4 * 4;
+assign read_offset = 32'(read_address) / 4 * 4;
 always_comb begin
   now = sticky;
   now[StatusBusyBit] = levels.busy;
@@ -231,12 +230,14 @@ logic b_stalled, r_stalled, refused_q, write_due, read_due;
 logic [1:0] bresp_q, rresp_q;
 logic [31:0] rdata_q;
 logic asks;  // a table
-assign asks = ar & (read_offset == TableHighOffset || read_offset == TableLowOffset);
+assign asks = reads & (read_offset == TableHighOffset || read_offset == TableLowOffset);
 logic [31:0] index_written, select_written;
 assign index_written = written(index);
 assign select_written = written(32'(select));
 always_ff @(posedge clk) begin
   if (aw) address <= s_axil_awaddr;
+  if (ar) read_address <= s_axil_araddr;
+  reads <= ar;
   if (w) {data, strobes} <= {s_axil_wdata, s_axil_wstrb};
   has_address <= aw | (has_address & ~b);
   has_data <= w | (has_data & ~b);
@@ -244,7 +245,7 @@ always_ff @(posedge clk) begin
   asked <= ar | (asked & ~r);
   write_due <= effective;
   refused_q <= refused;
-  read_due <= (ar & ~asks) | (since == 3'd4);
+  read_due <= (reads & ~asks) | (since == 3'd4);
   word_q <= since == 3'd0 ? word : !has_entry ? '0 : upper ? table_answer.high : table_answer.low;
   known_q <= since == 3'd0 ? known : has_entry;
   if (asks) begin
@@ -300,7 +301,7 @@ always_ff @(posedge clk) begin
   if (first_depth_latency_valid) latency <= first_depth_latency;
 
   if (rst) begin
-    {has_address, has_data, answered, asked, since, write_due, read_due, b_stalled, r_stalled, hold} <= '0;
+    {has_address, has_data, answered, asked, reads, since, write_due, read_due, b_stalled, r_stalled, hold} <= '0;
     limit <= 32'h7fffffff;
     off <= 32'h7fffffff;
     level <= '0;
@@ -324,7 +325,7 @@ always_comb begin
     one_write_in_flight: assert (s_axil_awready == (!has_address && !rst) && s_axil_wready == (!has_data && !rst));
     one_read_in_flight: assert (s_axil_arready == (!asked && !rst));
     // Once each, never without a request.
-    answered_when_due: assert (s_axil_bvalid == answered && s_axil_rvalid == (asked && since == 3'd0));
+    answered_when_due: assert (s_axil_bvalid == answered && s_axil_rvalid == (asked && !reads && since == 3'd0));
     if (write_due) write_response: assert (s_axil_bvalid && s_axil_bresp == (refused_q ? SlaveError : Okay));
     if (b_stalled) write_response_stable: assert (s_axil_bvalid && s_axil_bresp == bresp_q);
     if (read_due) begin
@@ -336,7 +337,7 @@ always_comb begin
     camera_write: assert (register_command.write == (effective && !rst) && (!effective
         || register_command.write_offset == offset && register_command.write_mask == mask
         && register_command.write_ones == (data & mask)));
-    camera_read: assert (register_command.read_offset == read_offset);
+    if (reads) camera_read: assert (register_command.read_offset == read_offset);
     // What leaves for the pipeline.
     outputs: assert (contact_settings.threshold == limit && timeout == silence
         && contact_settings.hold_contact == hold);

@@ -45,8 +45,8 @@ always_comb begin
     if (read_offset == ZeroCaptureOffset) zero_reads: assert (read_data == 32'(zero_status.busy) << ZeroCaptureBusyBit);
     if (asks) refused_or_not: assert (write_refused == !may_start);
     if (write_offset != ReferenceCaptureOffset && write_offset != ZeroCaptureOffset) no_other: assert (!write_refused);
-    if (is_reference) reference_asked: assert (reference_request == (write && asks && may_start));
-    if (is_zero) zero_asked: assert (zero_request == (write && asks && may_start));
+    if (is_reference) reference_asked: assert (reference_request == (write && asks && may_start && !rst));
+    if (is_zero) zero_asked: assert (zero_request == (write && asks && may_start && !rst));
 
     changes_over: cover (frame_start && requested && has && bank);
     after_a_capture: cover (frame_start && requested && is_zero && !rst);

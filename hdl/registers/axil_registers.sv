@@ -119,7 +119,7 @@ module axil_registers
   logic [6:0][31:0] read_data;  // each that of a source
   register_answer_t camera_answer;
   assign camera_answer = Camera != 0 ? register_answer : '0;
-  assign register_command = {write, write_offset, write_ones, write_mask, read_offset};
+  assign register_command = {write && !rst, write_offset, write_ones, write_mask, read_offset};
   axil_port #(.Sources(7)) u_port (
     .clk, .rst, .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
     .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arvalid, .s_axil_arready,
@@ -159,7 +159,7 @@ module axil_registers
   always_comb begin
     {gain_before, gain_read} = '0;
     for (int c = 0; c < 3; c++) begin
-      gain_writes[c] = write && write_offset == light_offsets[c];
+      gain_writes[c] = write && write_offset == light_offsets[c] && !rst;
       if (write_offset == light_offsets[c]) gain_before = light_gains[c];
       if (LightGains != 0 && read_offset == light_offsets[c]) gain_read = light_gains[c];
     end

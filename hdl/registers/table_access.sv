@@ -64,7 +64,7 @@ module table_access
   assign last = IndexWidth'(size - 32'd1);
   assign has_entry = 32'(index) < size;
   assign write_refused = write_offset == TableLowOffset && (!has_entry || !(&write_mask) || closed[select]);
-  assign writes = write && write_offset == TableLowOffset && !write_refused;
+  assign writes = write && write_offset == TableLowOffset && !write_refused && !rst;
   assign reads = asked && has_entry && !rst;
   assign read_late = read_offset == TableHighOffset || read_offset == TableLowOffset;
   assign late_refused = !had_entry;

@@ -4,8 +4,8 @@
 // A 1 written to TABLE_COMMIT, or `done` of a capture, requests that a table change over to its other bank:
 // docs/streams.md, Tables. table_bank changes with the next frame_start, in that cycle; table_in_use says which bank
 // the table uses. A table is `closed`, to writes and to commits, while its change-over is pending or it is captured. A
-// capture's request is high in the cycle of the write that starts it; from the next cycle to that of `done`, `busy`
-// shall be high. A start is refused for a table that the build has not, and for the zero offset while its change-over
+// capture's request is high in the cycle of the write that starts it, but not in a reset; from the next cycle to that
+// of `done`, `busy` shall be high. A start is refused for a table that the build has not, and for the zero offset while its change-over
 // is pending. rst forgets what no frame has taken and leaves the banks; cold_rst, together with rst, clears them.
 // Model: models/tactile_depth/chip/registers/table_banks.py.
 
@@ -58,8 +58,8 @@ module table_banks
   assign no_reference = !Has[TableCommitReferenceBit];
   assign no_zero = !Has[TableCommitZeroBit] || pending[TableCommitZeroBit] || zero_status.done;
   assign write_refused = (starts_reference && no_reference) || (starts_zero && no_zero);
-  assign reference_request = write && starts_reference && !no_reference;
-  assign zero_request = write && starts_zero && !no_zero;
+  assign reference_request = write && starts_reference && !no_reference && !rst;
+  assign zero_request = write && starts_zero && !no_zero && !rst;
 
   always_ff @(posedge clk) begin
     requested <= (requested & {4{!frame_start}}) | ((commits | captured) & Has);

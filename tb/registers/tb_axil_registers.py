@@ -117,6 +117,7 @@ class Registers:
         """Advance by one clock edge; return the outputs before it, None where one does not count."""
         model, port = self.model, self.port
         bus, values = port.outputs(pins["rst"]), model.values
+        bus["write"] = bus["write"] and not pins["rst"]  # what a reset withdraws commands nothing
         status = {table: unpack("capture_status_t", pins[f"{table}_status"]) for table in CAPTURES}
         busy, done = (frozenset(table for table in CAPTURES if status[table][flag]) for flag in ("busy", "done"))
         live = Live(

@@ -44,7 +44,7 @@ class Access:
         refused = model.refuses(name, mask, select, pins["closed"])
         writes = bool(pins["write"]) and not refused
         reads = bool(self.asked) and model.has_entry(select)
-        command = {"write": writes and name == LOW, "read": reads and not pins["rst"], "select": select}
+        command = {"write": writes and name == LOW and not pins["rst"], "read": reads and not pins["rst"], "select": select}
         command |= {"index": model.values[INDEX], "high": model.values[HIGH], "low": ones}
         shown = {INDEX: model.values[INDEX], SIZE: model.sizes[select]}
         out: dict[str, int | None] = {
@@ -81,9 +81,9 @@ async def accesses(dut: Any) -> None:
     }
 
     def legal(access: Access, pins: Pins) -> None:
-        """Write in no reset, and access nothing in the clock after a read of a table."""
+        """Access nothing in the clock after a read of a table."""
         bus.drive(pins)
         pins["read"] &= not access.asked
-        pins["write"] &= not (access.asked or pins["rst"])
+        pins["write"] &= not access.asked
 
     await play(dut, Access(sizes), pins, legal)

@@ -14,7 +14,7 @@ from tb.structures import BOTH, ICARUS, of_parameters
 
 built = of_parameters("Present")
 STRUCTURES = (built(15, on=BOTH, mutants=ICARUS), built(2, on=ICARUS), built(4, on=ICARUS), built(9, on=ICARUS))
-PROTOCOL = {"counts": "live", "write": "write & ~rst"}
+PROTOCOL = {"counts": "live"}
 PROOFS = tuple(Proof("all tables, and a build without some", {"Present": present}) for present in (15, 8))
 
 
@@ -39,7 +39,7 @@ class Banks:
             "read_data": shown.get(NAME_AT.get(pins["read_offset"], ""), 0),
             "table_bank": model.wanted(starts),
             "closed": model.closed(in_use, busy),
-            **{f"{table}_request": table == started for table in CAPTURES},
+            **{f"{table}_request": table == started and not pins["rst"] for table in CAPTURES},
         }
         if pins["write"]:
             model.write(name, ones, in_use, busy)
@@ -64,9 +64,8 @@ async def banks(dut: Any) -> None:
     }
 
     def legal(banks: Banks, pins: Pins) -> None:
-        """Write in no reset. What stands for the bank in use is where it differs from the next one."""
+        """Let what stands for the bank in use be where it differs from the next one."""
         bus.drive(pins)
-        pins["write"] &= not pins["rst"]
         pins["table_in_use"] ^= banks.model.bank
 
     await play(dut, Banks(int(dut.Present.value)), pins, legal)
