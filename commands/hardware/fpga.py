@@ -33,7 +33,6 @@ from commands.common.published import CLOCK_MHZ
 from commands.common.repository import ROOT
 from commands.common.results import save
 from commands.common.signals import threads
-from commands.common.zero_offset import untouched
 from commands.hardware import ecp5, nexus, synthesis, wrapped, yosys
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, one_of
@@ -41,7 +40,6 @@ from tactile_depth.chip.camera.register_lists import CAMERAS, Camera, setup_para
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import STORED
 from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters
-from tactile_depth.depth.make_words import make_words
 from tactile_depth.depth.twin import Twin
 
 BIN = Path(sys.executable).parent
@@ -311,11 +309,10 @@ def longest_path(report: dict[str, Any], name: str = "pipeline") -> list[str]:
 
 def build(request: BoardRun, work: Path) -> dict[str, Any]:
     """Leave the bitstream in a folder and return the report. Raises InputError or RuntimeError."""
-    frames, calibration, config = synthesis.design(request.design)
+    frames, twin = wrapped.design(request.design)
     camera = camera_of(request, frames.camera)
     begun = time.monotonic()
     with progress_bar(total=len(request.seeds) + 2, desc="synthesis", unit="step") as bar:
-        twin = Twin(calibration, config, untouched(request.design, frames))
         counts = synthesize(request, twin, camera, work)
         bar.update()
         bar.set_description("place and route")
@@ -337,10 +334,10 @@ def build(request: BoardRun, work: Path) -> dict[str, Any]:
         report = {
             "target": request.target,
             "device": request.board.device,
-            **run_request.described(config),
+            **run_request.described(twin.config),
             **run_request.described_camera(camera),
             "sensor": request.sensor.name if request.sensor else None,
-            "calibration": calibration.name,
+            "calibration": twin.sensor.name,
             "clock_mhz": request.clock_mhz,
             "fmax_mhz": round(statistics.median(reached.values()), 2),
             "fmax_mhz_by_seed": {str(seed): round(value, 2) for seed, value in reached.items()},
@@ -424,7 +421,8 @@ def main(request: Annotated[BoardRun, variables.Several(VARIABLES, request_of)])
     """Run the flow and return the exit status."""
     check(request.board)
     design = request.design
-    frames, calibration, config = synthesis.design(design)  # refuses bad input before anything is made
+    frames, twin = wrapped.design(design)  # refuses bad input before anything is made
+    config = twin.config
     camera_of(request, frames.camera)
     colours = run_request.model_of(config) + (f"-g{config.gain.width}" if config.flat_field else "")
     colours += "-light" if config.light_gains else ""
@@ -436,8 +434,7 @@ def main(request: Annotated[BoardRun, variables.Several(VARIABLES, request_of)])
     out = design.out or ROOT / "build" / flow / f"{name}-{run_request.words_of(config)}"
     written = f"{flow}.json"
     with synthesis.workspace(out, [written]) as work:
-        run_request.announce(design, config)
-        print(f"in words: {make_words(config, calibration.pixel_pitch_mm, wrapped.sources(design))}", flush=True)
+        wrapped.announce(design, twin)
         report = {**build(request, work), "command": " ".join(["make", *sys.argv])}
         save(work / written, report)
         earlier = [path.name for path in out.glob("*.bit")]

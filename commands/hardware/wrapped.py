@@ -40,26 +40,36 @@ class Written:
     fields: Mapping[str, int]
 
 
+def design(request: run_request.Request) -> tuple[Frames, Twin]:
+    """Return the frames of a request, and sensor, configuration and zero offset of its hardware. Raises InputError."""
+    frames, sensor, config = synthesis.design(request)
+    return frames, Twin(sensor, config, untouched(request, frames))
+
+
+def announce(request: run_request.Request, twin: Twin) -> None:
+    """Print the preset, and all words with which any command writes the same hardware."""
+    run_request.announce(request, twin.config)
+    print(f"make words: {make_words(twin.config, twin.sensor.pixel_pitch_mm, sources(request))}", flush=True)
+
+
 def write(
     request: run_request.Request, folder: Path, name: str, tables: str = "./", with_shell: bool = False
 ) -> Written:
     """Write the module <top>_<name>, its tables, `PARAMETERS` and its C header into a folder.
 
-    It prints the preset, and all words with which any command writes the same hardware. Raises InputError.
+    It prints what `announce` does. Raises InputError.
 
     Parameters
     ----------
     tables : folder of the tables for simulator and synthesis, with a / at its end
     """
-    frames, calibration, config = synthesis.design(request)
-    twin = Twin(calibration, config, untouched(request, frames))
+    frames, twin = design(request)
     thresholds = _thresholds(twin, frames)
-    fields = write_files(folder, calibration, config, twin.zero, None, thresholds, frames.camera)
+    fields = write_files(folder, twin.sensor, twin.config, twin.zero, None, thresholds, frames.camera)
     modules = [wrapper.write(folder, name, fields, tables)]
     if with_shell:
         modules.append(wrapper.write_shell(folder, name, fields, tables))
-    run_request.announce(request, config)
-    print(f"in words: {make_words(config, calibration.pixel_pitch_mm, sources(request))}", flush=True)
+    announce(request, twin)
     return Written(tuple(modules), fields)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The same words build the same hardware: `make wrap`, the generator of FuseSoC, `Pipeline.hardware`."""
+"""The same words build the same hardware: `make wrap`, the generator of FuseSoC, `Pipeline.hardware`, `make fpga`."""
 
 import json
 import shlex
@@ -12,7 +12,7 @@ import yaml
 from PIL import Image
 
 from commands.common import wrapper
-from commands.hardware import fusesoc
+from commands.hardware import ecp5, fpga, fusesoc, wrapped, yosys
 from tactile_depth.base.files import RECORD
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.sensor.built_in import load
@@ -82,17 +82,17 @@ def test_the_same_words_write_the_same_files(
     words = words_of(text, picture)
     ended = run_command("wrap", "NAME=mine", f"OUT={tmp_path / 'wrap'}", *map("=".join, words.items()))
     assert ended.status == 0
-    wrapped = files_of(tmp_path / "wrap")
-    assert {"parameters.json", "tactile_depth_tables.h"} < wrapped.keys()
-    assert of_fusesoc(words, tmp_path / "fusesoc") == wrapped
+    of_wrap = files_of(tmp_path / "wrap")
+    assert {"parameters.json", "tactile_depth_tables.h"} < of_wrap.keys()
+    assert of_fusesoc(words, tmp_path / "fusesoc") == of_wrap
     from_fusesoc = capsys.readouterr().out.splitlines()[-1]
     assert from_fusesoc == ended.output.splitlines()[1]  # the line of all words
-    fields = json.loads(wrapped["parameters.json"])["fields"]
+    fields = json.loads(of_wrap["parameters.json"])["fields"]
     modules = {(tmp_path / door / "tactile_depth_mine.sv").read_text() for door in ("wrap", "fusesoc")}
     assert modules == {wrapper.wrapper("mine", fields, folder) for folder in ("./", "mine/")}
     if "REFERENCE" in words or words.get("PRESET") == "published":
         pipeline_of(words).hardware(tmp_path / "hardware")
-        assert files_of(tmp_path / "hardware") == wrapped
+        assert files_of(tmp_path / "hardware") == of_wrap
         assert capsys.readouterr().out.rpartition(": ")[2] == from_fusesoc.rpartition(": ")[2] + "\n"
 
 
@@ -137,3 +137,20 @@ def test_with_a_camera_both_commands_write_the_same(run_command: Callable[..., A
     assert of_fusesoc(words, tmp_path / "fusesoc") == files_of(tmp_path / "wrap")
     core = yaml.safe_load((tmp_path / "fusesoc" / "tables.core").read_text().removeprefix("CAPI=2:"))
     assert core["filesets"]["module"]["files"] == ["tactile_sensor_mine.sv"]
+
+
+def test_a_bitstream_has_the_tables_of_wrap(
+    run_command: Callable[..., Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, picture: Path
+) -> None:
+    words = words_of("N=16 REFERENCE", picture)
+    assert run_command("wrap", "NAME=mine", f"OUT={tmp_path / 'wrap'}", *map("=".join, words.items())).status == 0
+    board = fpga.request_of({"TARGET": "ulx3s", **words})
+    frames, twin = wrapped.design(board.design)
+    monkeypatch.setattr(yosys, "design", lambda *_: {"modules": {board.top: {}}})
+    monkeypatch.setattr(ecp5, "pack", lambda _: 0)
+    monkeypatch.setattr(ecp5, "copy_enables", lambda _: None)
+    fpga.synthesize(board, twin, frames.camera, tmp_path / "fpga")
+    module = (tmp_path / "wrap" / "tactile_depth_mine.sv").read_text()
+    assert (tmp_path / "fpga" / "wrapper" / "tactile_depth_ulx3s.sv").read_text() == module.replace("_mine", "_ulx3s")
+    tables = {name: text for name, text in files_of(tmp_path / "wrap").items() if name.endswith(".hex")}
+    assert {path.name: path.read_bytes() for path in (tmp_path / "fpga").glob("*.hex")} == tables

@@ -416,7 +416,7 @@ class Pipeline:
         thresholds = thresholds_of(self._recorder.settings)
         index = write_hardware(Path(folder), self.sensor, self.config, self._zero, self._gains, thresholds)
         if not quiet:
-            print(f"in words: {make_words(self.config, self.pixel_pitch_mm, self._sources.words())}")
+            print(f"make words: {make_words(self.config, self.pixel_pitch_mm, self._sources.words())}")
         return index
 
     def _use_reference(self, frames: np.ndarray | None) -> None:
