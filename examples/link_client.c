@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Loads a calibration into a device on a serial line, sends a picture, and writes its heights in mm.
+/* Loads a calibration into a device on a serial line, sends a picture until the light gains have settled on it, writes
+   its heights in mm, and says what is uncertain.
 
      gcc -std=c99 -Wall -Werror -Ihardware examples/link_client.c -o link_client
      ./link_client /dev/ttyUSB0 picture.rgb heights.f32
@@ -20,6 +21,13 @@
 #endif
 
 enum { TRIES = 5 };
+enum { GAIN_OF_1 = 0x8000, LEAST_GAIN = 0x4000, LARGEST_GAIN = 0xFFFF }; /* of the light */
+enum { STILL = 4, MOST_PICTURES = 20 };  /* gains that move by less than 2^-13 have settled */
+
+/* What registers say: before a picture its light gains, behind it those that it moved them to. */
+struct seen {
+  uint32_t gains[3], saturations, dark, status;
+};
 
 static void open_line(struct link *l, const char *port)
 {
@@ -94,7 +102,58 @@ static void load(struct link *l, const uint8_t *picture)
     l->failure = results[result];
   link_write(l, TACTILE_DEPTH_THRESHOLD_ADDRESS, TACTILE_DEPTH_THRESHOLD);
   link_write(l, TACTILE_DEPTH_AREA_THRESHOLD_ADDRESS, TACTILE_DEPTH_AREA_THRESHOLD);
+  link_write(l, TACTILE_DEPTH_DARK_LEVEL_ADDRESS, 0);
   link_flush(l);
+}
+
+static struct seen look(struct link *l)
+{
+  struct seen s;
+  uint32_t colour;
+
+  for (colour = 0; colour < 3; colour++)
+    s.gains[colour] = link_read(l, TACTILE_DEPTH_LIGHT_GAIN_RED_ADDRESS + 4 * colour);
+  s.saturations = link_read(l, TACTILE_DEPTH_SATURATIONS_ADDRESS);
+  s.dark = link_read(l, TACTILE_DEPTH_DARK_PIXELS_ADDRESS);
+  s.status = link_read(l, TACTILE_DEPTH_STATUS_ADDRESS);
+  return s;
+}
+
+/* Send a picture until its light gains, which begin at 1, have settled; say what is uncertain of the last depth. */
+static void settle(struct link *l, const uint8_t *picture)
+{
+  struct seen before, after;
+  uint32_t pictures = 0, colour, moved, is_limited, faults;
+
+  for (colour = 0; colour < 3; colour++)
+    link_write(l, TACTILE_DEPTH_LIGHT_GAIN_RED_ADDRESS + 4 * colour, GAIN_OF_1);
+  link_write(l, TACTILE_DEPTH_LIGHT_ADDRESS, TACTILE_DEPTH_LIGHT_FOLLOW); /* with a rate of 0, at once */
+  after = look(l);
+  do {
+    before = after;
+    link_write(l, TACTILE_DEPTH_STATUS_ADDRESS, before.status); /* what is 1 is cleared */
+    link_flush(l);
+    send_picture(l, picture);
+    after = look(l);
+    for (colour = moved = is_limited = 0; colour < 3; colour++) {
+      uint32_t one = before.gains[colour], next = after.gains[colour];
+
+      moved |= (one < next ? next - one : one - next) > STILL;
+      is_limited |= one && (one <= LEAST_GAIN || one >= LARGEST_GAIN); /* 0: a build without light gains */
+    }
+  } while (++pictures < MOST_PICTURES && moved && !l->failure);
+  if (l->failure)
+    return;
+  fprintf(stderr, "picture sent %u times", pictures);
+  if (before.gains[0])
+    fprintf(stderr, ", light gains %.4f %.4f %.4f", before.gains[0] / (double)GAIN_OF_1,
+            before.gains[1] / (double)GAIN_OF_1, before.gains[2] / (double)GAIN_OF_1);
+  fprintf(stderr, "\n");
+  faults = after.status & (TACTILE_DEPTH_STATUS_OUT_OF_STEP | TACTILE_DEPTH_STATUS_DEPTH_DROPPED);
+  if (moved || is_limited || faults || after.saturations != before.saturations || after.dark != before.dark)
+    fprintf(stderr, "heights are uncertain:%s%s%s %u values clipped, %u dark pixels\n",
+            moved ? " the light gains have not settled," : "", is_limited ? " the light is beyond the light gains," : "",
+            faults ? " STATUS has faults," : "", after.saturations - before.saturations, after.dark - before.dark);
 }
 
 /* Convert depth codes to heights in mm above the untouched surface: the mean depth that is not above the threshold. */
@@ -133,7 +192,7 @@ int main(int count, char **words)
   open_line(&l, words[1]);
   begin(&l);
   load(&l, picture);
-  send_picture(&l, picture);
+  settle(&l, picture);
   if (l.failure) {
     fprintf(stderr, "%s: %s\n", words[1], l.failure);
     return 1;
