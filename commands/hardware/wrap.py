@@ -33,12 +33,21 @@ def main(
     if not tables.endswith("/") or '"' in tables:
         raise InputError(f"TABLES={tables}: accepted is the folder of the table files, with a / at its end")
     out = request.out or repository.ROOT / "build" / "wrap" / name
-    with files.new_files(out, PARAMETERS) as work:
+    with files.workspace(out, (PARAMETERS,)) as work:
         written = wrapped.write(request, work, name, tables, with_shell=bool(shell))
         component = described(written, work, out, tables)
         count = len(list(work.glob("*.hex")))
+        fresh = {path.name for path in work.iterdir()}
+        files.replace(work, sorted(fresh), out, earlier(out, name) - fresh)
     names = ", ".join(os.path.relpath(out / path.name) for path in written.modules)
     print(f"wrote {names}, {count} table files, {c_header.FILE} and {component.name} (IP-XACT) beside it")
+
+
+def earlier(out: Path, name: str) -> set[str]:
+    """Return the names of files that an earlier run for NAME may have left in a folder."""
+    tops = ("tactile_depth", "tactile_sensor")
+    own = {f"{top}_{name}{end}" for top in tops for end in (".sv", ".xml", "_shell.v", "_shell.xml")}
+    return own | files.listed(out / PARAMETERS, "tables")
 
 
 def described(written: wrapped.Written, work: Path, out: Path, tables: str) -> Path:

@@ -44,7 +44,11 @@ class Access:
         refused = model.refuses(name, mask, select, pins["closed"])
         writes = bool(pins["write"]) and not refused
         reads = bool(self.asked) and model.has_entry(select)
-        command = {"write": writes and name == LOW and not pins["rst"], "read": reads and not pins["rst"], "select": select}
+        command = {
+            "write": writes and name == LOW and not pins["rst"],
+            "read": reads and not pins["rst"],
+            "select": select,
+        }
         command |= {"index": model.values[INDEX], "high": model.values[HIGH], "low": ones}
         shown = {INDEX: model.values[INDEX], SIZE: model.sizes[select]}
         out: dict[str, int | None] = {

@@ -124,6 +124,16 @@ def test_with_a_camera_the_module_is_a_tactile_sensor(
     simulation.build("icarus", "tactile_sensor_finger", files, {}, build, log=build / "build.log")
 
 
+def test_what_an_earlier_run_for_the_name_has_left_goes(run_command: Callable[..., Any], tmp_path: Path) -> None:
+    common = ("NAME=finger", f"OUT={tmp_path}", "PRESET=published", "N=16")
+    assert run_command("wrap", *common, "SHELL=verilog").status == 0
+    (tmp_path / "notes.xml").write_text("mine")
+    assert run_command("wrap", *common, "SOLVER=tridiagonal", "CAMERA=raw8", "CALIBRATION=synthetic").status == 0
+    left = {path.name for path in tmp_path.iterdir() if path.suffix in (".v", ".sv", ".xml")}
+    assert left == {"tactile_sensor_finger.sv", "tactile_sensor_finger.xml", "notes.xml"}
+    assert not (tmp_path / "reciprocal.hex").exists()
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
