@@ -199,6 +199,16 @@ module tactile_depth
     PitchNm_must_not_be_negative u_refused ();
   end
 
+`ifndef SYNTHESIS
+  // synthesis translate_off
+  initial begin : g_tables
+    string fault;
+    fault = td_tables_pkg::fault(TableFolder, value(Config, TablesCrcField));
+    if (fault != "") $fatal(1, "%0s", fault);
+  end
+  // synthesis translate_on
+`endif
+
 endmodule
 
 `default_nettype wire

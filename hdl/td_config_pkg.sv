@@ -23,7 +23,7 @@ package td_config_pkg;
   localparam int ZeroLog2 = 8;  // base-2 logarithm of the most frames in a capture of the zero offset
 
   // A configuration is one vector: 32 bits for each number, by its field.
-  localparam int ConfigBits = 1952;
+  localparam int ConfigBits = 1984;
   localparam int ColumnsField = 0;
   localparam int RowsField = 1;
   localparam int LanesField = 2;
@@ -85,9 +85,11 @@ package td_config_pkg;
   localparam int CameraRedGainField = 58;
   localparam int CameraGreenGainField = 59;
   localparam int CameraBlueGainField = 60;
+  localparam int TablesCrcField = 61;
 
   // The default configuration; options that it leaves out have the numbers of a configuration with the option.
   localparam logic [ConfigBits-1:0] DefaultConfig = {
+    32'd0,  // TablesCrc
     32'd4096,  // CameraBlueGain
     32'd4096,  // CameraGreenGain
     32'd4096,  // CameraRedGain

@@ -48,7 +48,7 @@ class Structure:
     on: Simulators = ()
     mutants: Simulators = ()
     device: Mapping[str, Any] = field(default_factory=dict)
-    roms: Callable[[Path], None] | None = None
+    roms: Callable[[Path], object] | None = None
     name: str = ""
 
     @property

@@ -30,11 +30,11 @@ def small(ball: Any) -> Any:
 def test_hardware_writes_what_the_pipeline_computes_with(tmp_path: Path, small: Any) -> None:
     index = small.hardware(tmp_path / "hw")
     described = json.loads(index.read_text())
-    assert described["fields"] == top_parameters(small.config, small.pixel_pitch_mm)
-    assert described["parameters"] == hdl_parameters(small.config, small.pixel_pitch_mm)
     assert described["depth_lsb_mm"] == small.depth_lsb_mm
     (tmp_path / "again").mkdir()
-    write_tables(tmp_path / "again", small.sensor, small.config, small._zero, small._gains)
+    crc = write_tables(tmp_path / "again", small.sensor, small.config, small._zero, small._gains)
+    assert described["fields"] == top_parameters(small.config, small.pixel_pitch_mm, tables_crc=crc)
+    assert described["parameters"] == hdl_parameters(small.config, small.pixel_pitch_mm, tables_crc=crc)
     tables = {path.name: path.read_text() for path in (tmp_path / "again").iterdir()}
     assert described["tables"] == sorted(tables)
     tables[described["c_header"]] = c_header(

@@ -12,6 +12,7 @@ import sys
 import tarfile
 import textwrap
 import zipfile
+import zlib
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -28,6 +29,7 @@ from tactile_depth.base.files import RECORD
 from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.registers.axil_registers import GAINS
 from tactile_depth.chip.resampling import resampling
+from tactile_depth.chip.rom_files import CRCS
 from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters
 from tactile_depth.pictures.frames import read_picture
 from tests import real_data
@@ -344,7 +346,8 @@ def test_the_rtl_has_the_codes_of_the_wheel(
     )
     np.testing.assert_array_equal(played.codes.reshape(rows, columns)[::-1], codes)  # the bottom row leaves first
     described = json.loads((tmp_path / "hardware" / "parameters.json").read_text())
-    assert described["fields"] == top_parameters(pipeline.config, pipeline.pixel_pitch_mm)
-    assert described["parameters"] == hdl_parameters(pipeline.config, pipeline.pixel_pitch_mm)
+    crc = zlib.crc32((tmp_path / "hardware" / CRCS).read_bytes())
+    assert described["fields"] == top_parameters(pipeline.config, pipeline.pixel_pitch_mm, tables_crc=crc)
+    assert described["parameters"] == hdl_parameters(pipeline.config, pipeline.pixel_pitch_mm, tables_crc=crc)
     for name in described["tables"]:
         assert (tmp_path / "hardware" / name).read_text() == (work / name).read_text()

@@ -39,7 +39,7 @@ from tactile_depth.base.errors import Argument, InputError, one_of
 from tactile_depth.chip.camera.register_lists import CAMERAS, Camera, setup_parameters, write_list
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import STORED
-from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters
+from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters, write_roms
 from tactile_depth.depth.twin import Twin
 
 BIN = Path(sys.executable).parent
@@ -229,7 +229,8 @@ def synthesize(request: BoardRun, twin: Twin, camera: CameraConfiguration | None
     parameters: dict[str, int | str] = {**hdl_parameters(config)}
     steps = nexus.steps(config)
     if request.board.camera_top:
-        inside = top_parameters(config, calibration.pixel_pitch_mm, camera)
+        crc = write_roms(folder, calibration, config, twin.zero)
+        inside = top_parameters(config, calibration.pixel_pitch_mm, camera, crc)
         parameters = {**wrapper.linked(inside), "ClockMhz": int(request.clock_mhz)}
         if request.sensor is not None:
             parameters |= {**setup_parameters(request.sensor), "FifoLog2": FIFO_LOG2}

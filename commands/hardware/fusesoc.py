@@ -18,6 +18,7 @@ try:
     from commands.common import run_request, variables
     from commands.hardware import wrapped
     from tactile_depth.base.errors import InputError
+    from tactile_depth.chip.rom_files import table_files
 except ImportError as error:
     sys.exit(f"tables of tactile_depth: {error} ({sys.executable}): run `make setup`, put {ROOT}/.venv/bin on PATH")
 
@@ -34,7 +35,7 @@ def generate(description: Path, folder: Path) -> None:
     words = [f"{key}={value}" for key, value in values.items()]
     request = run_request.parse(words, wrapped.CHOICES, wrapped.PRESET, frames="")
     (path,) = wrapped.write(request, folder, module, f"{module}/").modules
-    tables = [rom.name for rom in sorted(folder.glob("*.hex"))]
+    tables = table_files(folder)
     core = {
         "name": wanted["vlnv"],
         "filesets": {

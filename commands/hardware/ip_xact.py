@@ -19,7 +19,7 @@ SCHEMA = "http://www.w3.org/2001/XMLSchema-instance"
 # Bus and abstraction in the library AMBA4 of amba.com, by the end of an interface's name.
 STREAM, LITE = ("AXI4Stream", "r0p0_1"), ("AXI4-Lite", "r0p0_0")
 BUSES = {"axis": STREAM, "event": STREAM, "axil": LITE}
-KINDS = {".sv": "systemVerilogSource", ".v": "verilogSource", ".h": "cSource", ".hex": "user"}
+KINDS = {".sv": "systemVerilogSource", ".v": "verilogSource", ".h": "cSource", ".hex": "user", ".crc": "user"}
 REGISTERS = "registers"  # name of the memory map
 VIEW = "rtl"
 SOFTWARE = "software"  # set of files that no tool of hardware reads

@@ -21,6 +21,7 @@ from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip import c_header
 from tactile_depth.chip.hardware_files import PARAMETERS
+from tactile_depth.chip.rom_files import table_files
 
 
 def main(
@@ -36,7 +37,7 @@ def main(
     with files.workspace(out, (PARAMETERS,)) as work:
         written = wrapped.write(request, work, name, tables, with_shell=bool(shell))
         component = described(written, work, out, tables)
-        count = len(list(work.glob("*.hex")))
+        count = len(table_files(work))
         fresh = {path.name for path in work.iterdir()}
         files.replace(work, sorted(fresh), out, earlier(out, name) - fresh)
     names = ", ".join(os.path.relpath(out / path.name) for path in written.modules)
@@ -63,7 +64,7 @@ def described(written: wrapped.Written, work: Path, out: Path, tables: str) -> P
                 *repository.sources(wrapper.top_of(written.fields)),
                 *(out / path.name for path in written.modules),
             ],
-            "tables": [out / path.name for path in sorted(work.glob("*.hex"))],
+            "tables": [out / name for name in table_files(work)],
             ip_xact.SOFTWARE: [out / c_header.FILE],
         },
         tables=tables,

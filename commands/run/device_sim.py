@@ -66,6 +66,7 @@ def main() -> None:
     folder, *options = sys.argv[1:]
     try:
         fields = json.loads((Path(folder) / PARAMETERS).read_text())["fields"]
+        fields["TablesCrc"] = 0  # one executable for all tables
         built = build(fields, "--pins" in options)
     except (InputError, RuntimeError) as error:
         sys.exit(f"device_sim: {error}")

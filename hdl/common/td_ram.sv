@@ -66,6 +66,17 @@ module td_ram #(
   ram_check #(.Depth(Depth), .Defined(0)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
 `endif
 
+`ifndef SYNTHESIS
+  // synthesis translate_off
+  initial begin : g_there
+    string missing;
+    missing = "";
+    if (File != "") missing = td_tables_pkg::missing(File);
+    if (missing != "") $fatal(1, "%0s", missing);
+  end
+  // synthesis translate_on
+`endif
+
 endmodule
 
 `default_nettype wire

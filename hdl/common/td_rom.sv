@@ -33,6 +33,16 @@ module td_rom #(
     Depth_must_be_at_least_2 u_refused ();
   end
 
+`ifndef SYNTHESIS
+  // synthesis translate_off
+  initial begin : g_there
+    string missing;
+    missing = td_tables_pkg::missing(File);
+    if (missing != "") $fatal(1, "%0s", missing);
+  end
+  // synthesis translate_on
+`endif
+
 endmodule
 
 `default_nettype wire

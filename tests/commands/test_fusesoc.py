@@ -16,6 +16,7 @@ from cocotb_tools.config import pygpi_entry_point
 from find_libpython import find_libpython
 
 from commands.common import repository, simulator
+from tactile_depth.chip.rom_files import table_files
 from tb.settings import RunSettings
 
 CORE = repository.ROOT / "tactile_depth.core"
@@ -77,7 +78,7 @@ def test_the_generator_writes_a_module_and_its_tables(tmp_path: Path) -> None:
     made = yaml.safe_load((tmp_path / "tables.core").read_text().removeprefix("CAPI=2:"))
     assert made["filesets"]["module"]["files"] == ["tactile_depth_finger.sv"]
     files = {name: place["copyto"] for file in made["filesets"]["tables"]["files"] for name, place in file.items()}
-    assert files.keys() == {path.name for path in tmp_path.glob("*.hex")}
+    assert files.keys() == {*table_files(tmp_path)}
     assert files["gradient.hex"] == "finger/gradient.hex"
     module = (tmp_path / "tactile_depth_finger.sv").read_text()
     assert 'TableFolder = "finger/"' in module

@@ -82,7 +82,7 @@ def test_the_component_names_every_file(wrapped: Wrapped) -> None:
     files = files_of(wrapped)
     assert [path for path in files if not path.is_file()] == []
     written = {path.resolve() for path in files if path.parent == wrapped.folder}
-    kinds = ("*.sv", "*.v", "*.hex", "*.h")
+    kinds = ("*.sv", "*.v", "*.hex", "*.crc", "*.h")
     assert written == {path.resolve() for kind in kinds for path in wrapped.folder.glob(kind)}
 
 

@@ -14,6 +14,7 @@ from PIL import Image
 from commands.common import wrapper
 from commands.hardware import ecp5, fpga, fusesoc, wrapped, yosys
 from tactile_depth.base.files import RECORD
+from tactile_depth.chip.rom_files import table_files
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.presets import PRESETS
@@ -30,7 +31,7 @@ WORDS = (
     "CALIBRATION=synthetic N=16 REFERENCE",
 )
 SIZES = ((240, 320), (480, 642))  # of the calibrated camera, and a larger one of nearly the same aspect ratio
-WRITTEN = ("*.hex", "*.json", "*.h")
+WRITTEN = ("*.hex", "*.crc", "*.json", "*.h")
 
 
 @pytest.fixture(scope="module", params=SIZES, ids=lambda size: f"{size[1]}x{size[0]}")
@@ -152,5 +153,5 @@ def test_a_bitstream_has_the_tables_of_wrap(
     fpga.synthesize(board, twin, frames.camera, tmp_path / "fpga")
     module = (tmp_path / "wrap" / "tactile_depth_mine.sv").read_text()
     assert (tmp_path / "fpga" / "wrapper" / "tactile_depth_ulx3s.sv").read_text() == module.replace("_mine", "_ulx3s")
-    tables = {name: text for name, text in files_of(tmp_path / "wrap").items() if name.endswith(".hex")}
-    assert {path.name: path.read_bytes() for path in (tmp_path / "fpga").glob("*.hex")} == tables
+    tables = {name: (tmp_path / "wrap" / name).read_bytes() for name in table_files(tmp_path / "wrap")}
+    assert {name: (tmp_path / "fpga" / name).read_bytes() for name in table_files(tmp_path / "fpga")} == tables

@@ -14,6 +14,7 @@ from tactile_depth.chip import c_header
 from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.rom_files import table_files
 from tactile_depth.chip.tactile_depth import config_value, top_parameters, write_roms
 
 PARAMETERS = "parameters.json"
@@ -56,8 +57,8 @@ def write_files(
     thresholds : mapping
         Depth code of each register of a threshold, by the name of the register.
     """
-    write_roms(folder, sensor, config, zero, gains)
-    fields = top_parameters(config, sensor.pixel_pitch_mm, camera)
+    crc = write_roms(folder, sensor, config, zero, gains)
+    fields = top_parameters(config, sensor.pixel_pitch_mm, camera, crc)
     description = {
         "parameters": {"Config": config_value(fields)},
         "fields": fields,
@@ -69,7 +70,7 @@ def write_files(
         "gradient_lsb": config.gradient_lsb,
         "calibration": sensor.name,
         "gradient_model": config.gradient_model,
-        "tables": sorted(path.name for path in folder.glob("*.hex")),
+        "tables": table_files(folder),
         "c_header": c_header.FILE,
     }
     (folder / PARAMETERS).write_text(json.dumps(description, indent=1) + "\n")

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the $readmemh files of a configuration: one line per word, with fixed names in one folder."""
+"""Writes the $readmemh files of a configuration: one line per word, with fixed names in one folder,
+and CRCS, by which a simulation checks them.
+"""
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -18,6 +21,21 @@ from tactile_depth.chip.poisson.transform.wide_fft import wide_factors
 from tactile_depth.chip.poisson.wide_solver import tables
 from tactile_depth.chip.poisson.wide_stack import down_positions
 
+CRCS = "tables.crc"
+
+
+def table_files(folder: Path) -> list[str]:
+    """Return the names of the files in a folder that a simulation reads."""
+    return sorted(path.name for path in folder.iterdir() if path.suffix == ".hex" or path.name == CRCS)
+
+
+def write_crcs(folder: Path) -> int:
+    """Write the CRC-32 of each table in a folder, as hdl/td_tables_pkg.sv reads them, and return that of the list."""
+    tables = sorted(folder.glob("*.hex"))
+    listed = "".join(f"{zlib.crc32(path.read_bytes()):08x} {path.name}\n" for path in tables).encode()
+    (folder / CRCS).write_bytes(listed)
+    return zlib.crc32(listed)
+
 
 def write_words(path: Path, words: Iterable[int], width: int) -> None:
     """Write non-negative words of `width` bits.
@@ -31,7 +49,7 @@ def write_words(path: Path, words: Iterable[int], width: int) -> None:
     if words and not 0 <= min(words) <= max(words) < 1 << width:
         raise ValueError(f"{path.name}: words from {min(words)} to {max(words)} do not fit {width} unsigned bits")
     digits = (width + 3) // 4
-    path.write_text("".join(f"{word:0{digits}x}\n" for word in words))
+    path.write_text("".join(f"{word:0{digits}x}\n" for word in words), newline="\n")
 
 
 def pack(fields: Iterable[np.ndarray], width: int) -> list[int]:

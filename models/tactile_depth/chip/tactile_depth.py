@@ -12,6 +12,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError
 from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.camera.camera_unit import DEFAULT, camera_fields
@@ -57,7 +58,14 @@ from tactile_depth.chip.poisson import spectral_solver, tridiagonal_solver, wide
 from tactile_depth.chip.poisson.cores import NUMPY, Cores
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.device_description import description_parameters
-from tactile_depth.chip.rom_files import write_gains, write_gradient, write_polynomials, write_solver, write_zero
+from tactile_depth.chip.rom_files import (
+    write_crcs,
+    write_gains,
+    write_gradient,
+    write_polynomials,
+    write_solver,
+    write_zero,
+)
 
 CONSTANTS = {
     "GuardBits": (GUARD_BITS, "bits of the arithmetic below a stored word"),
@@ -218,14 +226,19 @@ def solve(f: np.ndarray, config: Configuration, monitor: Monitor | None = None, 
 
 
 def top_parameters(
-    config: Configuration, pixel_pitch_mm: float = 0.0, camera: CameraConfiguration | None = None
+    config: Configuration,
+    pixel_pitch_mm: float = 0.0,
+    camera: CameraConfiguration | None = None,
+    tables_crc: int = 0,
 ) -> dict[str, int]:
     """Return the number of each field of Config, the parameter of hdl/tactile_depth.sv and hdl/tactile_sensor.sv.
 
     The fields of an option that the configuration leaves out have the numbers of a configuration with the option. The
-    device tells its host the pitch of the grid, 0: unknown.
+    device tells its host the pitch of the grid, 0: unknown. A simulation takes the tables of `tables_crc`, which
+    `write_roms` returns, and no others; with 0 those of any configuration that is written whole.
     """
-    return default_parameters() | _own_parameters(config, pixel_pitch_mm) | camera_fields(camera)
+    own = _own_parameters(config, pixel_pitch_mm) | camera_fields(camera)
+    return default_parameters() | own | {"TablesCrc": tables_crc}
 
 
 @cache
@@ -237,7 +250,7 @@ def default_parameters() -> MappingProxyType[str, int]:
     merged: dict[str, int] = {}
     for config in (*options, Configuration()):
         merged |= _own_parameters(config)
-    return MappingProxyType(merged | camera_fields(DEFAULT) | camera_fields(None))
+    return MappingProxyType(merged | camera_fields(DEFAULT) | camera_fields(None) | {"TablesCrc": 0})
 
 
 def config_value(fields: Mapping[str, int]) -> str:
@@ -250,10 +263,13 @@ def config_value(fields: Mapping[str, int]) -> str:
 
 
 def hdl_parameters(
-    config: Configuration, pixel_pitch_mm: float = 0.0, camera: CameraConfiguration | None = None
+    config: Configuration,
+    pixel_pitch_mm: float = 0.0,
+    camera: CameraConfiguration | None = None,
+    tables_crc: int = 0,
 ) -> dict[str, str]:
     """Return the parameters of hdl/tactile_depth.sv and hdl/tactile_sensor.sv, as the tools take them by name."""
-    return {"Config": config_value(top_parameters(config, pixel_pitch_mm, camera))}
+    return {"Config": config_value(top_parameters(config, pixel_pitch_mm, camera, tables_crc))}
 
 
 def _own_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[str, int]:
@@ -302,8 +318,10 @@ def write_roms(
     config: Configuration,
     zero: np.ndarray | None = None,
     gains: np.ndarray | None = None,
-) -> None:
-    """Write every file that the RTL reads; for `zero` and `gains` see `tactile_depth`.
+) -> int:
+    """Write every file that the RTL reads, and return the CRC-32 of the list that a simulation checks them by.
+
+    For `zero` and `gains` see `tactile_depth`.
 
     Raises
     ------
@@ -315,17 +333,22 @@ def write_roms(
         require_nodes(Argument("gains"), gains, (*config.reference_nodes, 3))
     if zero is not None:
         require_nodes(Argument("zero"), zero, config.reference_nodes)
-    write_solver(folder, config)
-    if config.zero_offset:
-        side = td_node_map.side(config.lanes, config.reference_block_log2)
-        write_zero(folder, no_zero(config) if zero is None else zero, config.depth.width, side)
-    if config.flat_field:
-        write_gains(folder, reference_gains(calibration, config) if gains is None else gains, config.gain.width)
-    if config.polynomials:
-        words = polynomial_words(calibration, config)
-        write_polynomials(folder, words, POLYNOMIAL.width)
-        corrections = correction_entries(calibration, config)
-        if corrections is not None:
-            write_gradient(folder / "gradient.hex", corrections, CORRECTION_WIDTH)
-    else:
-        write_gradient(folder / "gradient.hex", gradient_codes(calibration, config), config.gradient.width)
+    with files.temporary(folder) as own:  # the folder may hold other tables
+        write_solver(own, config)
+        if config.zero_offset:
+            side = td_node_map.side(config.lanes, config.reference_block_log2)
+            write_zero(own, no_zero(config) if zero is None else zero, config.depth.width, side)
+        if config.flat_field:
+            write_gains(own, reference_gains(calibration, config) if gains is None else gains, config.gain.width)
+        if config.polynomials:
+            words = polynomial_words(calibration, config)
+            write_polynomials(own, words, POLYNOMIAL.width)
+            corrections = correction_entries(calibration, config)
+            if corrections is not None:
+                write_gradient(own / "gradient.hex", corrections, CORRECTION_WIDTH)
+        else:
+            write_gradient(own / "gradient.hex", gradient_codes(calibration, config), config.gradient.width)
+        crc = write_crcs(own)
+        for path in own.iterdir():
+            path.replace(folder / path.name)
+    return crc
