@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 import pytest
 
 import tactile_depth as td
+from tactile_depth.chip.gradient.flat_field import reference_gains
 from tactile_depth.chip.link.depth_formats import (
     FORMATS,
     DepthFormatName,
@@ -16,6 +19,8 @@ from tactile_depth.chip.link.depth_formats import (
     to_bytes,
     value_bytes,
 )
+from tactile_depth.chip.table_entries import reference_entries
+from tactile_depth.device import captures
 from tactile_depth.device.status import DeviceStatus
 from tests.real_data import FOLDER, needs_real_data
 
@@ -36,11 +41,15 @@ def small(sample: td.Sample) -> td.Pipeline:
     return td.Pipeline(sample.sensor, sample.reference, grid=GRID, model="quadratic", light_gains=False)
 
 
+def dimmer(sample: td.Sample) -> np.ndarray:
+    return (0.95 * sample.reference.astype(float)).astype(np.uint8)
+
+
 def program(address: str, sample: td.Sample, pictures: list[np.ndarray]) -> list[object]:
     """Return all that a program reads of a device: heights, contacts, registers, status."""
     pipeline = small(sample)
     read: list[object] = []
-    untouched = (0.95 * sample.reference.astype(float)).astype(np.uint8)
+    untouched = dimmer(sample)
     with td.Device(address, pipeline) as device:
         device.load()
         read += [seen(frame) for frame in device.depth(pictures)]
@@ -67,6 +76,21 @@ def test_a_program_reads_the_same_on_bytes_and_at_the_pins() -> None:
     assert status_at_pins._replace(resets=status.resets) == status
     for read, result in zip(on_bytes[: len(pictures)], small(sample).stream(pictures), strict=True):
         assert read == seen(result)
+
+
+def test_the_table_of_a_capture_is_read_back() -> None:
+    sample = td.sample("ball")
+    captured = small(sample)
+    captured.capture_reference(dimmer(sample))
+    gains = reference_gains(captured.sensor, captured.config)
+    with td.Device("sim", small(sample)) as device:
+        device.load()
+        device.capture_reference(dimmer(sample))
+        with device._open_line() as line:
+            words = captures.read_captured(line, "reference", functools.partial(line.send, device._untouched))
+        (frame,) = device.depth(sample.image)
+    np.testing.assert_array_equal(words, reference_entries(gains)[:, 0])
+    np.testing.assert_array_equal(frame.codes, captured(sample.image).codes)
 
 
 @pytest.mark.parametrize("name", FORMATS)

@@ -12,9 +12,12 @@ from typing import Any, get_args
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import tactile_depth as td
+from tactile_depth.chip.gradient.flat_field import captured_gains
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, received
+from tactile_depth.chip.table_entries import reference_entries
 from tactile_depth.chip.tactile_depth import zeroed
 from tactile_depth.depth.twin import Twin
 from tests.device.cable import Cable
@@ -298,6 +301,60 @@ def test_a_capture_of_the_camera_is_not_known(steady: td.Pipeline, sample: td.Sa
             depth(device)
         with pytest.raises(td.DeviceError, match=FIRST):
             device.capture_zero(sample.reference)
+
+
+@pytest.fixture(scope="module")
+def mini() -> tuple[td.Pipeline, np.ndarray]:
+    """Pipeline of a real sensor, and its calibration's own picture without contact on the grid."""
+    sensor = td.load("gelsight-mini")
+    assert sensor.untouched is not None
+    assert sensor.camera is not None
+    own = np.rint(sensor.untouched).clip(0, 255).astype(np.uint8)
+    picture = np.array(
+        Image.fromarray(own).resize((sensor.camera.columns, sensor.camera.rows), Image.Resampling.BICUBIC)
+    )
+    pipeline = td.Pipeline(sensor, picture, grid=(48, 64), model="quadratic", light_gains=False)
+    return pipeline, next(pipeline.reader.pictures(picture, "picture")[0])[1]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda rest: rest, None),
+        (lambda rest: rest[..., ::-1], "red and blue are exchanged"),
+        (lambda rest: rest[..., [1, 0, 2]], "red and green are exchanged"),
+        (lambda rest: rest[:, ::-1], "it is mirrored left to right"),
+        (lambda rest: rest[::-1], "it is mirrored top to bottom"),
+        (lambda rest: rest[::-1, ::-1], "it is rotated by 180 degrees"),
+        (lambda rest: np.repeat(rest[..., 1:2], 3, axis=-1), "it is grey"),
+        (lambda rest: rest // 200, "under 16 grey levels in a colour"),
+    ],
+)
+def test_a_reference_of_the_camera_is_checked(
+    wrong: Callable[[np.ndarray], np.ndarray],
+    message: str | None,
+    mini: tuple[td.Pipeline, np.ndarray],
+    plug: Plug,
+) -> None:
+    """Colours in another order are those of another Bayer phase."""
+    pipeline, rest = mini
+    cable = plug(pipeline, camera=np.ascontiguousarray(wrong(rest))[None], camera_s=0.05)
+    with td.Device(cable.address, pipeline) as device:
+        device.load()
+        if message is None:
+            _, warned = told(lambda: device.capture_reference(frames=1))
+            assert warned == []
+            captured = cable.serving.device._used("reference")[:, 0]
+            gains = captured_gains(rest[None], pipeline.config)
+            np.testing.assert_array_equal(captured, reference_entries(gains)[:, 0])
+            assert next(device.depth()).codes.shape == pipeline.grid
+            return
+        with pytest.raises(td.InputError, match=f"the reference that the device took from its camera: {message}"):
+            device.capture_reference(frames=1)
+        with pytest.raises(td.DeviceError, match=FIRST):
+            next(device.depth())
+        device.load()
+        assert next(device.depth()).codes.shape == pipeline.grid
 
 
 def test_a_dark_level_that_a_program_left(device: td.Device, depth: Depth) -> None:

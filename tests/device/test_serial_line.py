@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import builtins
 import itertools
 import re
@@ -154,7 +155,8 @@ def test_a_line_that_loses_every_depth(
         device.load()
         monkeypatch.setattr(cable.serving, "_damaged", lambda packet: packet if len(packet) < 300 else b"")
         with pytest.raises(
-            td.DeviceError, match="5 pictures in a row gave no depth: 0 broken packets came to this host"
+            td.DeviceError,
+            match=r"5 pictures in a row gave no depth: 0 broken packets .*: call depth\(\) without pictures",
         ):
             list(device.depth([sample.image] * 9))
         monkeypatch.undo()
@@ -217,6 +219,15 @@ def test_frames_that_the_program_does_not_take_are_counted(steady: td.Pipeline, 
 def test_no_such_port(steady: td.Pipeline, tmp_path: Path) -> None:
     with pytest.raises(td.InputError, match=f"address=serial:{tmp_path}/none: there is no such port: "):
         td.Device(f"serial:{tmp_path}/none", steady)
+
+
+def test_a_system_that_does_not_set_the_latency_of_an_adapter(
+    steady: td.Pipeline, plug: Plug, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cable = plug(steady)
+    monkeypatch.setattr(serial_line, "sys", argparse.Namespace(platform="win32"))
+    with pytest.warns(td.InputWarning, match="hold bytes back for 16 ms, .*: set its latency timer to 1 ms"):
+        td.Device(cable.address, steady).close()
 
 
 def test_a_port_in_use(steady: td.Pipeline, plug: Plug) -> None:

@@ -7,15 +7,17 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext, suppress
 
+import numpy as np
+
 from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.registers.axil_registers import GAINS
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.chip.registers.table_banks import CAPTURES
+from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import CAMERA_S, Exchange
 from tactile_depth.device.registers import read_words, write_words
-from tactile_depth.device.tables import wait_in_use
+from tactile_depth.device.tables import select, wait_in_use
 
 ATTEMPTS = 3
 LIGHT = REGISTERS["LIGHT"]
@@ -111,6 +113,26 @@ def capture_of_camera(line: Channel, table: str, count: int, give_picture: Calla
             problem = f"no picture came from the camera of the device in {line.limit_s + CAMERA_S:.1f} s"
             raise DeviceError(problem, remedy="let it send pictures of the grid, or give pictures")
     wait_in_use(line, give_picture)
+
+
+def read_captured(line: Channel, table: str, give_picture: Callable[[], None]) -> np.ndarray:
+    """Return the lower words of a table that was captured, int64 (entries,).
+
+    Software reads the bank that no frame uses: meanwhile the table before the capture is in use.
+    """
+
+    def change_over() -> None:
+        write_words(line, [(COMMIT.name, COMMIT.pack(**{table: 1}))])
+        wait_in_use(line, give_picture)
+
+    change_over()
+    write_words(line, [select(table), ("TABLE_INDEX", 0)])
+    size = read_words(line, ["TABLE_SIZE"])["TABLE_SIZE"]
+    words = line.read([REGISTERS["TABLE_LOW"].offset] * size)
+    change_over()
+    if len(words) < size:
+        raise DeviceError(f"the device refuses to read its table {table}", remedy="call load() first")
+    return np.array(words)
 
 
 def _start(line: Channel, table: str, count: int) -> None:

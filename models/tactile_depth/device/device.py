@@ -11,10 +11,10 @@ import numpy as np
 from tactile_depth.base.errors import Argument, InputError, is_number, one_of, require_flag, warn
 from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
+from tactile_depth.chip.gradient.flat_field import require_light, untouched_of
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.chip.registers.table_banks import CAPTURES
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.depth.result import Recorder, Result, thresholds_of
 from tactile_depth.depth.twin import PICTURES, require_flat_field, require_zero_offset
@@ -27,11 +27,13 @@ from tactile_depth.device.frame import DeviceFrame, seen_as
 from tactile_depth.device.registers import Registers, read_words, write_words
 from tactile_depth.device.status import COUNTERS, DeviceStatus
 from tactile_depth.device.tables import load_tables, require_same, wait_in_use, window_doubt
+from tactile_depth.pictures.doubts import UnusablePicture
 from tactile_depth.pictures.frames import GREY
 from tactile_depth.pictures.pictures import Picture, Pictures
+from tactile_depth.pictures.reference_check import check_reference
 
 LIGHT = REGISTERS["LIGHT"]
-CALIBRATION = "calibration"
+CALIBRATION, OF_CAMERA = "calibration", "the reference that the device took from its camera"
 CAPTURED = 8
 """Pictures of the device's camera that a capture takes the mean of."""
 
@@ -94,7 +96,8 @@ class Device(AbstractContextManager["Device"]):
             "area_mm": pipeline.area_threshold_mm,
         }
         self._settings = pipeline.settings(**self._thresholds_mm)
-        self._unknown: set[str] = set()  # tables of the device whose content this host does not know
+        self._torn: set[str] = set()  # what a load or a capture has begun to write and not ended
+        self._unseen: set[str] = set()  # tables that a capture has taken from the device's camera
         self._is_closed = self._is_window_checked = False
         self._line: Channel | None = self._connect()
         self._twin = pipeline.of_device(self._lanes)  # with what the device holds, by what is known
@@ -123,7 +126,7 @@ class Device(AbstractContextManager["Device"]):
         """
         with self._open_line() as line:
             self._lanes = require_same(line, self.pipeline)
-            self._unknown.add(CALIBRATION)  # until the end
+            self._torn.add(CALIBRATION)
             with Exchange(line) as exchange:
 
                 def untouched() -> None:
@@ -134,13 +137,15 @@ class Device(AbstractContextManager["Device"]):
                 write_words(line, [*self._words.items(), (LIGHT.name, LIGHT.pack(follow=1))])
                 wait_in_use(line, untouched)
         self._twin = self.pipeline.of_device(self._lanes)
-        self._unknown.clear()
+        self._torn.clear()
+        self._unseen.clear()
 
     def capture_reference(self, pictures: Pictures | None = None, *, frames: int = CAPTURED) -> None:
         """Take the mean of pictures without contact as the reference, in the device.
 
         The zero offset does not change: call `capture_zero` next. With pictures the device's reference is then the one
-        that `pipeline.capture_reference` computes of them; the pipeline itself does not change.
+        that `pipeline.capture_reference` computes of them; the pipeline itself does not change. Without
+        pictures the table that the device's camera gave is read back and checked.
 
         Parameters
         ----------
@@ -175,7 +180,7 @@ class Device(AbstractContextManager["Device"]):
         if pictures is None:
             self._capture_of_camera("zero", frames, LARGEST_LOG2)
             return
-        self._require_known("reference")
+        self._require_whole({*self._torn, *self._unseen} - {"zero"})
         twin = self._twin.of_device(self._lanes)
         twin.capture_zero(pictures)
         taken = np.stack([frame for _, frame in twin.reader.pictures(pictures, PICTURES)[0]])
@@ -261,12 +266,12 @@ class Device(AbstractContextManager["Device"]):
             raise InputError(Argument("stream", stream), ": without pictures", remedy="give pictures")
         with self._open_line() as line:
             light = self._require_settings(line)
-            self._require_known(CALIBRATION)
+            self._require_whole(self._torn)
             if pictures is None:
                 self._check_window(line)
                 yield from (self._frame(arrival) for arrival in camera_frames(line))
                 return
-            self._require_known(*CAPTURES)
+            self._require_whole(self._unseen)
             if stream or (stream is None and not sent.are_whole(pictures)):
                 frames = sent.streamed(line, self._twin, pictures, light)
             else:
@@ -337,23 +342,43 @@ class Device(AbstractContextManager["Device"]):
             raise InputError(Argument("frames", count), accepted=[str(number) for number in accepted])
         with self._capturing(table) as line:
             self._check_window(line)
-            captures.capture_of_camera(line, table, count, lambda: line.send(self._untouched))
+
+            def untouched() -> None:
+                line.send(self._untouched)
+
+            captures.capture_of_camera(line, table, count, untouched)
+            if table == "reference":
+                self._check_captured(captures.read_captured(line, table, untouched))
+        self._unseen.add(table)
+
+    def _check_captured(self, entries: np.ndarray) -> None:
+        """Refuse or doubt a reference that the device's camera gave, by the entries of its table."""
+        config, reader = self.pipeline.config, self.pipeline.reader
+        gains = entries.reshape(*config.reference_nodes, -1)[..., :3]
+        require_light(gains, config, OF_CAMERA)
+        try:
+            check_reference(reader.sensor, untouched_of(gains, config)[None], OF_CAMERA)
+        except UnusablePicture as error:
+            problem = str(error).removesuffix(f": {error.remedy}")
+            raise InputError(
+                problem, remedy="build the device for its camera (BAYER), and mount that as calibrated"
+            ) from error
 
     @contextmanager
     def _capturing(self, table: str, twin: Pipeline | None = None) -> Iterator[Channel]:
-        """Give the line for the capture of a table, which is then known as that of `twin`."""
+        """Give the line for the capture of a table, which is then that of `twin`."""
         with self._open_line() as line:
-            self._unknown.add(table)
+            self._torn.add(table)
             yield line
+        self._torn.discard(table)
         if twin is not None:
             self._twin = twin
-            self._unknown.discard(table)
+            self._unseen.discard(table)
 
-    def _require_known(self, *tables: str) -> None:
-        """Raise DeviceError if this host does not know one of these tables of the device."""
-        unknown = sorted(self._unknown.intersection(tables))
-        if unknown:
-            problem = f"the {unknown[0]} of the device is not known to this program"
+    def _require_whole(self, tables: Iterable[str]) -> None:
+        """Raise DeviceError if there are tables whose content this host does not know."""
+        for table in sorted(tables):
+            problem = f"the {table} of the device is not known to this program"
             raise DeviceError(problem, remedy="call load() first, or capture from pictures")
 
     def _require_settings(self, line: Channel) -> int:

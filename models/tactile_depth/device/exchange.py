@@ -66,7 +66,9 @@ class Exchange(AbstractContextManager["Exchange"]):
                         f"{line.bad_packets} broken packets came to this host, {line.status.bad_packets} to the device"
                     )
                     problem = f"{MISSED} pictures in a row gave no depth: {counts}"
-                    raise DeviceError(problem, remedy="check cable and baud rate")
+                    is_noisy = line.bad_packets or line.status.bad_packets
+                    camera = "call depth() without pictures if the device has a camera; else check the cable"
+                    raise DeviceError(problem, remedy="check cable and baud rate" if is_noisy else camera)
                 return None
         remedy = "reset the device, then call load()"
         raise DeviceError(f"the depth of a picture has not come in {limit_s:.1f} s", remedy=remedy)

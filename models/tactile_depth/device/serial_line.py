@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import sys
 from typing import Any
 
-from tactile_depth.base.errors import Argument, InputError
+from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
 from tactile_depth.chip.link.framing import LONGEST_ON_LINE
 from tactile_depth.chip.link.rates import BITS_A_BYTE
 from tactile_depth.device.errors import DeviceError
@@ -88,6 +89,9 @@ class SerialLine:
             raise _not_opened(path, baud, error, serial.tools.list_ports.comports()) from error
         with contextlib.suppress(Exception):  # a USB adapter that hands on each byte at once; others need nothing
             self._port.set_low_latency_mode(True)
+        if sys.platform != "linux":
+            problem = f"{path}: a USB adapter may hold bytes back for 16 ms, which slows each access to a register"
+            warn(InputWarning(problem, remedy="set its latency timer to 1 ms; on Linux the program does"))
         self._port.reset_input_buffer()
 
     def read(self, timeout_s: float) -> bytes:

@@ -104,7 +104,7 @@ def load_tables(line: Channel, pipeline: Pipeline, give_picture: Callable[[], No
     """
     entries = table_entries(pipeline.sensor, pipeline.config, pipeline.zero_codes)
     for name, words in entries.items():
-        write_words(line, [_select(name)])
+        write_words(line, [select(name)])
         size = read_words(line, ["TABLE_SIZE"])["TABLE_SIZE"]
         if size != len(words):
             problem = f"the device has {size} entries in its table {name}, the pipeline {len(words)}"
@@ -116,13 +116,14 @@ def load_tables(line: Channel, pipeline: Pipeline, give_picture: Callable[[], No
     write_words(line, [("PITCH", pitch), (COMMIT.name, COMMIT.pack(**dict.fromkeys(entries, 1)))])
 
 
-def _select(name: str) -> tuple[str, int]:
+def select(name: str) -> tuple[str, int]:
+    """Return the register access that selects a table."""
     return "TABLE_SELECT", REGISTERS["TABLE_SELECT"].pack(select=TABLES[name])
 
 
 def _write_table(line: Channel, name: str, entries: np.ndarray) -> None:
     """Write the entries (n, 2) of a table, lower and upper word, into its free bank."""
-    accesses = [_select(name), ("TABLE_INDEX", 0)]
+    accesses = [select(name), ("TABLE_INDEX", 0)]
     for low, high in entries.tolist():
         if name not in ONE_WORD:
             accesses.append(("TABLE_HIGH", high))

@@ -163,6 +163,12 @@ def pixel_gains(gains: np.ndarray, config: Configuration) -> PixelGains:
     return PixelGains(interpolated, dead, config)
 
 
+def untouched_of(gains: np.ndarray, config: Configuration) -> np.ndarray:
+    """Return the picture without contact that gains are of, uint8 (rows, columns, 3)."""
+    levels = (1 << config.gain.fraction) / np.maximum(pixel_gains(gains, config).gains, 1)
+    return np.rint(levels).clip(0, 255).astype(np.uint8)
+
+
 def require_light(gains: np.ndarray, config: Configuration, name: Part = REFERENCE) -> None:
     """Raise InputError, which names the reference, if it is too dark for more than half of the pixels."""
     dead = pixel_gains(gains, config).dead
