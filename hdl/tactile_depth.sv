@@ -77,8 +77,9 @@ module tactile_depth
   position_t pixel_position;
   video_unit #(.Config(Config)) u_video (
     .clk, .rst, .en, .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
-    .timeout, .faults(events.faults), .busy(video_busy), .pixel_valid, .pixel_data, .pixel_position, .pixel_frame_start,
-    .pixel_frame_end, .pixel_bad, .now, .frame_time
+    .timeout, .faults(events.faults), .hunting(levels.hunting), .arrived_columns(levels.arrived_columns),
+    .arrived_rows(levels.arrived_rows), .busy(video_busy), .pixel_valid, .pixel_data, .pixel_position,
+    .pixel_frame_start, .pixel_frame_end, .pixel_bad, .now, .frame_time
   );
 
   table_command_t table_command;
@@ -124,10 +125,11 @@ module tactile_depth
   logic [32*RecordWords-1:0] record;
   contact_unit #(.Config(Config)) u_contact (
     .clk, .rst, .en, .settings(contact_settings), .now, .frame_leaves(events.frame_out),
-    .depth_dropped(events.depth_dropped), .record_valid(events.record_valid), .record_lost(events.record_lost),
-    .touching(levels.touching), .record, .first_depth_latency, .first_depth_latency_valid, .depth_valid,
-    .depth_position, .depth_data, .depth_time, .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast,
-    .m_axis_tuser, .contact, .m_event_tdata, .m_event_tvalid, .m_event_tready, .m_event_tlast
+    .depth_dropped(events.depth_dropped), .stalled(levels.stalled), .record_valid(events.record_valid),
+    .record_lost(events.record_lost), .touching(levels.touching), .record, .first_depth_latency,
+    .first_depth_latency_valid, .depth_valid, .depth_position, .depth_data, .depth_time, .m_axis_tdata,
+    .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact, .m_event_tdata, .m_event_tvalid,
+    .m_event_tready, .m_event_tlast
   );
 
   assign events.out_of_step = en & out_of_step;

@@ -6,7 +6,7 @@
 
 parameter int CountWidth = 3, WordsPerPixel = 1;
 
-localparam int Most = (1 << CountWidth) - 1, Wide = CountWidth + 8;
+localparam int Most = 1 << (CountWidth - 1), Wide = CountWidth + 8;
 localparam logic [Wide-1:0] One = 1;
 localparam logic [Wide-1:0] Limit = '1;
 
@@ -19,7 +19,7 @@ endfunction
 
 logic seen, begun;
 logic [Wide-1:0] words, ended, last_words, last_rows, row_words;
-assign row_words = more(in_user ? '0 : words);
+assign row_words = more(words);
 always_ff @(posedge clk) begin
   if (in_valid) begin
     seen <= 1'b1;
@@ -27,7 +27,7 @@ always_ff @(posedge clk) begin
     words <= in_last ? '0 : row_words;
     if (in_last) last_words <= row_words;
     if (in_user) last_rows <= ended;
-    if (in_user) ended <= in_last ? One : '0;
+    if (in_user) ended <= '0;
     else if (in_last && begun) ended <= more(ended);
   end
   if (rst) {seen, begun, words, ended, last_words, last_rows} <= '0;

@@ -53,6 +53,7 @@ always_ff @(posedge clk) begin
     drops <= 1'b0;
     drops_q <= 1'b0;
     came_dropping <= 1'b0;
+    refused <= 1'b0;
     held <= '0;
     untapped <= '0;
     follows_out <= 1'b0;
@@ -67,6 +68,7 @@ always_comb begin
     enable_is_room: assert (dut.en == (dut.dropping ? dut.tap_room : dut.room));
     offered: assert (m_valid == (held != 2'd0));
     if (follows_out && ahead_out == 2'd0) in_place: assert (sent == value);
+    says_that_it_waits: assert (stalled == (refused || (!drops && !en)));
     said: assert (event_dropped == (moves & ~given & (in_position.frame_start | ~refused)));
     if (!drops) nothing_refused: assert (!moves || given);
     if (drops && drops_q && !fresh) never_waits: assert (en);

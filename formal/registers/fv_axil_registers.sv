@@ -161,6 +161,8 @@ always_comb begin
   now[StatusBusyBit] = levels.busy;
   now[StatusContactBit] = levels.contact;
   now[StatusTouchingBit] = levels.touching;
+  now[StatusHuntingBit] = levels.hunting;
+  now[StatusStalledBit] = levels.stalled;
   known = 1'b1;
   word = '0;
   if (read_offset == IdOffset) word = IdReset;
@@ -196,6 +198,7 @@ always_comb begin
   else if (read_offset == DarkPixelsOffset) word = dark;
   else if (read_offset == DepthDroppedOffset) word = given_up;
   else if (read_offset == RecordsLostOffset) word = lost;
+  else if (read_offset == ArrivedOffset) word = {16'(levels.arrived_columns), 16'(levels.arrived_rows)};
   else if (read_offset == OffThresholdOffset) word = off;
   else if (read_offset == AreaThresholdOffset) word = level;
   else if (read_offset == MinimumAreaOffset) word = area;

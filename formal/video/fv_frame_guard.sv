@@ -93,6 +93,7 @@ end
 
 always_comb begin
   if (started) begin
+    hunts: assert (hunting == (state == Dropped));
     ready: assert (s_ready == (en && (between || !s_user)));
     flags_mean: assert ({row_short, row_long, start_missing, start_early, timed_out}
         == (en ? {short_now, long_now, missing_now, early_now, timed_out_now} : 5'd0));

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // td_frame_size: columns and rows that arrived last on an AXI4-Stream Video input, of whole and of malformed frames.
 //
-//   columns  pixels of the last row that ended: from the word behind a tlast, or a start of frame, to the next tlast
-//   rows     rows that ended in the last frame that ended: from a tuser to the next one
+//   columns  pixels of the last row that ended: words up to a tlast, behind the tlast before it
+//   rows     rows that ended in the last frame that ended: tlasts between two words with tuser
 //
 // Stream in: its words, WordsPerPixel for a pixel, in_valid with each that is taken. 0: none has ended since the reset;
-// the largest number stands for more. silent: no word has come since the reset. Latency: 1 cycle. Model:
+// 2^(CountWidth - 1) stands for more. silent: no word has come since the reset. Latency: 1 cycle. Model:
 // models/tactile_depth/chip/common/td_frame_size.py.
 
 `default_nettype none
 
 module td_frame_size #(
-  parameter int CountWidth    = 16,
+  parameter int CountWidth    = 14,
   parameter int WordsPerPixel = 1
 ) (
   input  wire                   clk,
@@ -27,18 +27,17 @@ module td_frame_size #(
   localparam int WordWidth = CountWidth + $clog2(WordsPerPixel);
 
   logic framed;  // a frame has begun since the reset
-  logic [WordWidth-1:0] words, words_before, words_now;  // of the row that arrives
-  logic [CountWidth-1:0] row;                            // rows that have ended in the frame that arrives
-  assign words_before = in_user ? '0 : words;
-  assign words_now = words_before + WordWidth'(words_before != '1);
+  logic [WordWidth-1:0] words, words_now;  // of the row that arrives
+  logic [CountWidth-1:0] row;              // rows that have ended in the frame that arrives
+  assign words_now = words + WordWidth'(!words[WordWidth-1]);
 
   always_ff @(posedge clk) begin
     if (in_valid) begin
       silent <= 1'b0;
+      framed <= framed | in_user;
       words <= in_last ? '0 : words_now;
       if (in_last) columns <= words_now[WordWidth-1-:CountWidth];
-      framed <= framed | in_user;
-      row <= in_user ? CountWidth'(in_last) : row + CountWidth'(in_last && framed && row != '1);
+      row <= in_user ? '0 : row + CountWidth'(in_last && framed && !row[CountWidth-1]);
       if (in_user) rows <= row;
     end
     if (rst) begin

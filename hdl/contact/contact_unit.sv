@@ -33,6 +33,7 @@ module contact_unit
   input  wire  [31:0]                 now,
   output logic                        frame_leaves,         // its last depth value does
   output logic                        depth_dropped,        // a frame was given up
+  output logic                        stalled,              // the sink holds the pipeline up, or has cost a frame
   output logic                        record_valid,         // the record is new in this cycle
   output logic                        record_lost,
   output logic                        touching,
@@ -64,8 +65,8 @@ module contact_unit
   logic [Lanes*DataWidth-1:0] m_data, tap_data;
   depth_gate #(.Width(Lanes * DataWidth)) u_gate (
     .clk, .rst, .drop_frames(settings.drop_frames), .en, .in_valid(depth_valid), .in_position(depth_position),
-    .in_data(depth_data), .event_dropped(depth_dropped), .m_valid(m_axis_tvalid), .m_ready(m_axis_tready), .m_position,
-    .m_data, .tap_valid, .tap_position, .tap_data
+    .in_data(depth_data), .event_dropped(depth_dropped), .stalled, .m_valid(m_axis_tvalid), .m_ready(m_axis_tready),
+    .m_position, .m_data, .tap_valid, .tap_position, .tap_data
   );
   assign m_axis_tuser = m_position.frame_start;
   assign m_axis_tlast = m_position.row_end;

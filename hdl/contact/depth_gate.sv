@@ -5,6 +5,8 @@
 //   drop_frames 1: the pipeline does not wait; a frame with a word that finds no room is given up from that word on,
 //                  and event_dropped is high for one cycle
 //
+// stalled is high while the pipeline waits for the sink, and from a frame's word that finds no room up to a frame that
+// begins with room; also in the cycle after a reset.
 // drop_frames counts as it is in the cycle before a frame's first word comes. Stream in: the words of whole frames,
 // under en, each frame in successive enabled cycles (frame_output). Stream out: the same under valid and ready, two
 // words deep, every output from a register. Latency: 1 cycle.
@@ -28,6 +30,7 @@ module depth_gate
   input  wire depth_position_t in_position,
   input  wire  [Width-1:0]     in_data,        // depth code
   output logic                 event_dropped,
+  output logic                 stalled,
   output logic                 m_valid,
   input  wire                  m_ready,
   output depth_position_t      m_position,
@@ -41,6 +44,7 @@ module depth_gate
   logic room, tap_room;
   logic given_up, kept, leaves;
   assign kept = in_position.frame_start | ~given_up;
+  assign stalled = given_up | (~dropping & ~en);
   assign event_dropped = en & in_valid & kept & ~room;
   td_axis_skid #(.Width(Width + 3)) u_out (
     .clk, .rst,
@@ -72,6 +76,7 @@ module depth_gate
     en <= dropping_next ? tap_room_next : room_next;
     ahead <= ahead + 2'(tap_valid & tap_kept) - 2'(leaves);
     if (rst) begin
+      given_up <= 1'b0;
       dropping <= 1'b0;
       en <= 1'b0;
       ahead <= '0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// event_registers: keeps what happened: sticky bits, counters, the last latency, and the interrupt.
+// event_registers: keeps what happened: sticky bits, counters, the last latency, and the interrupt; shows levels.
 //
 // A sticky bit of STATUS or INTERRUPT_STATUS is set by its event until a 1 is written to it. A counter counts the
 // cycles in which its event is high, SATURATIONS the values clipped. An event in the cycle of a clearing write is kept.
@@ -41,7 +41,8 @@ module event_registers
     | (32'(events.dark) << StatusDarkBit) | (32'(events.depth_dropped) << StatusDepthDroppedBit)
     | (32'(events.saturations != '0) << StatusSaturationBit);
   assign status_shown = status | (32'(levels.busy) << StatusBusyBit) | (32'(levels.contact) << StatusContactBit)
-    | (32'(levels.touching) << StatusTouchingBit);
+    | (32'(levels.touching) << StatusTouchingBit) | (32'(levels.hunting) << StatusHuntingBit)
+    | (32'(levels.stalled) << StatusStalledBit);
   assign interrupts_set = (32'(events.record_valid) << InterruptStatusRecordBit)
     | (32'(frame_dropped) << InterruptStatusFrameDroppedBit);
   assign cleared = write ? write_ones : '0;
@@ -71,6 +72,8 @@ module event_registers
   end
 
   logic [31:0] frames_in, frames_out, frames_dropped, dark_pixels, depth_dropped, records_lost, saturations;
+  logic [31:0] arrived;
+  assign arrived = (32'(levels.arrived_columns) << ArrivedColumnsLsb) | (32'(levels.arrived_rows) << ArrivedRowsLsb);
   assign {saturations, records_lost, depth_dropped, dark_pixels, frames_dropped, frames_out, frames_in} = counts;
   always_comb begin
     case (read_offset)
@@ -84,6 +87,7 @@ module event_registers
       DarkPixelsOffset: read_data = dark_pixels;
       DepthDroppedOffset: read_data = depth_dropped;
       RecordsLostOffset: read_data = records_lost;
+      ArrivedOffset: read_data = arrived;
       default: read_data = '0;
     endcase
   end

@@ -51,6 +51,7 @@ package td_register_map_pkg;
   localparam int ZeroCaptureOffset = 32'h09c;
   localparam int InterruptStatusOffset = 32'h0a0;
   localparam int InterruptMaskOffset = 32'h0a4;
+  localparam int ArrivedOffset = 32'h0a8;
   localparam int DeviceOffset = 32'h0c0;
   localparam int DepthUnitOffset = 32'h0c4;
   localparam int SlopeUnitOffset = 32'h0c8;
@@ -93,6 +94,8 @@ package td_register_map_pkg;
   localparam int StatusContactBit = 9;
   localparam int StatusTouchingBit = 10;
   localparam int StatusDepthDroppedBit = 11;
+  localparam int StatusHuntingBit = 12;
+  localparam int StatusStalledBit = 13;
   localparam int TableSelectSelectLsb = 0;
   localparam int TableSelectSelectWidth = 2;
   localparam int TableCommitGradientBit = 0;
@@ -109,6 +112,8 @@ package td_register_map_pkg;
   localparam int InterruptStatusFrameDroppedBit = 1;
   localparam int InterruptMaskRecordBit = 0;
   localparam int InterruptMaskFrameDroppedBit = 1;
+  localparam int ArrivedRowsLsb = 0;
+  localparam int ArrivedColumnsLsb = 16;
   localparam int DeviceSolverBit = 0;
   localparam int DeviceBoundaryBit = 1;
   localparam int DeviceGradientModelBit = 2;
@@ -179,9 +184,9 @@ package td_register_map_pkg;
       RecordFrameOffset, RecordTimeOffset, RecordPeakOffset, RecordPeakPositionOffset,
       RecordAreaThresholdOffset, RecordAreaOffset, RecordLeastOffset, RecordGreatestOffset,
       RecordWeightLowOffset, RecordWeightHighOffset, RecordCentroidOffset, AreaThresholdOffset,
-      ZeroCaptureOffset, InterruptStatusOffset, InterruptMaskOffset, DeviceOffset,
-      DepthUnitOffset, SlopeUnitOffset, PitchOffset, LightOffset, LightGainRedOffset,
-      LightGainGreenOffset, LightGainBlueOffset: is_register = 1'b1;
+      ZeroCaptureOffset, InterruptStatusOffset, InterruptMaskOffset, ArrivedOffset,
+      DeviceOffset, DepthUnitOffset, SlopeUnitOffset, PitchOffset, LightOffset,
+      LightGainRedOffset, LightGainGreenOffset, LightGainBlueOffset: is_register = 1'b1;
       default: is_register = 1'b0;
     endcase
   endfunction

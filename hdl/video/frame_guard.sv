@@ -36,7 +36,8 @@ module frame_guard
   output logic        out_frame_start,
   output logic        out_frame_end,
   output logic        out_bad,   // with out_frame_end: the frame was malformed
-  output faults_t     faults     // each for one cycle
+  output faults_t     faults,    // each for one cycle
+  output logic        hunting    // words are dropped up to the next start of frame
 );
 
   localparam int ColumnWidth = $clog2(Columns);
@@ -47,7 +48,6 @@ module frame_guard
   position_t place;  // of the pixel that comes, as row and column: in registers, since s_ready depends on it
   logic [31:0] silence;
   logic filling;  // completing a broken frame
-  logic hunting;  // dropping up to the next start of frame
 
   logic origin, last_column, frame_end, take, emit;
   logic row_short, row_long, start_missing, start_early, timed_out, fault_in_frame;

@@ -2,7 +2,8 @@
 // video_unit: the pixels of whole frames from an AXI4-Stream Video input, with their position and the time of the
 // frame.
 //
-//   s_axis -> td_axis_skid -> frame_guard -> pixel
+//   s_axis -> td_axis_skid -+-> frame_guard -> pixel
+//                           +-> td_frame_size -> arrived_columns, arrived_rows
 //
 // Stream in: 24-bit pixels, raster order, ready/valid. Stream out: Rows x Columns pixels a frame, under `en`; with the
 // first of a frame pixel_frame_start, with the last pixel_frame_end, and pixel_bad if the frame was malformed.
@@ -30,6 +31,9 @@ module video_unit
 
   input  wire  [31:0] timeout,  // of a source that falls silent inside a frame, in cycles; 0: none
   output faults_t     faults,
+  output logic        hunting,  // pixels are dropped up to the next start of frame
+  output logic [13:0] arrived_columns,  // of td_frame_size
+  output logic [13:0] arrived_rows,
   output logic        busy,     // a pixel waits, or a frame has begun and not ended
 
   output logic        pixel_valid,
@@ -55,7 +59,13 @@ module video_unit
     .clk, .rst, .en, .timeout,
     .s_valid(held_valid), .s_ready(held_ready), .s_data(held_data), .s_last(held_last), .s_user(held_user),
     .out_valid(pixel_valid), .out_data(pixel_data), .out_position(pixel_position),
-    .out_frame_start(pixel_frame_start), .out_frame_end(pixel_frame_end), .out_bad(pixel_bad), .faults
+    .out_frame_start(pixel_frame_start), .out_frame_end(pixel_frame_end), .out_bad(pixel_bad), .faults,
+    .hunting
+  );
+
+  td_frame_size #(.CountWidth(14)) u_size (
+    .clk, .rst, .in_valid(held_valid & held_ready), .in_last(held_last), .in_user(held_user),
+    .columns(arrived_columns), .rows(arrived_rows), .silent()
   );
 
   logic taking;  // a frame has begun and not ended

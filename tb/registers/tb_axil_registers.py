@@ -121,7 +121,7 @@ class Registers:
         status = {table: unpack("capture_status_t", pins[f"{table}_status"]) for table in CAPTURES}
         busy, done = (frozenset(table for table in CAPTURES if status[table][flag]) for flag in ("busy", "done"))
         live = Live(
-            **{name: bool(high) for name, high in unpack("levels_t", pins["levels"]).items()},
+            **unpack("levels_t", pins["levels"]),  # type: ignore[arg-type]
             capturing=busy,
             ending=done,
             in_use=pins["table_in_use"],

@@ -6,7 +6,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.chip.registers.event_registers import COUNTERS, LATENCY, STATUS, EventRegisters
+from tactile_depth.chip.registers.event_registers import ARRIVED, COUNTERS, LATENCY, LEVELS, STATUS, EventRegisters
 from tactile_depth.chip.registers.register_map import WORD
 from tb import lockstep, structs
 from tb.registers.bus import NAME_AT, Bus
@@ -31,8 +31,12 @@ class Registers:
     def clock(self, **pins: int) -> dict[str, int]:
         """Advance by one clock edge; return the outputs before it."""
         model, name = self.model, NAME_AT.get(pins["read_offset"], "")
-        levels = STATUS.pack(**structs.unpack("levels_t", pins["levels"])) if name == "STATUS" else 0
-        out = {"read_data": model.values.get(name, 0) | levels, "irq": model.irq}
+        levels = structs.unpack("levels_t", pins["levels"])
+        shown = {
+            "STATUS": STATUS.pack(**{level: levels[level] for level in LEVELS}),
+            "ARRIVED": ARRIVED.pack(rows=levels["arrived_rows"], columns=levels["arrived_columns"]),
+        }
+        out = {"read_data": model.values.get(name, 0) | shown.get(name, 0), "irq": model.irq}
         if pins["write"]:
             model.write(NAME_AT.get(pins["write_offset"], ""), pins["write_ones"])
         events = structs.unpack("events_t", pins["events"])
@@ -47,7 +51,7 @@ class Registers:
 @cocotb.test()
 async def registers(dut: Any) -> None:
     chance, bits = random.Random(cocotb.RANDOM_SEED), len(dut.events)
-    bus = Bus(dut, "STATUS", "INTERRUPT_STATUS", "CONTROL", LATENCY, *COUNTERS)
+    bus = Bus(dut, "STATUS", "INTERRUPT_STATUS", "CONTROL", "ARRIVED", LATENCY, *COUNTERS)
     pins = {
         **bus.choices,
         "events": [0, (1 << bits) - 1, *(1 << bit for bit in range(bits))],

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from tactile_depth.chip.common.td_frame_size import FrameSize
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
@@ -18,7 +19,7 @@ from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.tactile_depth import slopes_and_light, solve, zeroed
-from tactile_depth.chip.video.frame_guard import Frame, frame_guard
+from tactile_depth.chip.video.frame_guard import Frame, Guarded, frame_guard
 from tb.axil import RegisterClient
 from tb.axis import AxisMonitor
 from tb.pixels import unpack
@@ -26,7 +27,7 @@ from tb.stream import check_maps
 from tb.tactile_depth.contact_watch import SETTINGS, ContactWatch
 from tb.tactile_depth.device_tables import Content
 
-STATUS = REGISTERS["STATUS"]
+STATUS, ARRIVED = REGISTERS["STATUS"], REGISTERS["ARRIVED"]
 STICKY = {"timed_out": "timeout"}  # names of faults and of status bits, where they differ
 COUNTERS = ("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "DARK_PIXELS", "DEPTH_DROPPED", "RECORDS_LOST")
 
@@ -66,6 +67,8 @@ class Scoreboard:
         Expected value of FIRST_DEPTH_LATENCY, as measured at the pins.
     dark_level : int
         Value of the register that the next frames use.
+    hunting, size : bool, FrameSize
+        State of the guard, and what ARRIVED shows.
     light : LightFilter or None
         Light gains of the next frame, and how they follow; None in a build without.
     """
@@ -81,6 +84,7 @@ class Scoreboard:
         self.counters = dict.fromkeys(COUNTERS, 0)
         self.sticky: set[str] = set()
         self.latency = self.dark_level = 0
+        self.hunting, self.size = False, FrameSize()
         self.light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
 
     def light_of(self, words: Any, content: Content, light: LightFilter | None, bad: bool = False) -> np.ndarray | None:
@@ -124,9 +128,14 @@ class Scoreboard:
 
     def frames(self, into: AxisMonitor, timeout: int) -> tuple[list[Frame], list[str]]:
         """Return the frames that the device has taken, and the faults."""
+        guarded = self.guarded(into, timeout)
+        return guarded.frames, guarded.faults
+
+    def guarded(self, into: AxisMonitor, timeout: int) -> Guarded:
+        """Return what the guard makes of the words that the device has taken."""
         guarded = frame_guard(into.words, self.rows, self.columns, timeout)
         assert not guarded.open, "the test is void: the last frame of the stream is not complete"
-        return guarded.frames, guarded.faults
+        return guarded
 
     def depth(self, out: AxisMonitor, count: int) -> np.ndarray:
         """Return the depth codes (frames, rows, columns) of `count` frames that left, and check their side-bands."""
@@ -171,7 +180,12 @@ class Scoreboard:
         `drained` also checks the latency from the last pixel to the first depth, which holds if no sink stalled before
         it, and to the last depth of each frame of which no beat waited.
         """
-        frames, faults = self.frames(into, timeout)
+        guarded = self.guarded(into, timeout)
+        frames, faults = guarded.frames, guarded.faults
+        self.hunting = guarded.hunting if into.words else self.hunting
+        for word in into.words:
+            if word is not None:
+                self.size.take(word.last, word.user)
         each = [contents] * len(frames) if isinstance(contents, Content) else contents
         lights = [self.light_of(f.pixels, content, self.light, f.bad) for f, content in zip(frames, each, strict=True)]
         expected, clipped = self.model([frame.pixels for frame in frames], each, lights)
@@ -207,6 +221,10 @@ class Scoreboard:
         assert not status.pop("busy"), "STATUS.busy is high after every frame has left"
         assert status.pop("contact") == self.watch.comparator.contact
         assert status.pop("touching") == self.watch.events.touching
+        assert status.pop("hunting") == self.hunting, "STATUS.hunting"
+        assert not status.pop("stalled"), "STATUS.stalled is high after every frame has left"
+        arrived = ARRIVED.unpack(await registers.read("ARRIVED"))
+        assert arrived == {"rows": self.size.rows, "columns": self.size.columns}, f"ARRIVED is {arrived}"
         bits = {name for name, value in status.items() if value}
         assert bits == self.sticky, f"sticky bits {bits}, expected {self.sticky}"
         for name in SETTINGS:

@@ -6,14 +6,15 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+from cocotb.triggers import ClockCycles
 
 from tactile_depth.chip.registers.register_map import WORD
-from tactile_depth.chip.video.frame_guard import FAULTS
-from tb.axis import broken
+from tactile_depth.chip.video.frame_guard import FAULTS, Word
+from tb.axis import broken, video
 from tb.selection import Level, case, named, up_to
 from tb.stream import parametrize
-from tb.tactile_depth.bench import CONTROL, Stream, started
-from tb.tactile_depth.scoreboard import STATUS, STICKY
+from tb.tactile_depth.bench import CONTROL, HEAD_CLOCKS, Stream, started
+from tb.tactile_depth.scoreboard import ARRIVED, STATUS, STICKY
 
 TIMEOUT = 60  # clocks
 
@@ -112,6 +113,34 @@ async def words_before_the_first_frame(dut: Any) -> None:
     pipeline = await started(dut)
     await pipeline.send([word._replace(user=0) for word in pipeline.frame()[:37]], pipeline.frame())
     assert (await pipeline.check()).faults == ["start_missing"]
+
+
+@case()
+async def sources_that_do_not_fit(dut: Any) -> None:
+    """Send frames without starts, of other widths and of other heights: ARRIVED has their size, STATUS.hunting says
+    whether pixels are dropped."""
+    pipeline = await started(dut)
+    rows, columns = pipeline.rows, pipeline.columns
+
+    def sized(height: int, width: int) -> list[Word]:
+        return video([pipeline.random.getrandbits(24) for _ in range(height * width)], width)
+
+    assert await pipeline.read("ARRIVED") == 0
+    no_start = [word._replace(user=0) for word in sized(2 * rows, columns)]
+    await pipeline.send(no_start[: 2 * columns + 3])
+    await ClockCycles(dut.clk, HEAD_CLOCKS)
+    assert await pipeline.read("ARRIVED") == ARRIVED.pack(rows=0, columns=columns)
+    assert STATUS.unpack(await pipeline.read("STATUS"))["hunting"]
+    assert await pipeline.read("FRAMES_IN") == 0
+    for height, width in ((rows, columns - 1), (rows, columns + 2), (rows - 1, columns), (rows + 3, columns)):
+        await pipeline.send(*[sized(height, width)] * 3)
+        await ClockCycles(dut.clk, pipeline.pixels + HEAD_CLOCKS)
+        assert await pipeline.read("ARRIVED") == ARRIVED.pack(rows=height, columns=width)
+        hunts = STATUS.unpack(await pipeline.read("STATUS"))["hunting"]
+        assert hunts == ((height, width) != (rows - 1, columns)), f"hunting is {hunts} behind {height} x {width}"
+        await pipeline.send(pipeline.frame(), pipeline.frame())
+        await pipeline.check()
+        assert await pipeline.read("ARRIVED") == await pipeline.read("GRID")
 
 
 @case(whole_rows=True)

@@ -190,7 +190,9 @@ async def depth_frames_are_dropped(dut: Any, taken: int) -> None:
     assert latency == first_depth_latency(pipeline.config), f"{latency} is the latency of a frame that was dropped"
     assert STATUS.unpack(await pipeline.read("STATUS"))["busy"], "STATUS.busy is low while two depths wait"
     assert await pipeline.read("DEPTH_DROPPED") == 3
-    assert STATUS.unpack(await pipeline.read("STATUS"))["depth_dropped"]
+    status = STATUS.unpack(await pipeline.read("STATUS"))
+    assert status["depth_dropped"]
+    assert status["stalled"]
     waits = bool(dut.m_axis_tvalid.value), bool(dut.m_axis_tuser.value)
     assert waits == (True, not taken), f"the test is void: valid and start of the depth that waits are {waits}"
     gone = len(pipeline.out.words)

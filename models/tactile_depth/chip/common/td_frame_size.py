@@ -21,7 +21,7 @@ class FrameSize:
         A frame has begun since the reset; no word has come since the reset.
     """
 
-    count_width: int = 16
+    count_width: int = 14
     words_per_pixel: int = 1
     columns: int = 0
     rows: int = 0
@@ -32,13 +32,14 @@ class FrameSize:
 
     def take(self, last: int, user: int) -> None:
         """Take a word."""
-        most = (1 << self.count_width) - 1
+        most = 1 << self.count_width - 1
         if user:
-            self.rows, self.ended, self.words, self.framed = min(self.ended, most), 0, 0, True
+            self.rows, self.ended, self.framed = min(self.ended, most), 0, True
+        else:
+            self.ended += last and self.framed
         self.words, self.silent = self.words + 1, False
         if last:
             self.columns, self.words = min(self.words // self.words_per_pixel, most), 0
-            self.ended += self.framed
 
     def clock(self, *, rst: int, in_valid: int, in_last: int, in_user: int) -> dict[str, int]:
         """Advance by one clock edge; return the outputs before it."""

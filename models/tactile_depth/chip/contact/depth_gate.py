@@ -27,7 +27,7 @@ class DepthGate:
     dropping : bool
         Value of drop_frames for the current input frame.
     given_up : bool
-        True if the current input frame is given up.
+        True if the current input frame, or between frames the last one, is given up.
     inside : bool
         True between the first and the last word of a frame.
     starting : bool
@@ -50,6 +50,7 @@ class DepthGate:
         room = not self.starting and len(self.sending) < CAPACITY
         leaves, moves, word = m_ready and bool(self.sending), in_valid and en, (in_position, in_data)
         out: dict[str, int | None] = {"en": en, "event_dropped": 0, "m_valid": bool(self.sending), "tap_valid": 0}
+        out["stalled"] = self.given_up or not (self.dropping or en)
         if self.sending:
             out["m_position"], out["m_data"] = self.sending[0]
         if self.tapping:
@@ -75,5 +76,5 @@ class DepthGate:
         if rst:
             self.sending.clear()
             self.tapping.clear()
-            self.tapped, self.dropping, self.inside = 0, False, False
+            self.tapped, self.dropping, self.given_up, self.inside = 0, False, False, False
         return out

@@ -37,7 +37,8 @@ EVENTS = tuple(dict.fromkeys((*STICKY_EVENTS, *INTERRUPT_EVENTS, *EVENT_COUNTERS
 SATURATIONS = "SATURATIONS"
 COUNTERS = (*dict.fromkeys(EVENT_COUNTERS.values()), SATURATIONS)
 LATENCY = "FIRST_DEPTH_LATENCY"
-LEVELS = ("busy", "contact", "touching")
+ARRIVED = REGISTERS["ARRIVED"]
+LEVELS = ("busy", "contact", "touching", "hunting", "stalled")
 """Bits of STATUS that show an input as it is."""
 
 

@@ -51,11 +51,14 @@ class Guarded:
         Names from `FAULTS`, in the order of the cycles.
     open : list of int
         Pixels of a frame that is incomplete at the end of the stream, and not broken.
+    hunting : bool
+        Words are dropped up to the next start of frame at the end of the stream.
     """
 
     frames: list[Frame] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
     open: list[int] = field(default_factory=list)
+    hunting: bool = False
 
 
 @dataclass
@@ -126,7 +129,7 @@ class FrameGuard:
     def clock(self, **pins: int) -> dict[str, int]:
         """Advance by one clock edge; return the outputs before it that count."""
         ready = pins["en"] and not (self.pixels and pins["s_user"])
-        out, fault = {"out_valid": 0, "out_frame_start": 0, "out_frame_end": 0} | self.out, ""
+        out, fault = {"out_valid": 0, "out_frame_start": 0, "out_frame_end": 0, "hunting": self.hunting} | self.out, ""
         if pins["en"] and self.filling:
             self.fill()
         elif pins["en"]:
@@ -166,4 +169,5 @@ def frame_guard(stream: Iterable[Word | None], rows: int, columns: int, timeout:
             if "out_bad" in core.out:
                 seen.frames.append(Frame(tuple(seen.open), bool(core.out["out_bad"]), first, last))
                 seen.open = []
+    seen.hunting = core.hunting
     return seen
