@@ -111,7 +111,7 @@ def test_right_light_has_no_doubt(device: td.Device, sample: td.Sample) -> None:
 def test_the_rate_of_the_light_is_that_of_the_device(
     device: td.Device, pipeline: td.Pipeline, sample: td.Sample
 ) -> None:
-    device.registers["LIGHT.rate"] = 2
+    device.registers["LIGHT"] = 2 << 4  # a program that was killed has left `follow` at 0
     stream = pipeline.new_stream()
     assert stream.light is not None
     stream.light.rate = 2

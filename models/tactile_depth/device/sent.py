@@ -15,7 +15,6 @@ from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.link.depth_formats import received
 from tactile_depth.chip.registers.axil_registers import GAINS
-from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.depth.result import Result
 from tactile_depth.depth.twin import PICTURES
@@ -23,7 +22,7 @@ from tactile_depth.device import captures
 from tactile_depth.device.channel import Arrival, Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import Exchange
-from tactile_depth.device.registers import read_words
+from tactile_depth.device.registers import read_words, write_words
 from tactile_depth.pictures.doubts import UnusablePicture
 from tactile_depth.pictures.picture_check import check_picture
 from tactile_depth.pictures.pictures import Picture, Pictures, is_array
@@ -92,9 +91,9 @@ def streamed(
     stream = twin.new_stream()
     with Exchange(line) as exchange:
         if stream.light is not None:
+            stream.light.rate = captures.LIGHT.unpack(light)["rate"]
+            write_words(line, [(captures.LIGHT.name, captures.LIGHT.pack(follow=1, rate=stream.light.rate))])
             captures.write_gains(line, stream.light.gains.tolist())
-            follow = REGISTERS["LIGHT"].unpack(light)
-            stream.light.follow, stream.light.rate = bool(follow["follow"]), follow["rate"]
         for index, (_, frame) in enumerate(_on_grid(pictures, twin.reader)):
             name = f"picture {index}"
             try:
