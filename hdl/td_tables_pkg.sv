@@ -25,7 +25,8 @@ package td_tables_pkg;
 
   // Return the CRC-32 of a file.
   function automatic logic [31:0] crc_of(input string path);
-    int file, character;
+    int file;
+    logic signed [31:0] character;
     logic [31:0] crc, steps[256];
     for (int n = 0; n < 256; n++) begin
       crc = n;
@@ -36,7 +37,7 @@ package td_tables_pkg;
     file = $fopen(path, "r");
     character = $fgetc(file);
     while (character >= 0) begin
-      if (character != 13) crc = crc >> 8 ^ steps[crc[7:0]^8'(character)];
+      if (character != 13) crc = crc >> 8 ^ steps[crc[7:0]^character[7:0]];
       character = $fgetc(file);
     end
     $fclose(file);

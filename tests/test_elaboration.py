@@ -148,7 +148,8 @@ def test_a_parameter_that_the_core_does_not_have_is_an_error(name: str, tmp_path
 
 def test_every_field_of_the_configuration_has_a_value_that_is_refused() -> None:
     changes = " ".join(listed for stated in CONFIG.values() for listed in stated.values())
-    assert default_parameters().keys() - set(re.findall(r"(\w+)=", changes)) == set()
+    any_number = {"TablesCrc"}
+    assert default_parameters().keys() - set(re.findall(r"(\w+)=", changes)) == any_number
 
 
 VALID = (
