@@ -18,7 +18,9 @@ from tactile_depth.chip.configuration import NUMBERS
 from tactile_depth.device.status import DeviceStatus
 
 ROOT = repository.ROOT
-PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "hdl").rglob("*.md")])
+PAGES = sorted(
+    [*ROOT.glob("*.md"), *(page for name in ("docs", "hdl", "boards") for page in (ROOT / name).rglob("*.md"))]
+)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 FOLDERS = "hdl|models|tb|tests|formal|commands|boards|constraints|registers|docs"
 # A path in backquotes that begins with a folder of the repository.

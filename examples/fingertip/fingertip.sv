@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fingertip: a small design around a wrapper of tactile_depth: pixels in, the deepest code of each frame out.
 //
-// `deepest` holds the largest depth code of the last whole frame; `deepest_valid` is high for one clock when it changes.
-// Records and registers are not used.
+// `deepest` holds the largest depth code of the last whole frame; `deepest_valid` is high for a clock when it changes.
+// Records and registers are not used. tb_fingertip.sv is its testbench; docs/integrate.md shows how to run it.
 
 `default_nettype none
 
@@ -18,7 +18,7 @@ module fingertip (
   output logic               deepest_valid
 );
 
-  localparam int Rows = 8;  // of the configuration that fingertip.core gives to the generator
+  localparam int Rows = 8;  // of the configuration of tactile_depth_finger
 
   logic [23:0] depth;
   logic depth_valid, depth_row_end, depth_frame_start;
@@ -35,10 +35,10 @@ module fingertip (
     .m_axis_tdata(depth), .m_axis_tvalid(depth_valid), .m_axis_tready(1'b1), .m_axis_tlast(depth_row_end),
     .m_axis_tuser(depth_frame_start), .contact(marks[0]), .irq(marks[8]),
     .m_event_tdata(record_word), .m_event_tvalid(marks[1]), .m_event_tready(1'b1), .m_event_tlast(marks[2]),
-    .s_axil_awaddr('0), .s_axil_awprot('0), .s_axil_awvalid(1'b0), .s_axil_awready(marks[3]),
-    .s_axil_wdata('0), .s_axil_wstrb('0), .s_axil_wvalid(1'b0), .s_axil_wready(marks[4]),
+    .s_axil_awaddr(10'd0), .s_axil_awprot(3'd0), .s_axil_awvalid(1'b0), .s_axil_awready(marks[3]),
+    .s_axil_wdata(32'd0), .s_axil_wstrb(4'd0), .s_axil_wvalid(1'b0), .s_axil_wready(marks[4]),
     .s_axil_bresp(write_response), .s_axil_bvalid(marks[5]), .s_axil_bready(1'b1),
-    .s_axil_araddr('0), .s_axil_arprot('0), .s_axil_arvalid(1'b0), .s_axil_arready(marks[6]),
+    .s_axil_araddr(10'd0), .s_axil_arprot(3'd0), .s_axil_arvalid(1'b0), .s_axil_arready(marks[6]),
     .s_axil_rdata(register_word), .s_axil_rresp(read_response), .s_axil_rvalid(marks[7]), .s_axil_rready(1'b1)
   );
 
