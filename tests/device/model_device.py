@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from tactile_depth.chip.common.td_frame_size import FrameSize
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.contact_events import ContactEvents, Settings
@@ -38,7 +39,7 @@ from tactile_depth.chip.registers.register_map import TABLES
 from tactile_depth.chip.registers.table_banks import CAPTURES
 from tactile_depth.chip.table_entries import one_word, reference_entries
 from tactile_depth.chip.tactile_depth import Tables, slopes_and_light, solve, top_parameters, zeroed
-from tactile_depth.chip.video.frame_guard import Word
+from tactile_depth.chip.video.frame_guard import FrameGuard, Word
 
 SETTINGS = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
 SIGNED = 1 << 31
@@ -54,6 +55,8 @@ class Setup:
         Pictures of its camera, one after another without end.
     camera_s : float
         Time between two of them.
+    camera_starts : bool
+        The camera marks the start of a frame.
     damage : dict
         Chances that a packet is lost (`drop`), has a wrong byte (`flip`) or has a byte twice (`double`), each way.
     says : str
@@ -64,6 +67,7 @@ class Setup:
     pitch_mm: float
     camera: np.ndarray | None = None
     camera_s: float = 0.02
+    camera_starts: bool = True
     damage: dict[str, float] = field(default_factory=dict)
     says: str = ""
 
@@ -101,6 +105,7 @@ class ModelDevice:
         self.captures: dict[str, list[np.ndarray]] = {}  # frames that are taken, by table
         self.wanted: dict[str, int] = {}  # frames of each capture
         self._frame: list[int] = []
+        self._size, self._guard = FrameSize(), FrameGuard(self.config.rows, self.config.columns)
 
     def reset(self) -> None:
         self.link.reset()
@@ -113,8 +118,10 @@ class ModelDevice:
     def _live(self) -> Live:
         gains = (0, 0, 0) if self.light is None else tuple(self.light.gains.tolist())
         banks, capturing = self.registers.banks, frozenset(self.captures)
-        touching = self.events.touching
-        return Live(in_use=banks.bank, capturing=capturing, record=self.record, light_gains=gains, touching=touching)
+        levels = {"touching": self.events.touching, "hunting": self._guard.hunting}
+        size = {"arrived_columns": self._size.columns, "arrived_rows": self._size.rows}
+        own = {"in_use": banks.bank, "capturing": capturing, "record": self.record, "light_gains": gains}
+        return Live(**own, **levels, **size)  # type: ignore[arg-type]
 
     def _free(self, code: int) -> int:
         return 1 - (self.registers.banks.bank >> code & 1)
@@ -150,28 +157,31 @@ class ModelDevice:
     # Pictures.
 
     def take(self, word: Word) -> None:
-        """Take a pixel; a whole picture gives a depth frame."""
-        rows, columns = self.config.rows, self.config.columns
-        if word.user:
-            if self._frame:
-                self._fault("start_early")
-            self._frame = []
-            self.registers.clock(Events(frame_start=True))
-        elif not self._frame:
-            self._fault("start_missing")
-            return
-        self._frame.append(word.data)
-        if len(self._frame) == rows * columns:
-            words = np.array(self._frame).reshape(rows, columns)
-            self._frame = []
-            self._picture(np.stack([words >> 16 & 0xFF, words & 0xFF, words >> 8 & 0xFF], axis=-1).astype(np.uint8))
+        """Take a pixel; a whole picture gives a depth frame, and what is malformed a fault."""
+        guard, fault = self._guard, "start_early"
+        self._size.take(word.last, word.user)
+        while fault == "start_early":
+            fault = guard.take(word)
+            if fault:
+                self._fault(fault)
+            if guard.out.get("out_frame_start"):
+                self._frame = []
+                self.registers.clock(Events(frame_start=True))
+            if guard.out:
+                self._frame.append(guard.out["out_data"])
+            while guard.filling:
+                guard.fill()
+            if guard.out.get("out_frame_end") and not guard.out["out_bad"]:
+                words = np.array(self._frame).reshape(self.config.rows, self.config.columns)
+                self._picture(np.stack([words >> 16 & 0xFF, words & 0xFF, words >> 8 & 0xFF], axis=-1).astype(np.uint8))
 
-    def show(self, picture: np.ndarray) -> None:
-        """Take a picture of the camera, uint8 (rows, columns, 3)."""
+    def show(self, picture: np.ndarray, starts: bool = True) -> None:
+        """Take a picture of the camera, uint8 (rows, columns, 3); without `starts` one without a start of frame."""
         for row, pixels in enumerate(picture.astype(int)):
             for column, (red, green, blue) in enumerate(pixels):
-                last = int(column == self.config.columns - 1)
-                self.take(Word(red << 16 | blue << 8 | green, last, int(not row and not column)))
+                last = int(column == len(pixels) - 1)
+                start = int(starts and not row and not column)
+                self.take(Word(red << 16 | blue << 8 | green, last, start))
 
     def _fault(self, name: str) -> None:
         if "reference" in self.captures:
@@ -287,7 +297,7 @@ class Serving:
         camera = self.setup.camera
         if camera is not None and time.monotonic() > self._next:
             self._next = time.monotonic() + self.setup.camera_s
-            self.device.show(camera[self._shown % len(camera)])
+            self.device.show(camera[self._shown % len(camera)], self.setup.camera_starts)
             self._shown += 1
 
     def _damaged(self, packet: bytes) -> bytes:

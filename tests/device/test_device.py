@@ -300,6 +300,36 @@ def test_pictures_of_the_camera(pipeline: td.Pipeline, plug: Plug, sample: td.Sa
     np.testing.assert_array_equal(frames[-1].codes, steady(sample.image).codes)
 
 
+@pytest.mark.parametrize(
+    ("size", "starts", "message"),
+    [
+        (GRID, False, r"pixels come without a start of frame.*the source gives no tuser.*set tuser .*integrate\.md"),
+        ((GRID[0] - 1, GRID[1]), True, "the source sends 16 x 11, the build takes 16 x 12.*set its width and height"),
+        ((GRID[0], GRID[1] + 2), True, "the source sends 18 x 12, the build takes 16 x 12.*set its width and height"),
+    ],
+)
+def test_a_camera_that_does_not_fit_is_named(
+    size: tuple[int, int],
+    starts: bool,
+    message: str,
+    pipeline: td.Pipeline,
+    plug: Plug,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("tactile_depth.device.exchange.CAMERA_S", 0.1)
+    cable = plug(pipeline, camera_s=0.002, camera_starts=starts)
+    with td.Device(cable.address, pipeline) as device:
+        device.load()
+        assert device.status().input == ""
+        cable.setup.camera = np.full((1, *size, 3), 135, np.uint8)  # type: ignore[union-attr]
+        with pytest.raises(td.DeviceError, match=message):
+            next(device.depth())
+        status = device.status()
+    assert re.search(message, status.input)
+    assert status.arrived == (size[0] if starts else 0, size[1])
+    assert status.hunting or starts
+
+
 def grid_picture(pipeline: td.Pipeline, picture: np.ndarray) -> np.ndarray:
     """Return a picture on the grid of a pipeline."""
     return next(pipeline._reader.pictures(picture, "picture")[0])[1]

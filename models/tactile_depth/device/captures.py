@@ -13,6 +13,7 @@ from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.registers.axil_registers import GAINS
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
+from tactile_depth.device.arrived import arrived
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import CAMERA_S, Exchange
@@ -110,8 +111,10 @@ def capture_of_camera(line: Channel, table: str, count: int, give_picture: Calla
         if taken != came:
             last, came = time.monotonic(), taken
         elif time.monotonic() - last > line.limit_s + CAMERA_S:
-            problem = f"no picture came from the camera of the device in {line.limit_s + CAMERA_S:.1f} s"
-            raise DeviceError(problem, remedy="let it send pictures of the grid, or give pictures")
+            came_in = arrived(line, is_awaited=True)
+            reason = f", {came_in.problem}" if came_in.problem else ""
+            problem = f"no picture came from the camera of the device in {line.limit_s + CAMERA_S:.1f} s{reason}"
+            raise DeviceError(problem, remedy=came_in.remedy or "let it send pictures of the grid, or give pictures")
     wait_in_use(line, give_picture)
 
 

@@ -20,6 +20,7 @@ from tactile_depth.depth.result import Recorder, Result, thresholds_of
 from tactile_depth.depth.twin import PICTURES, require_flat_field, require_zero_offset
 from tactile_depth.device import captures, sent
 from tactile_depth.device.addresses import open_channel
+from tactile_depth.device.arrived import arrived
 from tactile_depth.device.channel import Arrival, Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import Exchange, camera_frames
@@ -285,11 +286,13 @@ class Device(AbstractContextManager["Device"]):
             status = line.ask()
             words = read_words(line, [*COUNTERS, "STATUS"])
             counts = line.bad_packets, line.delivered, line.lost
+            came = arrived(line)
         levels = REGISTERS["STATUS"].unpack(words.pop("STATUS"))
         *grid, _ = status.shape
         sent = status.resets, status.sent, status.skipped, status.bad_packets
+        flags = bool(levels["touching"]), bool(levels["busy"]), came.hunting, came.stalled
         return DeviceStatus._make(
-            (*grid, *sent, *counts, *words.values(), bool(levels["touching"]), bool(levels["busy"]))
+            (*grid, *sent, *counts, *words.values(), *flags, (came.rows, came.columns), came.line)
         )
 
     # The line.

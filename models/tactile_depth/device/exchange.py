@@ -9,6 +9,7 @@ from contextlib import AbstractContextManager
 
 from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.link.depth_frames import NUMBERS
+from tactile_depth.device.arrived import arrived
 from tactile_depth.device.channel import Arrival, Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.registers import read_words
@@ -117,7 +118,10 @@ def camera_frames(line: Channel) -> Iterator[Arrival]:
                         f"no depth frame came whole in {patience_s:.1f} s: {line.bad_packets - bad} packets are broken"
                     )
                     raise DeviceError(problem, remedy="check cable and baud rate")
-                problem = f"the device has sent no depth for {patience_s:.1f} s"
-                raise DeviceError(problem, remedy="let its camera send pictures of its grid, or give pictures")
+                came = arrived(line, is_awaited=True)
+                reason = f", {came.problem}" if came.problem else ""
+                problem = f"the device has sent no depth for {patience_s:.1f} s{reason}"
+                remedy = came.remedy or "let its camera send pictures of its grid, or give pictures"
+                raise DeviceError(problem, remedy=remedy)
     finally:
         line.collect(False)

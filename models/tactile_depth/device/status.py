@@ -37,6 +37,12 @@ class DeviceStatus(NamedTuple):
         Depth frames and records that their sink did not take.
     touching, busy : bool
         Something touches; a frame is in the pipeline.
+    hunting, stalled : bool
+        Pixels are dropped up to a start of frame; what takes the depth stalls.
+    arrived : tuple of int
+        Rows and columns of the last picture that came, malformed or not.
+    input : str
+        What is wrong with the pictures that come, and what to set; empty if nothing is.
     """
 
     rows: int
@@ -58,6 +64,10 @@ class DeviceStatus(NamedTuple):
     records_lost: int
     touching: bool
     busy: bool
+    hunting: bool
+    stalled: bool
+    arrived: tuple[int, int]
+    input: str
 
 
 COUNTERS = tuple(name.upper() for name in DeviceStatus._fields[10:17])

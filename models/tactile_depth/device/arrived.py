@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures that arrive at a device: what is wrong with them, by its registers, and what to set."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.device.channel import Channel
+from tactile_depth.device.registers import read_words
+
+NAMES = ("STATUS", "ARRIVED", "GRID", "FRAMES_DROPPED")
+PAGE = "docs/integrate.md, 5"
+
+
+class Arrived(NamedTuple):
+    """Pictures that arrive.
+
+    Attributes
+    ----------
+    rows, columns : int
+        Size of the last one, 0 as long as none, or no mark of its end, has come since the reset.
+    hunting, stalled : bool
+        Pixels are dropped up to a start of frame; the sink of depth stalls.
+    problem, remedy : str
+        What is wrong with them, and what to set; empty if nothing is.
+    """
+
+    rows: int
+    columns: int
+    hunting: bool
+    stalled: bool
+    problem: str = ""
+    remedy: str = ""
+
+    @property
+    def line(self) -> str:
+        """Return problem and remedy in one line."""
+        return f"{self.problem}: {self.remedy}" if self.problem else ""
+
+
+def arrived(line: Channel, is_awaited: bool = False) -> Arrived:
+    """Return what arrives at a device; that nothing does is a problem if pictures are awaited.
+
+    Raises DeviceError if the device does not answer.
+    """
+    fields = {name: REGISTERS[name].unpack(word) for name, word in read_words(line, NAMES).items()}
+    status, size, grid = fields["STATUS"], fields["ARRIVED"], fields["GRID"]
+    columns, rows = size["columns"], size["rows"]
+    problem, remedy = "", ""
+    if not columns and not status["hunting"] and fields["FRAMES_DROPPED"]["value"]:
+        problem, remedy = "no end of a row has come", f"set tlast with the last pixel of each row: {PAGE}"
+    elif columns and (columns, rows or grid["rows"]) != (grid["columns"], grid["rows"]):
+        problem = f"the source sends {columns} x {rows or '?'}, the build takes {grid['columns']} x {grid['rows']}"
+        remedy = f"set its width and height, or build the device for them: {PAGE}"
+    elif status["hunting"]:
+        problem = "pixels come without a start of frame, and are dropped: the source gives no tuser"
+        remedy = f"set tuser with the first pixel of a frame: {PAGE}"
+    elif status["stalled"]:
+        problem, remedy = "what takes the depth stalls", "start it, or set CONTROL.drop_frames"
+    elif is_awaited and not columns:
+        problem, remedy = "no row of pixels has come since the reset", "start the camera"
+    return Arrived(rows, columns, bool(status["hunting"]), bool(status["stalled"]), problem, remedy)
