@@ -8,11 +8,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from commands.common import repository, wrapper
 from commands.common.wrapper import Port
-from commands.hardware import registers
-from tactile_depth.base import files
-from tactile_depth.chip.tactile_depth import default_parameters
 
 NAMESPACE = "http://www.accellera.org/XMLSchema/IPXACT/1685-2014"
 SCHEMA = "http://www.w3.org/2001/XMLSchema-instance"
@@ -36,8 +32,8 @@ class Module:
     language : str
         `systemverilog` or `verilog`.
     ports : of the module
-    camera : bool
-        It has the registers of the camera too.
+    maps : elements
+        Components of its register maps, which `write` takes apart (`registers.components`).
     sets : mapping
         Files in the order in which tools read them, by the name of the set.
     tables : str
@@ -47,7 +43,7 @@ class Module:
     name: str
     language: str
     ports: Sequence[Port]
-    camera: bool
+    maps: Sequence[Element]
     sets: Mapping[str, Sequence[Path]]
     tables: str = "./"
 
@@ -77,12 +73,9 @@ def write(module: Module, path: Path, place: Path | None = None) -> Path:
     """
     for prefix, uri in (("ipxact", NAMESPACE), ("xsi", SCHEMA)):
         ElementTree.register_namespace(prefix, uri)
-    with files.temporary() as folder:
-        maps = registers.MAPS if module.camera else (registers.PIPELINE,)
-        of_maps = [ElementTree.parse(registers.ip_xact(of, folder)).getroot() for of in maps]
-    component = of_maps[0]
+    component = module.maps[0]
     _inside(component, "name").text = module.name
-    blocks = [_placed(_inside(root, "memoryMaps/memoryMap/addressBlock")) for root in of_maps]
+    blocks = [_placed(_inside(root, "memoryMaps/memoryMap/addressBlock")) for root in module.maps]
     component.remove(_inside(component, "memoryMaps"))
     grouped: dict[str, list[Port]] = {}
     for port in module.ports:
@@ -103,16 +96,6 @@ def write(module: Module, path: Path, place: Path | None = None) -> Path:
     notice = "<!-- SPDX-License-Identifier: Apache-2.0 -->\n<!-- Generated: do not edit. -->"
     path.write_text(f'<?xml version="1.0" encoding="UTF-8"?>\n{notice}\n{text}\n')
     return path
-
-
-def tops(folder: Path) -> list[Path]:
-    """Write the components of both tops, with their default configurations, and return the paths."""
-    written = []
-    for camera, top in enumerate(("tactile_depth", "tactile_sensor")):
-        ports = wrapper.ports(top, default_parameters())
-        module = Module(top, "systemverilog", ports, bool(camera), {"rtl": repository.sources(top)})
-        written.append(write(module, folder / f"{top}.xml"))
-    return written
 
 
 def _inside(root: Element, path: str) -> Element:

@@ -16,6 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap as wrapped
 from typing import Any
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
 
 from peakrdl_cheader.c_standards import CStandard
 from peakrdl_cheader.exporter import CHeaderExporter
@@ -29,10 +31,12 @@ from commands.common import wrapper
 from commands.common.header import sentence
 from commands.common.repository import GENERATED, ROOT, sources
 from commands.common.tabular import Table, records
+from commands.hardware.ip_xact import Module, write
 from tactile_depth.base import files
 from tactile_depth.chip.camera.pixel_format import chroma_codes
 from tactile_depth.chip.camera_configuration import FORMATS
 from tactile_depth.chip.registers.register_map import Field, Register
+from tactile_depth.chip.tactile_depth import default_parameters
 
 FUSESOC = ROOT / "tactile_depth.core"
 VENDOR = "tactile-depth"  # of the IP-XACT components
@@ -305,6 +309,22 @@ def ip_xact(of: Map, folder: Path) -> Path:
     return path
 
 
+def components(camera: bool) -> list[Element]:
+    """Return the IP-XACT components of the register maps of a top, with those of the camera or without."""
+    with files.temporary() as folder:
+        return [ElementTree.parse(ip_xact(of, folder)).getroot() for of in (MAPS if camera else (PIPELINE,))]
+
+
+def tops(folder: Path) -> list[Path]:
+    """Write the IP-XACT components of both tops, with their default configurations, and return the paths."""
+    written = []
+    for camera, top in enumerate(("tactile_depth", "tactile_sensor")):
+        ports, maps = wrapper.ports(top, default_parameters()), components(bool(camera))
+        module = Module(top, "systemverilog", ports, maps, {"rtl": sources(top)})
+        written.append(write(module, folder / f"{top}.xml"))
+    return written
+
+
 def generated(of: Map) -> dict[Path, str]:
     """Return the text of each committed file that is written from a map."""
     top = compiled(of.source)
@@ -348,7 +368,5 @@ def main() -> None:
         print(f"{'wrote' if changed else 'same '} {path.relative_to(ROOT)}")
     BUILT.mkdir(parents=True, exist_ok=True)
     python_layer(BUILT)
-    from commands.hardware import ip_xact as components  # it reads the maps from here
-
-    for path in (BUILT / LAYER_NAME, *(c_header(of, BUILT) for of in MAPS), *components.tops(BUILT)):
+    for path in (BUILT / LAYER_NAME, *(c_header(of, BUILT) for of in MAPS), *tops(BUILT)):
         print(f"wrote {path.relative_to(ROOT)}")

@@ -16,7 +16,7 @@ from typing import Annotated
 
 from commands.common import repository, run_request, wrapper
 from commands.common.variables import Name, one
-from commands.hardware import ip_xact, wrapped
+from commands.hardware import ip_xact, registers, wrapped
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip import c_header
@@ -58,7 +58,7 @@ def described(written: wrapped.Written, work: Path, out: Path, tables: str) -> P
         name=top.stem,
         language="verilog" if top.suffix == ".v" else "systemverilog",
         ports=(wrapper.shell_ports if top.suffix == ".v" else wrapper.outer_ports)(written.fields),
-        camera=bool(written.fields["Camera"]),
+        maps=registers.components(bool(written.fields["Camera"])),
         sets={
             "rtl": [
                 *repository.sources(wrapper.top_of(written.fields)),

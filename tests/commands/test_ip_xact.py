@@ -131,7 +131,7 @@ def test_the_shell_is_verilog_2005_and_the_module_has_no_package_in_its_ports(wr
 
 
 def test_the_components_of_the_tops_are_valid(tmp_path: Path) -> None:
-    for path in ip_xact.tops(tmp_path):
+    for path in registers.tops(tmp_path):
         component = etree.parse(str(path))
         schema().assertValid(component)
         assert ports_of(component).keys() > {"clk", "s_axis_tdata", "m_axis_tdata", "m_event_tdata", "s_axil_wdata"}
