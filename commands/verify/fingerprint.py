@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fingerprints of all that a result of a core depends on, as the files stand, committed or not.
 
-A proof depends on the RTL of the core and of the parts and packages below it, on the modules of its bench in formal/,
-on the protocol, and on PROOFS; mutants on the same RTL and protocol, on the testbench, STRUCTURES and MUTANTS. Of
-Python the definitions count that these reach, in tb/, formal/ and the models too: one that nothing reaches may change.
-Comments, docstrings, type hints of functions and white space do not count, nor do commands and tools.
+A proof depends on the RTL of the core and of the parts below it, on the modules of its bench in formal/, on the
+protocol, and on PROOFS; mutants on the same RTL and protocol, on the testbench, STRUCTURES and MUTANTS. Of packages,
+and of Python in tb/, formal/ and the models, the definitions count that these reach: one that nothing reaches may
+change. Comments, docstrings, type hints of functions and white space do not count, nor do commands and tools.
 """
 
 import ast
@@ -162,6 +162,43 @@ def read_rtl(file: Path, _: int) -> tuple[str, frozenset[str]]:
     return " ".join(TOKEN.findall(code)), frozenset(MODULE.findall(code))
 
 
+def items(package: str) -> list[str]:
+    """Cut the tokens of a package behind each definition."""
+    cut, item, depth = [], [], 0
+    for token in package.split():
+        item.append(token)
+        depth += (token in "([{") - (token in ")]}")
+        if token == "endfunction" or (token == ";" and not depth and "function" not in item):
+            cut.append(" ".join(item))
+            item = []
+    return [*cut, " ".join(item)]
+
+
+def defined_by(item: str) -> set[str]:
+    """Return the names that a definition of a package is reached by; none for one that always counts."""
+    if function := re.search(r"\bfunction\b.*?(\w+) \(", item):
+        return {function[1]}
+    if re.search(r"\btypedef\b", item):
+        return {item.split()[-2], *(re.findall(r"\w+", item) if "enum" in item else ())}
+    constant = re.search(r"\blocalparam\b[^=]*?(\w+) (\[[^=]*)?=", item)
+    return {constant[1]} if constant else set()
+
+
+def with_packages(texts: set[str]) -> set[str]:
+    """Return texts of SystemVerilog, of their packages the definitions alone that the others reach."""
+    packages = {text for text in texts if re.search(r"\bpackage \w+ ;", text)}
+    found = texts - packages
+    waiting = {item: defined_by(item) for package in packages for item in items(package)}
+    known: set[str] = set()
+    new = set(found)
+    while new:
+        known |= {word for text in new for word in re.findall(r"\w+", text)}
+        new = {item for item, names in waiting.items() if not names or names & known}
+        found |= new
+        waiting = {item: names for item, names in waiting.items() if item not in new}
+    return found
+
+
 def rtl_below(tops: Iterable[Path]) -> set[str]:
     """Return the tokens of files of SystemVerilog, of those whose modules and packages they use, and so on."""
     waiting, found = list(tops), {}
@@ -170,7 +207,7 @@ def rtl_below(tops: Iterable[Path]) -> set[str]:
         if file not in found:
             found[file], names = read_rtl(file, file.stat().st_mtime_ns)
             waiting += [rtl_files()[name] for name in names & rtl_files().keys()]
-    return set(found.values())
+    return with_packages(set(found.values()))
 
 
 @cache

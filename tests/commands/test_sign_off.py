@@ -68,6 +68,7 @@ def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("hdl/top.sv", "u_part", "u_other", ["proof", "mutants"]),
         ("hdl/part.sv", "input", "output", ["proof", "mutants"]),
         ("hdl/a_pkg.sv", "1", "2", ["proof", "mutants"]),
+        ("hdl/a_pkg.sv", "endpackage", "typedef logic [1:0] b_t;\nendpackage", []),
         ("hdl/part.sv", " (input logic a); // a", "(\n  input logic a\n);  // the", []),
         ("hdl/other.sv", "other", "another", []),
         ("formal/fv_top.sv", "u_shared", "u_other", ["proof"]),
