@@ -4,7 +4,7 @@
 A proof depends on the RTL of the core and of the parts below it, on the modules of its bench in formal/, on the
 protocol, and on PROOFS; mutants on the same RTL and protocol, on the testbench, STRUCTURES and MUTANTS. Of packages,
 and of Python in tb/, formal/ and the models, the definitions count that these reach: one that nothing reaches may
-change. Comments, docstrings, type hints of functions and white space do not count, nor do commands and tools.
+change. Comments, docstrings, type hints and white space do not count, nor do commands and tools.
 """
 
 import ast
@@ -54,11 +54,11 @@ def code(value: object) -> str:
 
 
 def bare(tree: ast.Module) -> list[ast.AST]:
-    """Take the docstrings and the type hints of functions out of a tree, and return its nodes."""
+    """Take the docstrings and the type hints out of a tree, and return its nodes."""
     nodes = list(ast.walk(tree))
     for node in nodes:
-        if isinstance(node, ast.arg):
-            node.annotation = None
+        if isinstance(node, ast.arg | ast.AnnAssign):
+            node.annotation = ast.Constant(None)  # a field of a class stays one
         elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
             node.returns = None
         if isinstance(body := getattr(node, "body", None), list):
