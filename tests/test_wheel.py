@@ -102,8 +102,7 @@ def git(place: Path, *arguments: str) -> str:
 def wheel(folder: Path, archive: Path) -> Any:
     """Build the wheel from the archive of sources."""
     if not list(folder.glob("*.whl")):
-        with tarfile.open(archive) as file:
-            file.extractall(folder / "unpacked", filter="data")
+        shutil.unpack_archive(archive, folder / "unpacked")
         (sources,) = (folder / "unpacked").iterdir()
         build = f"from setuptools import build_meta; build_meta.build_wheel({str(folder)!r})"
         subprocess.run([sys.executable, "-c", build], cwd=sources, check=True, capture_output=True)

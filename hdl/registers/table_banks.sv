@@ -5,8 +5,9 @@
 // docs/streams.md, Tables. table_bank changes with the next frame_start, in that cycle; table_in_use says which bank
 // the table uses. A table is `closed`, to writes and to commits, while its change-over is pending or it is captured. A
 // capture's request is high in the cycle of the write that starts it, but not in a reset; from the next cycle to that
-// of `done`, `busy` shall be high. A start is refused for a table that the build has not, and for the zero offset while its change-over
-// is pending. rst forgets what no frame has taken and leaves the banks; cold_rst, together with rst, clears them.
+// of `done`, `busy` shall be high. A start is refused for a table that the build has not, and for the zero offset while
+// its change-over is pending. rst forgets what no frame has taken and leaves the banks; cold_rst, together with rst,
+// clears them.
 // Model: models/tactile_depth/chip/registers/table_banks.py.
 
 `default_nettype none
