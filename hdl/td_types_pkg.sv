@@ -49,6 +49,14 @@ package td_types_pkg;
     logic row_short;
   } camera_faults_t;
 
+  // What CAMERA_STATUS and CAMERA_ARRIVED show as it is.
+  typedef struct packed {
+    logic        hunting;  // words are dropped up to the next start of picture
+    logic        waiting;  // no word has come since the reset
+    logic [13:0] arrived_columns;
+    logic [13:0] arrived_rows;
+  } camera_levels_t;
+
   // The position of a depth value in its frame, in the order in which depth leaves.
   typedef struct packed {
     logic frame_start;

@@ -50,7 +50,7 @@ NO_PROOF = "camera_unit and tactile_depth in a row"
 
 
 IDLE = {"frames_lost": 0, "setup_done": 0, "setup_failed": 0, "setup_entry": 0, "setup_found": 0}
-STATUS = CAMERA_REGISTERS["CAMERA_STATUS"]
+STATUS, ARRIVED = CAMERA_REGISTERS["CAMERA_STATUS"], CAMERA_REGISTERS["CAMERA_ARRIVED"]
 
 
 class Bench:
@@ -151,6 +151,7 @@ async def settings_change_between_pictures(bench: Bench) -> None:
         taken, first = bench.came.taken[camera.last_word], bench.left.offered[0]
         assert first - taken == last_word_to_first_depth(camera, bench.config)
     assert await bench.camera_word("CAMERA_STATUS") == 0
+    assert ARRIVED.unpack(await bench.camera_word("CAMERA_ARRIVED")) == {"columns": columns, "rows": rows}
 
 
 @on_bench(Bench, milliseconds=5)
@@ -163,6 +164,8 @@ async def broken_pictures_are_counted(bench: Bench) -> None:
     await bench.master.write(offset, built)
     words = bench.picture()
     assert await bench.show(words[:, :-1]) == []
+    arrived = ARRIVED.unpack(await bench.camera_word("CAMERA_ARRIVED"))
+    assert arrived["columns"] == words.shape[1] - 1
     assert await bench.show(words) == bench.depth(words)
     status = STATUS.unpack(await bench.camera_word("CAMERA_STATUS"))
     assert [name for name, bit in status.items() if bit] == ["row_short", "window_outside"]
@@ -178,7 +181,7 @@ async def pins_beside_the_stream(bench: Bench) -> None:
     bench.dut.setup_failed.value, bench.dut.setup_entry.value, bench.dut.setup_found.value = 1, 0x12, 0x34
     assert await bench.camera_word("CAMERA_LOST") == 3
     assert await bench.camera_word("CAMERA_SETUP") == 0x3412
-    assert await bench.camera_word("CAMERA_STATUS") == STATUS.pack(lost=1, setup_failed=1)
+    assert await bench.camera_word("CAMERA_STATUS") == STATUS.pack(lost=1, setup_failed=1, waiting=1)
     restarts: list[int] = []
     control = CAMERA_REGISTERS["CAMERA_CONTROL"]
 

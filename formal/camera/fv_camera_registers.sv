@@ -68,10 +68,11 @@ always_comb begin
     CameraRedGainOffset: word = red;
     CameraGreenGainOffset: word = green;
     CameraBlueGainOffset: word = blue;
-    CameraStatusOffset: word = sticky | 32'({setup_failed, setup_done, 8'd0});
+    CameraStatusOffset: word = sticky | 32'({levels.waiting, levels.hunting, setup_failed, setup_done, 8'd0});
     CameraControlOffset: word = '0;
     CameraDroppedOffset: word = dropped;
     CameraLostOffset: word = lost;
+    CameraArrivedOffset: word = {16'(levels.arrived_rows), 16'(levels.arrived_columns)};
     CameraSetupOffset: word = 32'({setup_found, setup_entry});
     default: begin
       word = '0;
@@ -93,7 +94,7 @@ always_comb begin
     restart: assert (setup_restart == (written_at == CameraControlOffset && ones[1] && mask[1]));
     picture_size: assert (32'(settings.columns) == 32'(picture[12:0]) && 32'(settings.rows) == picture >> 16);
     window_place: assert (32'(settings.window_x) == 32'(window[12:0]) && 32'(settings.window_y) == window >> 16);
-    levels: assert (32'(settings.black_level) == black && 32'(settings.red_gain) == red
+    colours: assert (32'(settings.black_level) == black && 32'(settings.red_gain) == red
         && 32'(settings.green_gain) == green && 32'(settings.blue_gain) == blue);
     set_wins: cover (written_at == CameraStatusOffset && ones[1] && seen[1] && sticky[1]);
     kept: cover (clears && dropped == 32'd1 && seen != '0 && given_up == 8'd3);

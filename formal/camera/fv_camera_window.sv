@@ -34,7 +34,7 @@ assign fits = x + count_t'(WindowColumns) <= usable && y + count_t'(WindowRows) 
 
 // The word: how many of the picture come before it, and where it is.
 count_t count, in_row, row, column, needed, needed_column;
-logic half, row_ends, word, starts, hunting, passed;
+logic half, row_ends, word, starts, drops, passed;
 assign in_row = c * count_t'(WordsPerPixel);
 assign row = count / (in_row == '0 ? 8'd1 : in_row);
 assign column = (count % (in_row == '0 ? 8'd1 : in_row)) / count_t'(WordsPerPixel);
@@ -50,7 +50,7 @@ assign passed = open && count >= needed;
 assign outside = starts && !fits;
 assign misplaced = word && !outside && s_last != row_ends;
 assign early = s_valid && open && s_user;
-assign missing = s_valid && !open && !s_user && !hunting;
+assign missing = s_valid && !open && !s_user && !drops;
 assign short_now = misplaced && s_last && !passed;
 assign long_now = misplaced && !s_last && !passed;
 assign fault = outside || short_now || long_now || missing || (early && !passed);
@@ -77,11 +77,11 @@ always_ff @(posedge clk) begin
     data <= WordsPerPixel == 2 ? {8'd0, s_data[7:0], low} : s_data;
     if (word) begin
       open <= 1'b1;
-      hunting <= 1'b0;
+      drops <= 1'b0;
       picture <= settings;
       count <= count + 8'd1;
     end
-    if (missing || misplaced || outside || early) hunting <= 1'b1;
+    if (missing || misplaced || outside || early) drops <= 1'b1;
     if (ends) begin
       open <= 1'b0;
       count <= '0;
@@ -91,7 +91,7 @@ always_ff @(posedge clk) begin
     leaves <= 1'b0;
     breaks <= 1'b0;
     open <= 1'b0;
-    hunting <= 1'b0;
+    drops <= 1'b0;
     count <= '0;
   end
 end
@@ -101,6 +101,7 @@ always_comb begin
     ready: assert (s_ready == (en && (!open || !s_user)));
     flags: assert ({row_short, row_long, start_missing, start_early, window_outside}
         == (en ? {short_now, long_now, missing, early && !passed, outside} : 5'd0));
+    hunts: assert (hunting == drops);
     in_time: assert ({out_valid, out_abort} == {leaves, breaks});
     if (out_valid) begin
       pixels: assert (out_data == data);
@@ -113,6 +114,6 @@ always_comb begin
     harmless_start: cover (en && early && passed);
     leaves_the_picture: cover (en && outside && c == 8'd4 && x == 8'd3);
     broken_at_the_end: cover (en && long_now && count + 8'd1 == needed);
-    two_pictures: cover (starts && en && out_valid && !hunting);
+    two_pictures: cover (starts && en && out_valid && !drops);
   end
 end

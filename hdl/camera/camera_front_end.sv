@@ -6,7 +6,8 @@
 // Stream in: AXI4-Stream Video of a camera's pictures in its format (pixel_format.sv), words or single bytes.
 // Stream out: AXI4-Stream Video of the grid, 24-bit pixels as tactile_depth takes them. One pixel a cycle.
 // A malformed picture raises one fault for one cycle (camera_window.sv). It leaves as one frame with a row too short or
-// too long, which the frame_guard behind drops whole and flags once; m_axis carries no other malformed frame.
+// too long, which the frame_guard behind drops whole and flags once; m_axis carries no other malformed frame. levels
+// show the size of the picture that came last (td_frame_size).
 // Latency: 23 cycles from the word that completes a block, gaps or not; YUYV 25, or 26 from the second pixel of a pair.
 // A stalled sink stops all of it. Bit-accurate model, parameters: models/tactile_depth/chip/camera/camera_front_end.py.
 
@@ -27,6 +28,7 @@ module camera_front_end
   input  wire                   rst,
   input  wire camera_settings_t settings,
   output camera_faults_t        faults,
+  output camera_levels_t        levels,
   input  wire  [23:0]           s_axis_tdata,
   input  wire                   s_axis_tvalid,
   output logic                  s_axis_tready,
@@ -56,8 +58,18 @@ module camera_front_end
     .m_valid(held_valid), .m_ready(held_ready), .m_data({held_user, held_last, held_data})
   );
 
+  logic waiting;
+  logic [13:0] arrived_columns, arrived_rows;
+  td_frame_size #(.CountWidth(14), .WordsPerPixel(format_words(Format))) u_size (
+    .clk, .rst, .in_valid(held_valid & held_ready), .in_last(held_last), .in_user(held_user),
+    .columns(arrived_columns), .rows(arrived_rows), .silent(waiting)
+  );
+  assign levels.waiting = waiting;
+  assign levels.arrived_columns = arrived_columns;
+  assign levels.arrived_rows = arrived_rows;
+
   logic word_valid, in_window, odd_row, odd_column, word_row_start, word_frame_start, word_abort;
-  logic row_short, row_long, start_missing, start_early, window_outside;
+  logic row_short, row_long, start_missing, start_early, window_outside, hunting;
   logic [23:0] word;
   camera_window #(
     .WindowColumns(WindowColumns), .WindowRows(WindowRows), .WordsPerPixel(format_words(Format)),
@@ -67,8 +79,9 @@ module camera_front_end
     .window_y(settings.window_y), .s_valid(held_valid), .s_ready(held_ready), .s_data(held_data), .s_last(held_last),
     .s_user(held_user), .out_valid(word_valid), .out_data(word), .out_inside(in_window), .out_odd_row(odd_row),
     .out_odd_column(odd_column), .out_row_start(word_row_start), .out_frame_start(word_frame_start),
-    .out_abort(word_abort), .row_short, .row_long, .start_missing, .start_early, .window_outside
+    .out_abort(word_abort), .row_short, .row_long, .start_missing, .start_early, .window_outside, .hunting
   );
+  assign levels.hunting = hunting;
   assign faults.row_short = row_short;
   assign faults.row_long = row_long;
   assign faults.start_missing = start_missing;

@@ -3,6 +3,7 @@
 //
 //   write -> setting_registers -> settings of camera_front_end
 //   read <-- sticky bits and counters <- faults, frames_lost
+//        <-- levels of camera_front_end
 //        <-> camera_setup: restart, and its state
 //
 // The map is docs/generated/camera-registers.md; its offsets continue those of axil_registers. A write takes effect in
@@ -44,6 +45,7 @@ module camera_registers
 
   output camera_settings_t        settings,       // of camera_front_end
   input  wire camera_faults_t     faults,
+  input  wire camera_levels_t     levels,
   input  wire  [7:0]              frames_lost,    // of dvp_receive; 0 without one
   output logic                    setup_restart,  // of camera_setup; its other pins are 0 without one
   input  wire                     setup_done,
@@ -104,6 +106,11 @@ module camera_registers
     if (rst) {faults_q, lost_q, status, dropped, lost} <= '0;
   end
 
+  logic [31:0] level_bits, arrived;
+  assign level_bits = (32'(levels.hunting) << CameraStatusHuntingBit) | (32'(levels.waiting) << CameraStatusWaitingBit);
+  assign arrived =
+    (32'(levels.arrived_columns) << CameraArrivedColumnsLsb) | (32'(levels.arrived_rows) << CameraArrivedRowsLsb);
+
   logic [31:0] word;  // that setting_registers does not hold
   always_comb begin
     case (read_offset)
@@ -116,10 +123,11 @@ module camera_registers
       end
       CameraStatusOffset: begin
         word = status | (32'(setup_done) << CameraStatusSetupDoneBit)
-          | (32'(setup_failed) << CameraStatusSetupFailedBit);
+          | (32'(setup_failed) << CameraStatusSetupFailedBit) | level_bits;
       end
       CameraDroppedOffset: word = dropped;
       CameraLostOffset: word = lost;
+      CameraArrivedOffset: word = arrived;
       CameraSetupOffset: begin
         word = (32'(setup_entry) << CameraSetupEntryLsb) | (32'(setup_found) << CameraSetupFoundLsb);
       end

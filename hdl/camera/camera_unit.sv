@@ -57,11 +57,12 @@ module camera_unit
 
   camera_settings_t settings;
   camera_faults_t faults;
+  camera_levels_t levels;
   camera_front_end #(
     .Rows(Rows), .Columns(Columns), .Numerator(Numerator), .Denominator(Denominator), .Format(Format), .Phase(Phase)
   ) u_front_end (
-    .clk, .rst, .settings, .faults, .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
-    .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser
+    .clk, .rst, .settings, .faults, .levels, .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast,
+    .s_axis_tuser, .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser
   );
 
   logic writable, readable;
@@ -73,8 +74,8 @@ module camera_unit
   ) u_registers (
     .clk, .rst, .write(register_command.write), .write_offset(register_command.write_offset),
     .write_ones(register_command.write_ones), .write_mask(register_command.write_mask), .writable,
-    .read_offset(register_command.read_offset), .readable, .read_data, .settings, .faults, .frames_lost, .setup_restart,
-    .setup_done, .setup_failed, .setup_entry, .setup_found
+    .read_offset(register_command.read_offset), .readable, .read_data, .settings, .faults, .levels, .frames_lost,
+    .setup_restart, .setup_done, .setup_failed, .setup_entry, .setup_found
   );
   assign register_answer.writable = writable;
   assign register_answer.readable = readable;

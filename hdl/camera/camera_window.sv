@@ -50,7 +50,8 @@ module camera_window #(
   output logic                 row_long,
   output logic                 start_missing,
   output logic                 start_early,
-  output logic                 window_outside
+  output logic                 window_outside,
+  output logic                 hunting  // words up to the next start are dropped and not flagged
 );
 
   localparam logic [CountWidth:0] Width = (CountWidth + 1)'($unsigned(WindowColumns));
@@ -76,7 +77,6 @@ module camera_window #(
 
   logic open;     // inside a picture
   logic passed;   // the window's last pixel was taken
-  logic hunting;  // words up to the next start are dropped and not flagged
   logic half;     // the first byte of a pixel was taken
   logic [CountWidth-1:0] column, row;  // of the pixel that comes next; 0 between pictures
   assign last_column = open ? last_column_q : next_last_column;

@@ -22,6 +22,7 @@ package td_camera_map_pkg;
   localparam int CameraDroppedOffset = 32'h128;
   localparam int CameraLostOffset = 32'h12c;
   localparam int CameraSetupOffset = 32'h130;
+  localparam int CameraArrivedOffset = 32'h134;
 
   // Bits: number of a flag, lowest of a wider field.
   localparam int CameraPictureColumnsLsb = 0;
@@ -43,10 +44,14 @@ package td_camera_map_pkg;
   localparam int CameraStatusLostBit = 5;
   localparam int CameraStatusSetupDoneBit = 8;
   localparam int CameraStatusSetupFailedBit = 9;
+  localparam int CameraStatusHuntingBit = 10;
+  localparam int CameraStatusWaitingBit = 11;
   localparam int CameraControlClearCountersBit = 0;
   localparam int CameraControlRestartSetupBit = 1;
   localparam int CameraSetupEntryLsb = 0;
   localparam int CameraSetupFoundLsb = 8;
+  localparam int CameraArrivedColumnsLsb = 0;
+  localparam int CameraArrivedRowsLsb = 16;
 
   // Values of a field.
   localparam int CameraFormatPixelFormatCount = 10;
@@ -91,7 +96,7 @@ package td_camera_map_pkg;
       CameraPictureOffset, CameraWindowOffset, CameraWindowSizeOffset, CameraFormatOffset,
       CameraBlackLevelOffset, CameraRedGainOffset, CameraGreenGainOffset, CameraBlueGainOffset,
       CameraStatusOffset, CameraControlOffset, CameraDroppedOffset, CameraLostOffset,
-      CameraSetupOffset: is_camera_register = 1'b1;
+      CameraSetupOffset, CameraArrivedOffset: is_camera_register = 1'b1;
       default: is_camera_register = 1'b0;
     endcase
   endfunction

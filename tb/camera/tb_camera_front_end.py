@@ -26,7 +26,9 @@ from tactile_depth.chip.camera.camera_front_end import (
 from tactile_depth.chip.camera.camera_front_end import latency as camera_front_end_latency
 from tactile_depth.chip.camera.camera_window import FAULTS, Settings, camera_window
 from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraConfiguration
+from tactile_depth.chip.common.td_frame_size import FrameSize
 from tactile_depth.chip.video.frame_guard import Word, frame_guard
+from tb import structs
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSink, AxisSource, broken, positions, profile
 from tb.camera.slots import camera_words, pack_settings
 from tb.cases import on_bench
@@ -124,6 +126,13 @@ class Bench:
         self.left.forget()
         self.faults.clear()
 
+    def check_levels(self, **others: int) -> None:
+        """Compare the levels with what has come: pictures of the size of the settings, but for `others`."""
+        rows, columns = self.camera.picture
+        whole = {"hunting": 0, "waiting": 0, "arrived_columns": columns, "arrived_rows": rows}
+        levels = structs.of(self.dut.levels, "camera_levels_t")
+        assert levels == whole | others, f"levels are {levels}"
+
     def picture(self) -> tuple[list[Word], np.ndarray]:
         """Return the words of a picture, and the frame of the grid."""
         words = self.rng.integers(0, 1 << 24, self.camera.picture)
@@ -157,6 +166,7 @@ class Bench:
 async def pictures(bench: Bench, stalls: str) -> None:
     """Send pictures: every frame equals the model, and without stalls all have the same latency to their last pixel."""
     want, last = [], []
+    bench.check_levels(waiting=1, arrived_columns=0, arrived_rows=0)
     for index in range(MANY + 1):
         words, frame = bench.picture()
         want.append(frame)
@@ -166,6 +176,7 @@ async def pictures(bench: Bench, stalls: str) -> None:
     got = await bench.frames()
     np.testing.assert_array_equal(got, want)
     assert not bench.faults
+    bench.check_levels()
     if stalls == "none":
         pixels = want[0].size // 3
         out = [bench.left.offered[(index + 1) * pixels - 1] for index in range(len(want))]
@@ -189,6 +200,10 @@ async def broken_pictures(dut: Any, kind: str, stalls: str) -> None:
         np.testing.assert_array_equal(got[-1], second, f"{kind} at {position}")
         harmless = not bench.faults or (kind == "start_extra" and position > bench.camera.last_word)
         assert len(got) == 2 + harmless, f"{kind} at {position}: {bench.faults}"
+        size = FrameSize(14, bench.camera.words_per_pixel)
+        for word in bench.came.words:
+            size.take(word.last, word.user)
+        bench.check_levels(arrived_rows=size.rows)
         bench.forget()
 
 

@@ -11,6 +11,7 @@ from tactile_depth.chip.camera.camera_registers import (
     CONTROL,
     COUNTERS,
     CameraRegisters,
+    Levels,
     Setup,
     camera_registers_parameters,
 )
@@ -61,11 +62,12 @@ class Registers:
         written, read = (CAMERA_REGISTERS.get(NAME_AT.get(pins[f"{kind}_offset"], "")) for kind in ("write", "read"))
         model, ones, restarts = self.model, pins["write_ones"], False
         setup = Setup(bool(pins["setup_done"]), bool(pins["setup_failed"]), pins["setup_entry"], pins["setup_found"])
+        levels = Levels(**structs.unpack("camera_levels_t", pins["levels"]))
         out = {
             "settings": structs.pack("camera_settings_t", model.settings),
             "writable": bool(written and written.writable),
             "readable": bool(read),
-            "read_data": model.read(read.name, setup) if read else 0,
+            "read_data": model.read(read.name, setup, levels) if read else 0,
         }
         if pins["write"] and written:
             restarts = written is CONTROL and bool(CONTROL.unpack(ones)["restart_setup"])
@@ -86,7 +88,7 @@ async def registers(dut: Any) -> None:
         "faults": [0, sum(bits), *bits],
         "frames_lost": [0, *range(256)],
         **dict.fromkeys(("setup_done", "setup_failed"), 1.0),
-        **dict.fromkeys(("setup_entry", "setup_found"), WORD),
+        **dict.fromkeys(("setup_entry", "setup_found", "levels"), WORD),
     }
 
     def legal(core: Registers, pins: Pins) -> None:

@@ -18,6 +18,7 @@ from tactile_depth.chip.registers.register_map import CAMERA_MAP, CAMERA_REGISTE
 from tactile_depth.chip.registers.setting_registers import SettingRegisters
 
 STATUS, CONTROL = CAMERA_REGISTERS["CAMERA_STATUS"], CAMERA_REGISTERS["CAMERA_CONTROL"]
+ARRIVED = CAMERA_REGISTERS["CAMERA_ARRIVED"]
 COUNTERS = ("CAMERA_DROPPED", "CAMERA_LOST")
 NUMBERS = ("black_level", "red_gain", "green_gain", "blue_gain")
 """Settings that are registers of their own."""
@@ -43,6 +44,16 @@ class Setup:
     found: int = 0
 
 
+@dataclass(frozen=True)
+class Levels:
+    """Outputs of camera_front_end that are shown as they are, by the members of `camera_levels_t`."""
+
+    hunting: int = 0
+    waiting: int = 0
+    arrived_columns: int = 0
+    arrived_rows: int = 0
+
+
 @dataclass
 class CameraRegisters:
     """State of the registers of one build.
@@ -52,7 +63,7 @@ class CameraRegisters:
     parameters : mapping
         See `camera_registers_parameters`.
     values : dict
-        Register name to word, as a read returns it, without what `Setup` shows.
+        Register name to word, as a read returns it, without what `Setup` and `Levels` show.
     """
 
     parameters: Mapping[str, int]
@@ -90,10 +101,12 @@ class CameraRegisters:
             **{name: self.values[f"CAMERA_{name.upper()}"] for name in NUMBERS},
         }
 
-    def read(self, name: str, setup: Setup = Setup()) -> int:
+    def read(self, name: str, setup: Setup = Setup(), levels: Levels = Levels()) -> int:
         """Return the word of a register."""
+        waits = {"hunting": levels.hunting, "waiting": levels.waiting}
         shown = {
-            STATUS.name: STATUS.pack(setup_done=int(setup.done), setup_failed=int(setup.failed)),
+            STATUS.name: STATUS.pack(setup_done=int(setup.done), setup_failed=int(setup.failed), **waits),
+            ARRIVED.name: ARRIVED.pack(columns=levels.arrived_columns, rows=levels.arrived_rows),
             "CAMERA_SETUP": CAMERA_REGISTERS["CAMERA_SETUP"].pack(entry=setup.entry, found=setup.found),
         }
         return self.values[name] | shown.get(name, 0)

@@ -146,6 +146,7 @@ class CameraWindow:
             "s_ready": pins["en"] and not (self.now and pins["s_user"]),
             "out_valid": pixel is not None,
             "out_abort": abort,
+            "hunting": self.hunting,
         }
         if pixel is not None:
             out |= {"out_data": pixel.data, "out_odd_row": pixel.row % 2, "out_odd_column": pixel.column % 2}
