@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.chip.registers.register_map import CAMERA_REGISTERS, REGISTERS
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.registers import read_words
 
 NAMES = ("STATUS", "ARRIVED", "GRID", "FRAMES_DROPPED")
+CAMERA = ("CAMERA_STATUS", "CAMERA_ARRIVED", "CAMERA_PICTURE")
 PAGE = "docs/integrate.md, 5"
 
 
@@ -47,7 +48,9 @@ def arrived(line: Channel, is_awaited: bool = False) -> Arrived:
     fields = {name: REGISTERS[name].unpack(word) for name, word in read_words(line, NAMES).items()}
     status, size, grid = fields["STATUS"], fields["ARRIVED"], fields["GRID"]
     columns, rows = size["columns"], size["rows"]
-    problem, remedy = "", ""
+    problem, remedy = _of_camera(line, is_awaited)
+    if problem:
+        return Arrived(rows, columns, bool(status["hunting"]), bool(status["stalled"]), problem, remedy)
     if not columns and not status["hunting"] and fields["FRAMES_DROPPED"]["value"]:
         problem, remedy = "no end of a row has come", f"set tlast with the last pixel of each row: {PAGE}"
     elif columns and (columns, rows or grid["rows"]) != (grid["columns"], grid["rows"]):
@@ -61,3 +64,20 @@ def arrived(line: Channel, is_awaited: bool = False) -> Arrived:
     elif is_awaited and not columns:
         problem, remedy = "no row of pixels has come since the reset", "start the camera"
     return Arrived(rows, columns, bool(status["hunting"]), bool(status["stalled"]), problem, remedy)
+
+
+def _of_camera(line: Channel, is_awaited: bool) -> tuple[str, str]:
+    """Return problem and remedy of the pictures in front of the camera front end; empty without one, and over `uio`."""
+    words = line.read([CAMERA_REGISTERS[name].offset for name in CAMERA])
+    if len(words) < len(CAMERA):
+        return "", ""
+    status, size, picture = (CAMERA_REGISTERS[name].unpack(word) for name, word in zip(CAMERA, words, strict=True))
+    columns, rows = size["columns"], size["rows"] or picture["rows"]
+    if columns and (columns, rows) != (picture["columns"], picture["rows"]):
+        problem = f"the camera sends {columns} x {rows}, CAMERA_PICTURE is {picture['columns']} x {picture['rows']}"
+        return problem, "set CAMERA_PICTURE or the camera: docs/camera.md"
+    if status["hunting"]:
+        return "words of the camera come without a start of picture, and are dropped", "set tuser: docs/camera.md"
+    if is_awaited and status["waiting"]:
+        return "no word of the camera has come since the reset", "check its clock, VSYNC and set-up: docs/camera.md"
+    return "", ""
