@@ -31,18 +31,22 @@ module td_frame_size #(
   logic [CountWidth-1:0] row;              // rows that have ended in the frame that arrives
   assign words_now = words + WordWidth'(!words[WordWidth-1]);
 
+  // Counts that begin again have a reset of their own, which costs no logic.
+  logic row_ends, frame_starts;
+  assign row_ends = in_valid & in_last;
+  assign frame_starts = in_valid & in_user;
   always_ff @(posedge clk) begin
-    if (in_valid) begin
-      silent <= 1'b0;
-      framed <= framed | in_user;
-      words <= in_last ? '0 : words_now;
-      if (in_last) columns <= words_now[WordWidth-1-:CountWidth];
-      row <= in_user ? '0 : row + CountWidth'(in_last && framed && !row[CountWidth-1]);
-      if (in_user) rows <= row;
-    end
+    if (rst || row_ends) words <= '0;
+    else if (in_valid) words <= words_now;
+    if (rst || frame_starts) row <= '0;
+    else if (row_ends && framed && !row[CountWidth-1]) row <= row + CountWidth'(1);
+    if (row_ends) columns <= words_now[WordWidth-1-:CountWidth];
+    if (frame_starts) rows <= row;
+    if (in_valid) silent <= 1'b0;
+    if (frame_starts) framed <= 1'b1;
     if (rst) begin
       silent <= 1'b1;
-      {framed, words, row, columns, rows} <= '0;
+      {framed, columns, rows} <= '0;
     end
   end
 
