@@ -42,10 +42,10 @@ Each row has the newest results of a core: whether its proofs hold (`make formal
 mutants its testbench kills (`make mutate`, [mutation.md](../mutation.md)), and the commit of each run, with + where
 sources were not committed. 32a97ff is version 0.1.0.
 
-A result has a fingerprint of all that it depends on. That of a proof: the RTL of the core and of the parts and packages
-below it, its bench and what that uses of `formal/`, PROOFS. That of mutants: the same RTL, the testbench, the protocol,
-STRUCTURES, MUTANTS, and each definition of `tb/` and of the models that these reach: a change of code that all
-testbenches use, as much of `tb/stream.py`, makes all mutants *changed*; comments, docstrings and layout change nothing.
+A result has a fingerprint of all that it depends on. That of a proof: the RTL of the core and of the parts below it,
+what they use of packages, its bench and what that uses of `formal/`, PROOFS. That of mutants: the same RTL, the
+testbench, the protocol, STRUCTURES, MUTANTS, and each definition of `tb/` and of the models that these reach: a change
+of code that all testbenches use makes all mutants *changed*; comments, docstrings, type hints and layout nothing.
 *Sources* compares with the day when this page was written, `make sign-off CHECK=1` with today. *Few* are less than 100
 mutants of a structure that has more.
 
