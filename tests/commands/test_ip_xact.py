@@ -21,7 +21,7 @@ INTERFACES = {"s_axis": "slave", "m_axis": "master", "m_event": "master", "s_axi
 
 
 class Wrapped(NamedTuple):
-    """What the command wrote: the outermost module, all of them, and the component."""
+    """Files that the command wrote: the outermost module, all of them, and the component."""
 
     top: str
     modules: list[Path]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a device says of the pictures of a camera in front of its camera front end."""
+"""Words of a device about the pictures of a camera in front of its camera front end."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a device gives of pictures is what the package gives, with its doubts; another depth is refused."""
+"""A device gives of pictures what the package gives, with its doubts; another depth is refused."""
 
 from __future__ import annotations
 

@@ -70,8 +70,7 @@ class GridPress:
     @property
     def margin(self) -> float:
         """Distance from the contact circle to the nearest edge of the grid; negative if it is cut."""
-        rows, columns = self.grid
-        across, down = min(self.x, columns - 1 - self.x), min(self.y, rows - 1 - self.y)
+        down, across = (min(at, length - 1 - at) for at, length in zip((self.y, self.x), self.grid, strict=True))
         return min(across * self.aspect, down) - self.contact_radius
 
     @property

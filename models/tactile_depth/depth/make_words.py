@@ -56,7 +56,7 @@ def _depth_range(config: Configuration, pixel_pitch_mm: float) -> str:
 
 
 class Sources:
-    """Where sensor and pictures of a pipeline come from; what no word names stands in < >.
+    """Origin of sensor and pictures of a pipeline; what no word names stands in < >.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Sources:
         path = _path(pictures)
         one = Path(path).suffix.lower() in PICTURE_SUFFIXES
         self.reference = path if one else "<the picture of its reference>"
-        self.zero = "<captured with an earlier reference>" if self.zero_offset else ""
+        self.zero = EARLIER_REFERENCE if self.zero_offset else ""
 
     def take_zero(self, pictures: Pictures) -> None:
         """Note the pictures of a zero offset."""
