@@ -65,6 +65,19 @@ def plug(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Plug]:
 
 
 @pytest.fixture
+def cable(pipeline: td.Pipeline, plug: Plug) -> Cable:
+    return plug(pipeline)
+
+
+@pytest.fixture
+def device(cable: Cable, pipeline: td.Pipeline) -> Iterator[td.Device]:
+    """Device on the cable with the calibration of the `pipeline` of the test's module."""
+    with td.Device(cable.address, pipeline) as device:
+        device.load()
+        yield device
+
+
+@pytest.fixture
 def simulate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Setup], None]:
     """Return a function after which `sim` starts the model of a device in place of the simulator of the RTL."""
 

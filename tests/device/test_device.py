@@ -7,7 +7,7 @@ import itertools
 import re
 import textwrap
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,19 +30,6 @@ CONFIGURATIONS: Mapping[str, Mapping[str, Any]] = {
     "without zero offset": {"zero_offset": False},
     "without light gains": {"light_gains": False, "data_width": 20},
 }
-
-
-@pytest.fixture
-def cable(pipeline: td.Pipeline, plug: Plug) -> Cable:
-    return plug(pipeline)
-
-
-@pytest.fixture
-def device(cable: Cable, pipeline: td.Pipeline) -> Iterator[td.Device]:
-    """Device with the calibration."""
-    with td.Device(cable.address, pipeline) as device:
-        device.load()
-        yield device
 
 
 def require_equal(frames: list[td.DeviceFrame], results: list[td.Result]) -> None:

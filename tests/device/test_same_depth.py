@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, get_args
 
@@ -34,18 +34,6 @@ FIRST = r"call load\(\) first"
 @pytest.fixture(scope="module")
 def pipeline(sample: td.Sample) -> td.Pipeline:
     return td.Pipeline(sample.sensor, reference=sample.reference, grid=GRID, model="quadratic")
-
-
-@pytest.fixture
-def cable(pipeline: td.Pipeline, plug: Plug) -> Cable:
-    return plug(pipeline)
-
-
-@pytest.fixture
-def device(cable: Cable, pipeline: td.Pipeline) -> Iterator[td.Device]:
-    with td.Device(cable.address, pipeline) as device:
-        device.load()
-        yield device
 
 
 def in_light(image: np.ndarray, light: Any) -> np.ndarray:
