@@ -37,7 +37,8 @@ def test_it_names_targets(core: Any) -> None:
 
 
 def test_the_target_sim_has_every_testbench_of_the_whole(core: Any) -> None:
-    assert core["targets"]["sim"]["flow_options"]["cocotb_module"] == repository.testbench("tactile_depth")
+    modules = core["targets"]["sim"]["flow_options"]["cocotb_module"]
+    assert modules == f"tb.exit_status,{repository.testbench('tactile_depth')}"
 
 
 def test_part_is_that_of_the_vivado_script(core: Any) -> None:
@@ -89,26 +90,36 @@ def test_the_generator_writes_a_module_and_its_tables(tmp_path: Path) -> None:
         assert f"configuration[32*{field}Field+:32] = 32'd{number};" in module
 
 
-@pytest.mark.regress
-def test_the_target_sim_runs_the_testbench_of_the_whole(tmp_path: Path) -> None:
-    """Simulate with the variables that cocotb 2.1 needs and FuseSoC does not set; without them nothing would run."""
+def test_the_target_sim_has_the_status_of_its_tests(tmp_path: Path) -> None:
+    """Simulate as docs/integrate.md shows, then with settings that are not the module's, without a test, and so on."""
     binary = Path(sys.executable).parent / "fusesoc"
     if not binary.exists():
         pytest.skip("fusesoc is not installed: pip install -r requirements-hardware.txt")
     simulator.check("icarus")
-    choices = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
-    settings = RunSettings(level="first", device={"configuration": choices}).environment
     path = os.pathsep.join(map(str, (repository.ROOT, repository.ROOT / "models")))
-    environment = os.environ | {"PATH": f"{binary.parent}:{os.environ['PATH']}", "PYTHONPATH": path} | settings
+    users = f"{find_libpython()};{pygpi_entry_point()}"
+    environment = os.environ | {"PATH": f"{binary.parent}:{os.environ['PATH']}", "COCOTB_RANDOM_SEED": "1"}
     command = [str(binary), "--cores-root", str(repository.ROOT), "run", "--target", "sim", "tactile_depth"]
-    cocotb = {"GPI_USERS": f"{find_libpython()};{pygpi_entry_point()}", "COCOTB_RANDOM_SEED": "1"}
-    ended = [
-        subprocess.run(command, cwd=tmp_path, env=environment | more, capture_output=True, text=True, check=False)
-        for more in ({}, cocotb)
-    ]
-    assert [bool(each.returncode) for each in ended] == [True, False], [each.stdout + each.stderr for each in ended]
+
+    def ended(rows: int = 8, **more: str) -> str:
+        """Return the last line of stderr before those of make; only with none the status is 0."""
+        choices = {"columns": 16, "rows": rows, "solver": "tridiagonal"}
+        own = {"GPI_USERS": users, "PYTHONPATH": path} | more
+        settings = RunSettings(level="first", device={"configuration": choices}).environment
+        result = subprocess.run(
+            command, cwd=tmp_path, env=environment | settings | own, capture_output=True, text=True, check=False
+        )
+        lines = [line for line in result.stderr.splitlines() if not line.startswith(("make", "ERROR", "INFO"))]
+        assert bool(result.returncode) == bool(lines), result.stdout + result.stderr
+        return lines[-1] if lines else ""
+
+    assert ended() == ""
     (results,) = tmp_path.rglob("results.xml")
     assert get_results(results) == (2, 0)
+    assert ended(rows=16) == "2 of 2 tests failed"
+    assert ended(COCOTB_TEST_FILTER="absent") == "no test ran"
+    assert "No module named 'tb'" in ended(PYTHONPATH="")
+    assert ended(GPI_USERS="").startswith("GPI_USERS is not set")
 
 
 def test_the_generator_refuses_what_it_does_not_know(tmp_path: Path) -> None:
