@@ -175,6 +175,11 @@ package td_types_pkg;
     counted = clear ? 32'(step) : sum[31:0] | {32{sum[32]}};
   endfunction
 
+  // The signature of words, which starts with all ones, and of one word more: a multiple-input signature register.
+  function automatic logic [31:0] signature_step(input logic [31:0] last, input logic [31:0] word);
+    signature_step = (last >> 1) ^ (last[0] ? 32'hEDB8_8320 : 32'd0) ^ word;
+  endfunction
+
   // Nodes of a map: one for each complete block of pixels.
   function automatic int nodes(input int rows, input int columns, input int block_log2);
     nodes = (rows / (1 << block_log2)) * (columns / (1 << block_log2));
