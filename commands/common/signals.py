@@ -25,13 +25,14 @@ _guards: set[int] = set()
 
 
 def living(known: Iterable[psutil.Process] = ()) -> list[psutil.Process]:
-    """Return the living descendants of this process and those of `known`, whose parents may have ended.
+    """Return the living descendants of this process, the others of its run, whose parents have ended, and `known`.
 
     Trackers of multiprocessing are left out: they delete the shared memory of the workers, and end by themselves. The
     guard of this process is left out too.
     """
-    processes = []
-    for process in {*known, *psutil.Process().children(recursive=True)}:
+    processes, run = [], os.environ.get(RUN, "")
+    own = of_run(run) if run.endswith(f"-{os.getpid()}") else ()  # in a forked worker the run is its parent's
+    for process in {*known, *own, *psutil.Process().children(recursive=True)}:
         with contextlib.suppress(psutil.Error):  # the process has ended meanwhile
             left_out = process.pid in _guards or "resource_tracker" in " ".join(process.cmdline())
             if process.status() != psutil.STATUS_ZOMBIE and not left_out:
@@ -40,7 +41,7 @@ def living(known: Iterable[psutil.Process] = ()) -> list[psutil.Process]:
 
 
 def end_children(known: Iterable[psutil.Process] = ()) -> None:
-    """End descendants and those that `living` adds by SIGTERM, and those that still run after `GRACE_S` by SIGKILL."""
+    """End what `living` returns by SIGTERM, and those that still run after `GRACE_S` by SIGKILL."""
     processes = living(known)
     for number in (signal.SIGTERM, signal.SIGKILL):
         deadline = time.monotonic() + GRACE_S

@@ -192,6 +192,17 @@ def test_grandchildren_end_and_those_that_ignore_sigterm_too() -> None:
         assert process.wait(WAIT_S) == -signal.SIGTERM
 
 
+def test_a_child_of_a_child_that_ends_first_ends_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A shell that starts a program while it is ended leaves it without a parent, as iverilog may leave ivl."""
+    monkeypatch.setenv(signals.RUN, f"{os.environ.get(signals.RUN, '')}/0-{os.getpid()}")
+    shell = "trap 'sleep 99 & exit' TERM; echo up; while :; do sleep 0.01; done"
+    with subprocess.Popen(["sh", "-c", shell], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "up\n"  # type: ignore[union-attr]
+        signals.end_children()
+        assert [*signals.of_run(os.environ[signals.RUN])] == []
+        assert process.wait(WAIT_S) == 0
+
+
 def test_calls_of_a_pool_that_have_not_begun_are_cancelled() -> None:
     running, calls = threading.Event(), []
 
