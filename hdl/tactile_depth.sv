@@ -111,13 +111,14 @@ module tactile_depth
   );
 
   logic out_of_step, depth_busy, depth_valid;
+  frame_flags_t depth_flags;
   depth_position_t depth_position;
   logic [Lanes*DataWidth-1:0] depth_data;
   depth_unit #(.TableFolder(TableFolder), .Config(Config)) u_depth (
     .clk, .rst, .en, .table_command, .table_answer(zero_answer), .table_bank, .table_in_use(zero_in_use),
     .capture_command(zero_command), .capture_status(zero_status), .saturations(depth_saturations), .out_of_step,
     .busy(depth_busy), .pixel_frame_end, .pixel_bad, .frame_time, .burst_start, .solved_frame_start, .solved_data,
-    .depth_valid, .depth_position, .depth_data, .depth_time
+    .depth_valid, .depth_position, .depth_data, .depth_time, .depth_flags
   );
 
   contact_settings_t contact_settings;
@@ -127,7 +128,7 @@ module tactile_depth
     .clk, .rst, .en, .settings(contact_settings), .now, .frame_leaves(events.frame_out),
     .depth_dropped(events.depth_dropped), .stalled(levels.stalled), .record_valid(events.record_valid),
     .record_lost(events.record_lost), .touching(levels.touching), .record, .first_depth_latency,
-    .first_depth_latency_valid, .depth_valid, .depth_position, .depth_data, .depth_time, .m_axis_tdata,
+    .first_depth_latency_valid, .depth_valid, .depth_position, .depth_data, .depth_time, .depth_flags, .m_axis_tdata,
     .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact, .m_event_tdata, .m_event_tvalid,
     .m_event_tready, .m_event_tlast
   );

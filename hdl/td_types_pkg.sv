@@ -64,6 +64,21 @@ package td_types_pkg;
     logic frame_end;
   } depth_position_t;
 
+  // How far the depth of a frame holds: words 12 to 14 of its record, as docs/generated/registers.md has them.
+  typedef struct packed {
+    logic [15:0] steep;             // pixels
+    logic [15:0] dark;              // pixels
+    logic [15:0] light_gain_blue;   // 15 fraction bits; 0 without light gains
+    logic [15:0] light_gain_green;
+    logic [15:0] light_gain_red;
+    logic [10:0] others;            // 0
+    logic        resumed;
+    logic        light_moves;
+    logic        zero_clipped;
+    logic        depth_clipped;
+    logic        colours_clipped;
+  } frame_flags_t;
+
   // What the units report to the register file; each bit for one cycle.
   typedef struct packed {
     faults_t     faults;

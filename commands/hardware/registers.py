@@ -173,10 +173,10 @@ def package(of: Map, registers: list[Register], elsewhere: Collection[str]) -> s
             values += [f"localparam int {name}{camel(value)} = {code};" for value, code in field.values.items()]
     settings = [register for register in registers if any(field.setting for field in register.fields)]
     writable = [register for register in registers if register.writable]
-    words = sum(register.name.startswith("RECORD_") for register in registers)
+    record = [register for register in registers if register.name.startswith("RECORD_")]
     sections = {
         "Byte offsets.": [f"localparam int {prefix}AddressWidth = {address_width(registers)};", *offsets],
-        "Words of a record of contact.": [f"localparam int RecordWords = {words};"] if words else [],
+        "Words of a record of contact, and their offsets, the first in the lowest bits.": record_words(record),
         "Values after reset that are not zero.": resets,
         "Bits: number of a flag, lowest of a wider field.": bits,
         "Values of a field.": values,
@@ -215,6 +215,20 @@ def reset_of(fields: Iterable[Field]) -> int:
     return sum((field.reset or 0) << field.low for field in fields)
 
 
+def record_words(registers: list[Register]) -> list[str]:
+    """Return the declarations of the number of words of a record and of the offset of each, none without a record."""
+    if not registers:
+        return []
+    listed = ", ".join(f"{camel(register.name)}Offset" for register in reversed(registers))
+    lines = [f"localparam int RecordWords = {len(registers)};"]
+    return [*lines, "localparam logic [32*RecordWords-1:0] RecordOffsets = {", *indented(listed), "};"]
+
+
+def indented(listed: str) -> list[str]:
+    """Return the lines of a list, indented."""
+    return [f"  {line}" for line in wrapped(listed, 112)]
+
+
 def settings_of(prefix: str, registers: list[Register]) -> list[str]:
     """Return the declarations of number, offset, bits and reset value of each register with settings."""
     words: dict[str, list[str]] = {"Offsets": [], "Masks": [], "Resets": []}
@@ -229,7 +243,7 @@ def settings_of(prefix: str, registers: list[Register]) -> list[str]:
     for name, values in words.items():
         listed = ", ".join(reversed(values))
         lines.append(f"localparam logic [32*{prefix}Settings-1:0] {prefix}Setting{name} = {{")
-        lines += [*(f"  {line}" for line in wrapped(listed, 112)), "};"]
+        lines += [*indented(listed), "};"]
     return lines
 
 

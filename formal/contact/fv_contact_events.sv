@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_contact_events: a record Latency clocks after the last depth of each frame, kept until the next; touching moves
-// only 3 clocks after a last depth, and the record says so; in it are the number of the frame, and the time of its first
-// depth.
+// only 3 clocks after a last depth, and the record says so; in it are the number of the frame, the time of its first
+// depth and the flags at its last.
 //
 // Sums, decision, centroid and packets are proven of the cores in it.
 
@@ -12,12 +12,13 @@ parameter int Latency = 28;  // models/tactile_depth/chip/contact/contact_events
 logic [Latency-1:0] due;
 logic [32*Words-1:0] record_q;
 logic [31:0] number, begun, begun_last;
+frame_flags_t flags_last;
 logic was_reset, touching_q;
 always_ff @(posedge clk) begin
   was_reset <= rst;
   if (in_valid) begin
     if (in_position.frame_start) begun <= in_time;
-    if (in_position.frame_end) begun_last <= begun;
+    if (in_position.frame_end) {begun_last, flags_last} <= {begun, in_flags};
   end
   due <= Latency'({due, in_valid & in_position.frame_end});
   if (due[1]) number <= number + 32'd1;
@@ -43,6 +44,7 @@ always_comb begin
     if (record_valid) begin
       status: assert (record[0] == touching && !(record[1] && !touching) && !(record[2] && touching));
       of_frame: assert (record[63:32] == number && record[95:64] == begun_last);
+      flags_of_frame: assert (record[32*Words-1-:96] == flags_last);
     end
     if (was_reset) quiet: assert (!m_event_tvalid && !touching && record == '0);
     begins: cover (record_valid && record[1]);

@@ -4,7 +4,7 @@
 //
 // New records come in any clock. One bit of an arbitrary word is watched, since words are sent alike.
 
-parameter int Words = 12;
+parameter int Words = 15;
 input logic [3:0] pick;
 
 logic [32*Words-1:0] newest, record_q;

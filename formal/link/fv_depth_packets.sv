@@ -26,7 +26,7 @@ always_comb begin
   assume (word_q != word_q2 || record_data == record_q);
   if (read_watched_q2) assume (value_data == watched_value);
   if (word_watched_q) assume (record_data[{watched_byte[1:0], 3'd0}] == watched_bit);
-  assume (pick_byte < 6'd48);
+  assume (pick_byte < 6'd60);
 end
 always_ff @(posedge clk) begin
   if (!started) {watched, watched_value, watched_byte, watched_bit} <= {pick, pick_value, pick_byte, pick_bit};
@@ -60,7 +60,7 @@ assign rows = kind == 2'd3 ? 16'(Rows / 2) : 16'(Rows);
 assign columns = kind == 2'd3 ? 16'(Columns / 2) : 16'(Columns);
 assign count = kind == 2'd3 ? 8'((Rows / 2) * (Columns / 2)) : 8'(Rows * Columns);
 assign value_ends = ~trailer & at >= 7'd9 & byte_of_value == size - 2'd1;
-assign packet_ends = trailer ? at == 7'd65
+assign packet_ends = trailer ? at == 7'd77
     : value_ends & (in_packet == 8'(Values - 1) | index == count - 8'd1);
 
 logic signed [15:0] reference;
@@ -144,7 +144,7 @@ always_comb begin
     if (busy) begin
       same_frame: assert (dut.kept_format == kind && kind != 2'd0 && dut.kept_shift == kept_shift && dut_crc == crc);
       same_part: assert (dut.trailer == trailer && (trailer ? head_phase | tail_phase : !tail_phase));
-      same_end: assert (dut.last_at == (head_phase ? (trailer ? 6'd17 : 6'd8) : tail_phase ? 6'd47
+      same_end: assert (dut.last_at == (head_phase ? (trailer ? 6'd17 : 6'd8) : tail_phase ? 6'd59
           : load_phase ? all + 6'd3 : 6'(size) - 6'd1));
       if (trailer) all_sent: assert (index == count && in_packet == '0);
       else same_value: assert (index < count && 8'(dut.place) == index && in_packet == index % 8'(Values));
@@ -155,7 +155,7 @@ always_comb begin
         packet_begins: assert (in_packet == '0 && silent == '0);
       end
       if (tail_phase) begin
-        same_byte_of_record: assert (7'(step) + 7'd18 == at && at <= 7'd65 && silent <= 4'(!dut.stale));
+        same_byte_of_record: assert (7'(step) + 7'd18 == at && at <= 7'd77 && silent <= 4'(!dut.stale));
         if (!dut.stale) same_word: assert (word_q == record_word && word_watched_q == (word_q == watched_byte[5:2]));
       end
       if (load_phase) begin

@@ -19,7 +19,7 @@ wire written = u_protocol.written, begins = u_protocol.begins,
     ends = u_protocol.ends, awaited = u_protocol.waits, reading = u_protocol.taken;
 wire [PlaceWidth:0] beat = u_protocol.beat;
 wire [3:0] word = u_protocol.next_word;
-always_comb assume (32'(pick) < Pixels && pick_word <= 4'd11);
+always_comb assume (32'(pick) < Pixels && pick_word <= 4'd14);
 
 // The followed bit of the value, and of the word, of each frame: it comes, has ended, waits, is taken.
 logic [PlaceWidth-1:0] place;
@@ -69,7 +69,7 @@ always_comb begin
   end
 end
 
-// Protocol: any beats; a record of 12 words behind the last beat of its frame and before the last beat of the next,
+// Protocol: any beats; a record of 15 words behind the last beat of its frame and before the last beat of the next,
 // or without a frame, between last beats too. The reader takes a frame that waits, and reads inside it; what it
 // reads counts.
 module protocol_depth_store;
@@ -86,9 +86,9 @@ module protocol_depth_store;
   assign beat = s_axis_tuser ? '0 : next_beat;
   assign ends = written & beat == (PlaceWidth + 1)'(Beats - 1);
   assign holds = (rst | ((~ends | (~waits & next_word == '0 & ~s_event_tvalid))
-      & (~s_event_tvalid | s_event_tlast == (next_word == 4'd11))))
+      & (~s_event_tvalid | s_event_tlast == (next_word == 4'd14))))
       & (~frame_take | (frame_valid & keep & ~taken)) & (~frame_done | taken) & (~value_read | (taken & ~frame_done & 32'(value_address) < Pixels))
-      & record_word <= 4'd11;
+      & record_word <= 4'd14;
   assign counts = live & ~reset;
   assign counts_value_data = counts & known_q;
   assign counts_record_data = counts & was_taken;

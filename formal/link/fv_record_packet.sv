@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_record_packet: packets are the kind and 48 bytes, whole, stable under stall, none of them more than 2 clocks late.
+// fv_record_packet: packets are the kind and 60 bytes, whole, stable under stall, none of them more than 2 clocks late.
 // Each is the newest whole record when its first byte was taken; a record that waits behind a packet goes as the next
 // one begins.
 //
@@ -19,7 +19,7 @@ assign leaves = record_valid & record_ready;
 assign ends = s_event_tvalid & s_event_tlast;
 assign sending = place != '0;
 assign came_next = s_event_tvalid && word == watched[5:2] ? s_event_tdata[{watched[1:0], 3'd0}] : came;
-always_comb assume (pick < 6'd48);
+always_comb assume (pick < 6'd60);
 
 always_ff @(posedge clk) begin
   was_reset <= rst;
@@ -47,7 +47,7 @@ always_comb begin
     if (!sending) newest: assert (record_valid == waits);
     if (stalled) stable: assert (record_valid && record_data == stalled_data);
     if (record_valid) begin
-      last_of_packet: assert (record_last == (place == 6'd48));
+      last_of_packet: assert (record_last == (place == 6'd60));
       if (!sending) kind: assert (record_data == 8'h99);
       if (place == watched + 6'd1) as_it_was: assert (record_data[0] == sent_bit);
     end
@@ -57,10 +57,10 @@ always_comb begin
   end
 end
 
-// Protocol: records of 12 words; bytes count while they are valid.
+// Protocol: records of 15 words; bytes count while they are valid.
 module protocol_record_packet;
   logic [3:0] next_word = '0;
-  assign holds = rst | ~s_event_tvalid | s_event_tlast == (next_word == 4'd11);
+  assign holds = rst | ~s_event_tvalid | s_event_tlast == (next_word == 4'd14);
   assign counts = live & ~reset;
   assign {counts_record_data, counts_record_last} = {2{counts & record_valid}};
   always_ff @(posedge clk) begin

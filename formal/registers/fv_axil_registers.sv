@@ -205,7 +205,7 @@ always_comb begin
   else if (read_offset == DebounceOffset) word = frames_needed;
   else if (read_offset == InterruptStatusOffset) word = interrupts;
   else if (read_offset == InterruptMaskOffset) word = unmasked;
-  else if (read_offset == DeviceOffset) word = 32'h0000011b | 32'(Polynomial * 36) | (value(DefaultConfig, GainWidthField) << DeviceGainWidthLsb);
+  else if (read_offset == DeviceOffset) word = 32'h0100011b | 32'(Polynomial * 36) | (value(DefaultConfig, GainWidthField) << DeviceGainWidthLsb);
   else if (read_offset == DepthUnitOffset) word = {8'(DepthExponent), 24'(DepthMantissa)};
   else if (read_offset == SlopeUnitOffset) word = {8'(SlopeExponent), 24'(SlopeMantissa)};
   else if (read_offset == PitchOffset) word = width_nm;
@@ -216,6 +216,9 @@ always_comb begin
   else if (read_offset >= RecordEventOffset && read_offset <= RecordCentroidOffset) begin
     word = 32'(record >> 8 * (read_offset - RecordEventOffset));
   end
+  else if (read_offset == RecordFlagsOffset) word = record[12*32+:32];
+  else if (read_offset == RecordLightOffset) word = record[13*32+:32];
+  else if (read_offset == RecordPixelsOffset) word = record[14*32+:32];
   else begin
     known = camera_reads;
     word = camera_reads ? register_answer.data : '0;

@@ -11,10 +11,10 @@
 //
 // Stream in: depth codes as they leave (valid and ready together), Lanes of them in a beat, raster order or,
 // BottomFirst, bottom row first; they are never held back, and gaps change nothing. A frame that begins inside another
-// begins afresh. Settings and in_time are taken with a frame's first beat. From the last beat of a frame to that of the
-// next lie at least Latency cycles. Stream out: the record of each frame, docs/generated/registers.md, as a packet.
-// Latency: the record is in its register, until the next, Latency = 2 log2(larger side) + 2 log2(Lanes) + 22 cycles
-// after the last beat, touching 3 cycles after it. Bit-accurate model:
+// begins afresh. Settings and in_time are taken with a frame's first beat, in_flags with its last. From the last beat
+// of a frame to that of the next lie at least Latency cycles. Stream out: the record of each frame,
+// docs/generated/registers.md, as a packet. Latency: the record is in its register, until the next, Latency =
+// 2 log2(larger side) + 2 log2(Lanes) + 22 cycles after the last beat, touching 3 cycles after it. Bit-accurate model:
 // models/tactile_depth/chip/contact/contact_events.py.
 
 `default_nettype none
@@ -27,7 +27,7 @@ module contact_events
   parameter int Columns     = 128,
   parameter int Lanes       = 1,  // depths in a beat
   parameter int BottomFirst = 0,  // 1: the bottom row comes first
-  localparam int Words = 12
+  localparam int Words = 15
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -35,6 +35,7 @@ module contact_events
   input  wire depth_position_t    in_position,
   input  wire  [Lanes*Width-1:0]  in_data,         // depth codes, signed
   input  wire  [31:0]             in_time,         // of the frame that begins, cycles
+  input  wire frame_flags_t       in_flags,        // of the frame that ends
   input  wire  signed [31:0]      on_threshold,    // depth code
   input  wire  signed [31:0]      off_threshold,   // depth code
   input  wire  signed [31:0]      area_threshold,  // depth code
@@ -64,6 +65,7 @@ module contact_events
   logic [7:0] frames_needed, last_frames_needed;
   assign {on, off} = in_position.frame_start ? {on_threshold, off_threshold} : {on_q, off_q};
 
+  frame_flags_t last_flags;
   logic touching_next, count_valid, peak_valid, any_above, last_any, began, ended;
   logic [CountWidth-1:0] count;
   logic signed [Width-1:0] peak, last_peak;
@@ -132,7 +134,7 @@ module contact_events
 
   record_packets #(.Words(Words)) u_packets (
     .clk, .rst, .new_valid(centroid_valid),
-    .new_record({middle, last_sums.weight, greatest, least, last_sums.area, 32'(last_level), peak_position,
+    .new_record({last_flags, middle, last_sums.weight, greatest, least, last_sums.area, 32'(last_level), peak_position,
       32'(last_peak), last_time, frame, 29'd0, ended, began, touching}),
     .record_valid, .record, .record_lost, .m_event_tdata, .m_event_tvalid, .m_event_tready, .m_event_tlast
   );
@@ -149,6 +151,7 @@ module contact_events
       last_minimum <= minimum;
       last_frames_needed <= frames_needed;
       last_time <= start_time;
+      last_flags <= in_flags;
     end
     if (count_valid) frame <= frame + 32'd1;
     if (peak_valid) begin

@@ -45,6 +45,7 @@ module contact_unit
   input  wire depth_position_t        depth_position,
   input  wire  [Lanes*DataWidth-1:0]  depth_data,  // depth codes, signed
   input  wire  [31:0]                 depth_time,
+  input  wire frame_flags_t           depth_flags,  // counts with the last beat of a frame
 
   output logic [Lanes*DepthBits-1:0]  m_axis_tdata,  // the same, each sign-extended to whole bytes
   output logic                        m_axis_tvalid,
@@ -83,13 +84,14 @@ module contact_unit
   );
 
   logic [31:0] tap_time;
+  frame_flags_t tap_flags;
   contact_events #(
     .Width(DataWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(Tridiagonal)
   ) u_events (
     .clk, .rst, .in_valid(tap_valid), .in_position(tap_position), .in_data(tap_data),
-    .in_time(tap_time), .on_threshold(settings.threshold), .off_threshold(settings.off_threshold),
-    .area_threshold(settings.area_threshold), .minimum_area(settings.minimum_area), .debounce(settings.debounce),
-    .touching, .record_valid, .record, .record_lost,
+    .in_time(tap_time), .in_flags(tap_flags), .on_threshold(settings.threshold),
+    .off_threshold(settings.off_threshold), .area_threshold(settings.area_threshold),
+    .minimum_area(settings.minimum_area), .debounce(settings.debounce), .touching, .record_valid, .record, .record_lost,
     .m_event_tdata, .m_event_tvalid, .m_event_tready, .m_event_tlast
   );
 
@@ -102,6 +104,7 @@ module contact_unit
   assign first_depth_latency_valid = awaited & m_axis_tvalid & m_axis_tuser;
   always_ff @(posedge clk) begin
     if (depth_starts) tap_time <= depth_time;
+    if (en && depth_valid && depth_position.frame_end) tap_flags <= depth_flags;
     if (first_depth_latency_valid) awaited <= 1'b0;
     if (depth_starts && !depth_dropped) begin
       awaited_time <= depth_time;

@@ -9,7 +9,7 @@
 `default_nettype none
 
 module record_packets #(
-  parameter int Words = 12
+  parameter int Words = 15
 ) (
   input  wire                  clk,
   input  wire                  rst,

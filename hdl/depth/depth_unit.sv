@@ -52,7 +52,8 @@ module depth_unit
   output logic                        depth_valid,
   output depth_position_t             depth_position,
   output logic [Lanes*DataWidth-1:0]  depth_data,  // depth codes, signed
-  output logic [31:0]                 depth_time   // of the frame to which depth_data belongs
+  output logic [31:0]                 depth_time,   // of the frame to which depth_data belongs
+  output frame_flags_t                depth_flags   // of that frame; counts with its last beat
 );
 
   logic bank, tag_due, tag_bad, tag_bank, tags_held;
@@ -62,6 +63,8 @@ module depth_unit
     .clk, .rst, .en, .push(pixel_frame_end), .tag({pixel_bad, bank, frame_time}),
     .due(tag_due), .due_tag({tag_bad, tag_bank, tag_time}), .held(tags_held)
   );
+
+  assign depth_flags = '0;
 
   logic active, whole_valid;
   depth_position_t whole_position;

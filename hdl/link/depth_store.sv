@@ -3,9 +3,9 @@
 //
 // Stream in, always taken: depth as on m_axis of tactile_depth, tuser with the first beat of a frame, Rows * Columns /
 // Lanes beats; what comes before the first tuser is dropped, and a tuser inside a frame begins it again. s_event: the
-// record of each frame, 12 words, behind its last depth and before the last depth of the next; the record of a frame
-// that did not come whole is dropped. frame_valid: a frame with its record waits. frame_take, only while frame_valid
-// and keep, takes it; from the next clock up to frame_done its values and words can be read: value_data 2 clocks after
+// words of each frame's record, behind its last depth and before the last depth of the next; the record of a frame that
+// did not come whole is dropped. frame_valid: a frame with its record waits. frame_take, only while frame_valid and
+// keep, takes it; from the next clock up to frame_done its values and words can be read: value_data 2 clocks after
 // value_read with value_address, record_data 1 clock after record_word. value_read is low in the clock of frame_done.
 // A frame that comes whole replaces one that waits. `skipped`: a whole frame is lost so. While keep is low, frames are
 // not kept, and none is counted. Memory: two banks of a frame. Model:

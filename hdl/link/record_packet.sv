@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // record_packet: keeps the newest record, and sends it as a packet 0x99 (docs/link.md), without its CRC.
 //
-// Stream in, always taken: the words of each record, tlast with the twelfth. Stream out: the bytes of kind and fields.
+// Stream in, always taken: the words of each record, tlast with the last. Stream out: the bytes of kind and fields.
 // The record is fixed when the first byte is taken; until then a newer one replaces it. One that comes while a packet
 // is being sent waits for its end; the next one then replaces it as it begins. Latency: the first byte is offered in
 // the clock after the last word. A byte takes a clock, and 2 more before each word. Memory: two banks. Models:

@@ -18,13 +18,13 @@ package td_link_pkg;
   localparam logic [7:0] Trailer = 8'h98;
   localparam logic [7:0] Record = 8'h99;
 
-  localparam logic [7:0] Version = 8'd1;
+  localparam logic [7:0] Version = 8'd2;
   localparam int MostAccesses = 128;     // of registers, in a packet
   localparam int MostPixels = 256;       // in a packet
   localparam int ValuesAPacket = 256;    // of depth
   localparam int LongestPiece = 1398;    // bytes between two delimiters
   localparam int LargestShift = 16;
-  localparam int RecordWords = 12;
+  localparam int RecordWords = 15;
 
   // CRC-32 of IEEE 802.3, reflected. The state begins with CrcStart; a CRC is the inverted state, its low byte first;
   // behind data and CRC the state is CrcResidue.

@@ -105,7 +105,7 @@ module axil_registers
   localparam logic [31:0] FormatWord = (DataWidth << FormatDataWidthLsb) | (GradientWidth << FormatGradientWidthLsb)
     | (GradientFraction << FormatGradientFractionLsb)
     | ((GradientWords != 0 ? BitsPerChannel : 0) << FormatBitsPerChannelLsb);
-  localparam logic [31:0] DeviceWord = (Tridiagonal << DeviceSolverBit) | (Neumann << DeviceBoundaryBit)
+  localparam logic [31:0] DeviceWord = DeviceReset | (Tridiagonal << DeviceSolverBit) | (Neumann << DeviceBoundaryBit)
     | (Polynomial << DeviceGradientModelBit) | (FlatField << DeviceFlatFieldBit) | (ZeroOffset << DeviceZeroOffsetBit)
     | (LightGains << DeviceLightGainsBit) | (Lanes << DeviceLanesLsb)
     | ((FlatField != 0 ? GainWidth : 0) << DeviceGainWidthLsb);
@@ -210,7 +210,7 @@ module axil_registers
       default: word = '0;
     endcase
     for (int n = 0; n < RecordWords; n++) begin
-      if (read_offset == 32'(RecordEventOffset + 4 * n)) word = word | record[32*n+:32];
+      if (read_offset == RecordOffsets[32*n+:32]) word = word | record[32*n+:32];
     end
   end
   assign read_data = {word, 32'(gain_read), setting_data, event_data, bank_data, entry_data, camera_answer.data};

@@ -52,6 +52,9 @@ package td_register_map_pkg;
   localparam int InterruptStatusOffset = 32'h0a0;
   localparam int InterruptMaskOffset = 32'h0a4;
   localparam int ArrivedOffset = 32'h0a8;
+  localparam int RecordFlagsOffset = 32'h0ac;
+  localparam int RecordLightOffset = 32'h0b0;
+  localparam int RecordPixelsOffset = 32'h0b4;
   localparam int DeviceOffset = 32'h0c0;
   localparam int DepthUnitOffset = 32'h0c4;
   localparam int SlopeUnitOffset = 32'h0c8;
@@ -61,8 +64,13 @@ package td_register_map_pkg;
   localparam int LightGainGreenOffset = 32'h0d8;
   localparam int LightGainBlueOffset = 32'h0dc;
 
-  // Words of a record of contact.
-  localparam int RecordWords = 12;
+  // Words of a record of contact, and their offsets, the first in the lowest bits.
+  localparam int RecordWords = 15;
+  localparam logic [32*RecordWords-1:0] RecordOffsets = {
+    RecordPixelsOffset, RecordLightOffset, RecordFlagsOffset, RecordCentroidOffset, RecordWeightHighOffset,
+    RecordWeightLowOffset, RecordGreatestOffset, RecordLeastOffset, RecordAreaOffset, RecordAreaThresholdOffset,
+    RecordPeakPositionOffset, RecordPeakOffset, RecordTimeOffset, RecordFrameOffset, RecordEventOffset
+  };
 
   // Values after reset that are not zero.
   localparam int IdReset = 32'h54444550;
@@ -70,6 +78,7 @@ package td_register_map_pkg;
   localparam int OffThresholdReset = 32'h7fffffff;
   localparam int MinimumAreaReset = 32'h00000001;
   localparam int DebounceReset = 32'h00000001;
+  localparam int DeviceReset = 32'h01000000;
   localparam int LightReset = 32'h00000001;
 
   // Bits: number of a flag, lowest of a wider field.
@@ -122,6 +131,7 @@ package td_register_map_pkg;
   localparam int DeviceLightGainsBit = 5;
   localparam int DeviceLanesLsb = 8;
   localparam int DeviceGainWidthLsb = 16;
+  localparam int DeviceVersionLsb = 24;
   localparam int DepthUnitMantissaLsb = 0;
   localparam int DepthUnitExponentLsb = 24;
   localparam int SlopeUnitMantissaLsb = 0;
@@ -185,8 +195,9 @@ package td_register_map_pkg;
       RecordAreaThresholdOffset, RecordAreaOffset, RecordLeastOffset, RecordGreatestOffset,
       RecordWeightLowOffset, RecordWeightHighOffset, RecordCentroidOffset, AreaThresholdOffset,
       ZeroCaptureOffset, InterruptStatusOffset, InterruptMaskOffset, ArrivedOffset,
-      DeviceOffset, DepthUnitOffset, SlopeUnitOffset, PitchOffset, LightOffset,
-      LightGainRedOffset, LightGainGreenOffset, LightGainBlueOffset: is_register = 1'b1;
+      RecordFlagsOffset, RecordLightOffset, RecordPixelsOffset, DeviceOffset, DepthUnitOffset,
+      SlopeUnitOffset, PitchOffset, LightOffset, LightGainRedOffset, LightGainGreenOffset,
+      LightGainBlueOffset: is_register = 1'b1;
       default: is_register = 1'b0;
     endcase
   endfunction

@@ -69,5 +69,11 @@ async def records(dut: Any) -> None:
         if not pins["in_valid"]:
             pins["in_position"] = chance.getrandbits(3)
 
-    choices: dict[str, Any] = {"in_valid": 1.0, "interrupts": 0.02, "m_event_tready": 1.0, "in_time": WORD}
+    choices: dict[str, Any] = {
+        "in_valid": 1.0,
+        "interrupts": 0.02,
+        "m_event_tready": 1.0,
+        "in_time": WORD,
+        "in_flags": WORD,
+    }
     await play(dut, EventsByClock(*given), {**choices, "in_data": depths}, legal, clocks=3 * CLOCKS)

@@ -34,7 +34,7 @@ from tactile_depth.chip.link import device as link
 from tactile_depth.chip.link.device import LinkDevice
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.axil_port import Response
-from tactile_depth.chip.registers.axil_registers import AxilRegisters, Build, Events, Live
+from tactile_depth.chip.registers.axil_registers import RECORD, AxilRegisters, Build, Events, Live
 from tactile_depth.chip.registers.register_map import TABLES
 from tactile_depth.chip.registers.table_banks import CAPTURES
 from tactile_depth.chip.table_entries import one_word, reference_entries
@@ -101,7 +101,7 @@ class ModelDevice:
 
     def _begin(self) -> None:
         self.light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
-        self.record: tuple[int, ...] = (0,) * 12
+        self.record: tuple[int, ...] = (0,) * len(RECORD)
         self.captures: dict[str, list[np.ndarray]] = {}  # frames that are taken, by table
         self.wanted: dict[str, int] = {}  # frames of each capture
         self._frame: list[int] = []

@@ -18,7 +18,7 @@ import numpy as np
 import tactile_depth as td
 from tactile_depth.chip.contact.contact_events import Record
 from tactile_depth.chip.link.depth_formats import DepthFormat, to_bytes
-from tactile_depth.chip.registers.axil_registers import Events, Live
+from tactile_depth.chip.registers.axil_registers import RECORD, Events, Live
 from tactile_depth.chip.table_entries import table_entries
 from tactile_depth.depth.result import thresholds_of
 from tactile_depth.device import vdma
@@ -64,14 +64,14 @@ class Played(MappedWords):
 class ShownDevice(ModelDevice):
     """Model of a device whose record stands in the registers from when it is shown on."""
 
-    shown: tuple[int, ...] = (0,) * 12
+    shown: tuple[int, ...] = (0,) * len(RECORD)
 
     def _live(self) -> Live:
         return replace(super()._live(), record=self.shown)
 
     def reset(self) -> None:
         super().reset()
-        self.shown = (0,) * 12
+        self.shown = (0,) * len(RECORD)
 
     def read(self, offset: int) -> int:
         word = self._read(offset)

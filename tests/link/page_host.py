@@ -7,8 +7,8 @@ Numbers in brackets are the steps of the page's section on a depth frame.
 import zlib
 
 ASK = bytes.fromhex("00 06 01 1b df 05 a5 00")
-VERSION, WRAP = 1, 1 << 32
-STATUS, TRAILER, RECORD, HEAD = 24, 66, 49, 9  # bytes of kind and fields; of a depth packet those before its values
+VERSION, WRAP = 2, 1 << 32
+STATUS, TRAILER, RECORD, HEAD = 24, 78, 61, 9  # bytes of kind and fields; of a depth packet those before its values
 
 
 def get(body: bytes, at: int, size: int) -> int:

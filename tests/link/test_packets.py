@@ -204,11 +204,12 @@ def test_unknown_kinds_are_skipped_and_counted() -> None:
     assert (reader.unknown_packets, reader.bad_packets) == (len(unknown), 0)
 
 
-def test_the_status_of_an_unknown_version_is_refused() -> None:
+@pytest.mark.parametrize("version", [link.VERSION - 1, link.VERSION + 1])
+def test_the_status_of_an_unknown_version_is_refused(version: int) -> None:
     reader = link.PacketReader()
-    later = bytes((link.Kind.STATUS, link.VERSION + 1))
-    with pytest.raises(InputError, match=r"speaks version 2 of the link: accepted is 1: install a version"):
-        reader.feed(to_line(later + b"of fields that this version does not know"))
+    text = f"speaks version {version} of the link: accepted is {link.VERSION}: install a version"
+    with pytest.raises(InputError, match=text):
+        reader.feed(to_line(bytes((link.Kind.STATUS, version)) + b"of fields that this version does not know"))
     assert reader.feed(bytes_of((STATUS,))) == [STATUS]
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from commands.common.repository import ROOT
 from tactile_depth.chip.contact.contact_events import WORDS, Record
+from tactile_depth.chip.contact.frame_flags import FrameFlags
 from tactile_depth.chip.link import packets as link
 from tactile_depth.chip.link.depth_formats import DepthFormat, exact_shift
 from tactile_depth.chip.link.depth_frames import DepthFrames
@@ -16,7 +17,8 @@ from tactile_depth.chip.link.framing import LONGEST_BODY, LONGEST_ON_LINE, most_
 from tactile_depth.chip.link.rates import rate
 
 PAGE = (ROOT / "docs" / "link.md").read_text()
-RECORD = Record(3, 7, 1000, 256, (1, 0), 128, 1, (1, 0), (1, 0), 128, (16, 0))
+FLAGS = FrameFlags(light_gains=(0x8000,) * 3)
+RECORD = Record(3, 7, 1000, 256, (1, 0), 128, 1, (1, 0), (1, 0), 128, (16, 0), FLAGS)
 CODES = np.array([[1, -1], [256, 0]], np.int32)
 EXAMPLES: dict[str, link.Packet] = {
     "ask": link.Ask(),

@@ -14,8 +14,9 @@ from tactile_depth.chip.contact import centroid
 from tactile_depth.chip.contact.contact_debounce import ContactDebounce
 from tactile_depth.chip.contact.contact_peak import ContactPeak, Peak, cycles_to_peak
 from tactile_depth.chip.contact.contact_sums import ContactSums, Sums, cycles_to_sums
+from tactile_depth.chip.contact.frame_flags import FLAG_WORDS, NO_FLAGS, FrameFlags
 from tactile_depth.chip.contact.record_packets import RecordPackets
-from tactile_depth.chip.fixed_point import codes, joined
+from tactile_depth.chip.fixed_point import codes, joined, split
 from tactile_depth.chip.resources import DEPTH_MARKS, Memory, Parts, Words
 
 WORD_BITS = 32
@@ -53,6 +54,7 @@ class Record(NamedTuple):
     greatest: tuple[int, int] = (0, 0)
     weight: int = 0
     centroid: tuple[int, int] = (0, 0)  # in units of 2**-FRACTION pixels
+    flags: FrameFlags = NO_FLAGS
 
     @property
     def volume(self) -> int:
@@ -72,7 +74,8 @@ class Record(NamedTuple):
         peak_at, least, greatest, middle = (row << 16 | column for row, column in positions)
         peak, level = (code % (1 << WORD_BITS) for code in (self.peak, self.area_threshold))
         high, low = divmod(self.weight, 1 << WORD_BITS)
-        return (*self[:3], peak, peak_at, level, self.area, least, greatest, low, high, middle)
+        contact = peak, peak_at, level, self.area, least, greatest, low, high, middle
+        return (*self[:3], *contact, *self.flags.words)
 
 
 def _signed(word: int) -> int:
@@ -88,10 +91,10 @@ def record(words: Sequence[int]) -> Record:
     def position(word: int) -> tuple[int, int]:
         return word >> 16, word & 0xFFFF
 
-    status, frame, time, peak, peak_at, level, area, least, greatest, low, high, middle = words
+    status, frame, time, peak, peak_at, level, area, least, greatest, low, high, middle, *flags = words
     return Record(
         *(status, frame, time, _signed(peak), position(peak_at), _signed(level), area, position(least)),
-        *(position(greatest), high << WORD_BITS | low, position(middle)),
+        *(position(greatest), high << WORD_BITS | low, position(middle), FrameFlags.of(flags)),
     )
 
 
@@ -165,9 +168,18 @@ class ContactEvents:
         return area_threshold(settings.area_threshold, self._in_force(settings), self.last_peak, self.width)
 
     def beat(
-        self, data: int, frame_start: bool, row_end: bool, frame_end: bool, settings: Settings, time: int
+        self,
+        data: int,
+        frame_start: bool,
+        row_end: bool,
+        frame_end: bool,
+        settings: Settings,
+        time: int,
+        flags: FrameFlags = NO_FLAGS,
     ) -> Record | None:
         """Take a depth code that leaves; return the record of the frame with its last code, else None.
+
+        Settings and time count with the first code of a frame, flags with the last.
 
         Raises
         ------
@@ -180,9 +192,9 @@ class ContactEvents:
             raise ValueError("a depth code left before the first of any frame")
         peak = self.peak.beat(data, frame_start, row_end, frame_end, self._in_force(self.settings))
         sums = self.sums.beat(data, frame_start, frame_end, self._level(self.settings))
-        return None if peak is None or sums is None else self._record(peak, sums)
+        return None if peak is None or sums is None else self._record(peak, sums, flags)
 
-    def whole_frame(self, depths: np.ndarray, settings: Settings, time: int) -> Record:
+    def whole_frame(self, depths: np.ndarray, settings: Settings, time: int, flags: FrameFlags = NO_FLAGS) -> Record:
         """Return the record of a frame whose depth codes leave one after another, as `beat` makes it.
 
         Parameters
@@ -192,9 +204,9 @@ class ContactEvents:
         """
         self.settings, self.time = settings, time
         peak = self.peak.whole_frame(depths, self._in_force(settings))
-        return self._record(peak, self.sums.whole_frame(depths, self._level(settings)))
+        return self._record(peak, self.sums.whole_frame(depths, self._level(settings)), flags)
 
-    def _record(self, peak: Peak, sums: Sums) -> Record:
+    def _record(self, peak: Peak, sums: Sums, flags: FrameFlags) -> Record:
         assert self.settings is not None
         level = self._level(self.settings)
         status = self.debounce.frame(peak.above, self.settings.minimum_area, self.settings.debounce)
@@ -205,7 +217,7 @@ class ContactEvents:
             row, column = peak.position
             limits, middle = (peak.position, peak.position), (row << centroid.FRACTION, column << centroid.FRACTION)
         found = peak.peak, peak.position, level, sums.area, *limits, sums.weight, middle
-        return Record(status, self.frames, self.time, *found)
+        return Record(status, self.frames, self.time, *found, flags)
 
     def _centroid(self, sums: Sums) -> tuple[int, int]:
         """Return row and column; the moments count from the last row to come and from the last column."""
@@ -244,6 +256,7 @@ class EventsByClock:
         in_position: int,
         in_data: int,
         in_time: int,
+        in_flags: int,
         m_event_tready: int,
         **settings: int,
     ) -> dict[str, int | None]:
@@ -253,12 +266,13 @@ class EventsByClock:
         out: dict[str, int | None] = {"touching": self._touching.popleft()}
         out |= self.packets.clock(rst=rst, **new, m_event_tready=m_event_tready)
         if in_valid:
+            flags = FrameFlags.of(split(in_flags, FLAG_WORDS, WORD_BITS))
             words = {name: word if name in UNSIGNED else _signed(word) for name, word in settings.items()}
             for lane, depth in enumerate(codes(in_data, self.lanes, self.width)):
                 last = lane == self.lanes - 1
                 start, row_end, frame_end = (bool(in_position & mark) for mark in (4, 2, 1))
                 marks = start and not lane, row_end and last, frame_end and last
-                record = self.events.beat(depth, *marks, Settings(**words), in_time)
+                record = self.events.beat(depth, *marks, Settings(**words), in_time, flags)
         self._touching.append(self.events.touching)
         self.due.append(record)
         if rst:

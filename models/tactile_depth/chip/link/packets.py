@@ -17,7 +17,7 @@ from tactile_depth.chip.contact.contact_events import WORD_BITS, WORDS, Record, 
 from tactile_depth.chip.link.depth_formats import DepthFormat
 from tactile_depth.chip.link.framing import DELIMITER, LONGEST_ON_LINE, from_line
 
-VERSION: Final = 1
+VERSION: Final = 2
 MOST_ACCESSES: Final = 128  # of registers, in a packet
 LARGEST_GRID: Final = 4096  # rows and columns
 LARGEST_SHIFT: Final = 16

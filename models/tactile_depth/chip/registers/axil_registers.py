@@ -22,6 +22,7 @@ from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT, TableBank
 
 BY_OFFSET = {register.offset: register for register in MAP}
 SELECT = REGISTERS["TABLE_SELECT"].field("select")
+VERSION = REGISTERS["DEVICE"].field("version").reset or 0
 GAINS = tuple(name for name in REGISTERS if name.startswith("LIGHT_GAIN_"))  # of red, green, blue
 RECORD = tuple(name for name in REGISTERS if name.startswith("RECORD_"))  # in the order of the words
 
@@ -80,6 +81,7 @@ class Build:
                 light_gains=p["LightGains"],
                 lanes=p["Lanes"],
                 gain_width=p["GainWidth"] if p["FlatField"] else 0,
+                version=VERSION,
             ),
             "DEPTH_UNIT": depth.pack(mantissa=p["DepthMantissa"], exponent=p["DepthExponent"] & exponent),
             "SLOPE_UNIT": slope.pack(mantissa=p["SlopeMantissa"], exponent=p["SlopeExponent"] & exponent),
