@@ -235,12 +235,14 @@ def test_what_fails_is_said(client: Client, plug: Callable[..., Cable], tmp_path
     other_grid = td.Pipeline(ball.sensor, ball.reference, grid=(12, 16))
     other_build = td.Pipeline(ball.sensor, ball.reference, grid=GRID, light_gains=False)
     resets = itertools.count()
-    newer, restless = plug(None), plug(None)
+    older, newer, restless = plug(None), plug(None), plug(None)
+    older.answer(lambda _: to_line(bytes((link.Kind.STATUS, link.VERSION - 1))))
     newer.answer(lambda _: to_line(bytes((link.Kind.STATUS, link.VERSION + 1))))
     restless.answer(lambda asked: to_line(STATUS._replace(resets=next(resets)).pack()) if asked else b"")
     for port, text in {
         str(plug(other_grid).path): "the device has another grid than the tables",
         str(plug(other_build).path): "the device is another build",
+        str(older.path): "the device speaks another version of the link",
         str(newer.path): "the device speaks another version of the link",
         str(restless.path): "the device was reset",
         str(plug(None).path): "the device does not answer",

@@ -19,7 +19,7 @@ import serial.tools.list_ports
 
 import tactile_depth as td
 from tactile_depth.chip.link.framing import to_line
-from tactile_depth.chip.link.packets import Status
+from tactile_depth.chip.link.packets import VERSION, Status
 from tactile_depth.device import line, serial_line
 from tactile_depth.device.addresses import open_transport
 from tests.device.cable import Cable
@@ -258,12 +258,14 @@ def test_another_baud_rate(steady: td.Pipeline, plug: Plug, quick: None) -> None
         td.Device(cable.address, steady)
 
 
-def test_another_version_of_the_link(steady: td.Pipeline, plug: Plug) -> None:
+@pytest.mark.parametrize("version", [VERSION - 1, VERSION + 1], ids=["older device", "older host"])
+def test_another_version_of_the_link(version: int, steady: td.Pipeline, plug: Plug) -> None:
     status = bytearray(Status(0, *GRID, 24, True, False, 1, 8, 0, 0, 0).pack())  # type: ignore[arg-type]
-    status[1] = 2
+    status[1] = version
     cable = plug(None)
     cable.answer(lambda data: to_line(bytes(status)) if data else b"")
-    with pytest.raises(td.InputError, match="the device speaks version 2 of the link: accepted is 1: install"):
+    text = f"the device speaks version {version} of the link: accepted is {VERSION}: install"
+    with pytest.raises(td.InputError, match=text):
         td.Device(cable.address, steady)
 
 

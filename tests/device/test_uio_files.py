@@ -12,6 +12,9 @@ from typing import Any
 import pytest
 
 import tactile_depth as td
+from tactile_depth.chip.contact.frame_flags import FLAG_WORDS
+from tactile_depth.chip.registers.axil_registers import RECORD
+from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.device import frame_stores, mapped_words, vdma
 from tests.device.conftest import BuildZynq
 from tests.device.zynq import PHYSICAL, Zynq
@@ -89,6 +92,11 @@ def _odd_format(zynq: Zynq) -> None:
     zynq.model.registers.values["FORMAT"] = 0
 
 
+def _older(zynq: Zynq) -> None:
+    zynq.model.registers.values["DEVICE"] &= ~REGISTERS["DEVICE"].field("version").mask
+    zynq.model.later = tuple(REGISTERS[name].offset for name in RECORD[-FLAG_WORDS:])
+
+
 def _other_build(zynq: Zynq) -> None:
     zynq.model.registers.values["DEPTH_UNIT"] ^= 1
 
@@ -121,6 +129,11 @@ def _no_vdma(zynq: Zynq) -> None:
         (_odd_id, td.DeviceError, "uio0 has the ID 0xffffffff, and no tactile_depth: give its registers first"),
         (_odd_grid, td.DeviceError, "uio0 reads GRID 0xffffffff and FORMAT .*: check its address in the device tree"),
         (_odd_format, td.DeviceError, "uio0 reads GRID 0x0010000c and FORMAT 0x00000000: check its address"),
+        (
+            _older,
+            td.InputError,
+            "uio0 has version 0 of the registers: accepted is 1: install a version of tactile-depth",
+        ),
         (_other_build, td.InputError, "the device has another configuration: DEPTH_UNIT.mantissa is"),
         (_other_grid, td.InputError, r"grid=\(12, 16\), but the device has \(8, 8\), rows and columns"),
         (_no_clock, td.DeviceError, "uio1: the VDMA does not come out of its reset: give an AXI VDMA whose clocks run"),

@@ -65,6 +65,7 @@ class ShownDevice(ModelDevice):
     """Model of a device whose record stands in the registers from when it is shown on."""
 
     shown: tuple[int, ...] = (0,) * len(RECORD)
+    later: tuple[int, ...] = ()  # registers that it does not have yet
 
     def _live(self) -> Live:
         return replace(super()._live(), record=self.shown)
@@ -74,7 +75,7 @@ class ShownDevice(ModelDevice):
         self.shown = (0,) * len(RECORD)
 
     def read(self, offset: int) -> int:
-        word = self._read(offset)
+        word = None if offset in self.later else self._read(offset)
         assert word is not None, f"SLVERR at {offset:#x}, which ends a program on a Zynq"
         return word
 

@@ -9,12 +9,13 @@ from contextlib import ExitStack
 
 import numpy as np
 
+from tactile_depth.base.errors import InputError
 from tactile_depth.base.npy import Bytes, Codes
 from tactile_depth.chip.contact.contact_events import Record, record
 from tactile_depth.chip.link.depth_formats import DepthFormat
 from tactile_depth.chip.link.depth_frames import NUMBERS, RESETS, DepthFrame
-from tactile_depth.chip.link.packets import LARGEST_GRID, Status
-from tactile_depth.chip.registers.axil_registers import BY_OFFSET, RECORD
+from tactile_depth.chip.link.packets import LARGEST_GRID, OTHER_VERSION, Status
+from tactile_depth.chip.registers.axil_registers import BY_OFFSET, RECORD, VERSION
 from tactile_depth.chip.registers.register_map import REGISTERS, TABLES, WORD_BITS
 from tactile_depth.chip.registers.table_access import HIGH, INDEX, LOW, PORTS, SIZE
 from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
@@ -76,7 +77,7 @@ class Uio:
     Raises
     ------
     InputError
-        A file does not exist.
+        A file does not exist, or the device has another version of the registers.
     DeviceError
         A file may not be opened, is in use or too small, or is not what it should be.
     """
@@ -109,7 +110,10 @@ class Uio:
             self._opened = opened.pop_all()
 
     def _read_build(self) -> None:
-        """Read what the device is. Raises DeviceError if that is no tactile_depth."""
+        """Read what the device is, of registers that all versions have.
+
+        Raises DeviceError if that is no tactile_depth, and InputError for registers of another version.
+        """
         path, word = self._words.path, self._word("ID")
         if word != REGISTERS["ID"].reset:
             problem = f"{path} has the ID {word:#010x}, and no tactile_depth"
@@ -120,7 +124,11 @@ class Uio:
         if not sides_are_right or not 1 <= self._data_width <= WORD_BITS:
             problem = f"{path} reads GRID {self._word('GRID'):#010x} and FORMAT {self._word('FORMAT'):#010x}"
             raise DeviceError(problem, remedy="check its address in the device tree, its clock and its reset")
-        self._bottom_first = bool(self._fields("DEVICE")["solver"])
+        build = self._fields("DEVICE")
+        if build["version"] != VERSION:
+            problem = f"{path} has version {build['version']} of the registers"
+            raise InputError(problem, accepted=str(VERSION), remedy=OTHER_VERSION)
+        self._bottom_first = bool(build["solver"])
 
     # Registers.
 

@@ -18,6 +18,7 @@ from tactile_depth.chip.link.depth_formats import DepthFormat
 from tactile_depth.chip.link.framing import DELIMITER, LONGEST_ON_LINE, from_line
 
 VERSION: Final = 2
+OTHER_VERSION: Final = "install a version of tactile-depth that knows it, or update the device"
 MOST_ACCESSES: Final = 128  # of registers, in a packet
 LARGEST_GRID: Final = 4096  # rows and columns
 LARGEST_SHIFT: Final = 16
@@ -341,8 +342,8 @@ def _picture(body: bytes) -> Packet:
 def _status(body: bytes) -> Packet:
     version = body[1] if len(body) > 1 else VERSION
     if version != VERSION:
-        remedy = "install a version of tactile-depth that knows it, or update the device"
-        raise InputError(f"the device speaks version {version} of the link", accepted=str(VERSION), remedy=remedy)
+        problem = f"the device speaks version {version} of the link"
+        raise InputError(problem, accepted=str(VERSION), remedy=OTHER_VERSION)
     _, _, resets, rows, columns, width, flags, depth_format, *others = STATUS.unpack(body)
     _require(1 <= rows <= LARGEST_GRID and 1 <= columns <= LARGEST_GRID and 1 <= width <= WORD_BITS)
     signs = bool(flags & BOTTOM_FIRST), bool(flags & SENDING)
