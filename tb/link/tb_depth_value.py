@@ -31,10 +31,12 @@ async def values(dut: Any) -> None:
     chance, halves = random.Random(cocotb.RANDOM_SEED), (*range(-9, 10), 65533, 65535, -65537)
 
     def legal(model: DepthValue, pins: Pins) -> None:
-        """Half of the codes are at a tie, just below one, or a bit above."""
+        """Half of the codes are at a tie, just below one, or a bit of the fraction above."""
         if chance.random() < 0.5:
-            beside = chance.choice((0, -1, 1 << chance.randrange(width)))
-            pins["in_code"] = ((chance.choice(halves) << pins["shift"] >> 1) + beside) % (1 << width)
+            fraction = pins["shift"] + 2 * pins["average"]
+            beside = chance.choice((0, -1, 1 << chance.randrange(fraction + 1)))
+            pins["in_code"] = ((chance.choice(halves) << fraction >> 1) + beside) % (1 << width)
 
     bits = {"average": 1.0, "in_valid": 1.0, "in_first": 1.0}
-    await play(dut, DepthValue(width), {**bits, "shift": range(LARGEST_SHIFT + 1), "in_code": WORD}, legal)
+    shifts = (LARGEST_SHIFT, *range(LARGEST_SHIFT + 1))
+    await play(dut, DepthValue(width), {**bits, "shift": shifts, "in_code": WORD}, legal)
