@@ -11,12 +11,13 @@ import numpy as np
 
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact import centroid
+from tactile_depth.chip.contact.beats import marked
 from tactile_depth.chip.contact.contact_debounce import ContactDebounce
 from tactile_depth.chip.contact.contact_peak import ContactPeak, Peak, cycles_to_peak
 from tactile_depth.chip.contact.contact_sums import ContactSums, Sums, cycles_to_sums
 from tactile_depth.chip.contact.frame_flags import FLAG_WORDS, NO_FLAGS, FrameFlags
 from tactile_depth.chip.contact.record_packets import RecordPackets
-from tactile_depth.chip.fixed_point import codes, joined, split
+from tactile_depth.chip.fixed_point import joined, split
 from tactile_depth.chip.resources import DEPTH_MARKS, Memory, Parts, Words
 
 WORD_BITS = 32
@@ -268,11 +269,8 @@ class EventsByClock:
         if in_valid:
             flags = FrameFlags.of(split(in_flags, FLAG_WORDS, WORD_BITS))
             words = {name: word if name in UNSIGNED else _signed(word) for name, word in settings.items()}
-            for lane, depth in enumerate(codes(in_data, self.lanes, self.width)):
-                last = lane == self.lanes - 1
-                start, row_end, frame_end = (bool(in_position & mark) for mark in (4, 2, 1))
-                marks = start and not lane, row_end and last, frame_end and last
-                record = self.events.beat(depth, *marks, Settings(**words), in_time, flags)
+            for beat in marked(in_data, in_position, self.lanes, self.width):
+                record = self.events.beat(*beat, Settings(**words), in_time, flags)
         self._touching.append(self.events.touching)
         self.due.append(record)
         if rst:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tactile_depth.chip.contact import beat_peak
+from tactile_depth.chip.contact.beats import marked
 from tactile_depth.chip.fixed_point import codes
 
 CYCLES_TO_COUNT = 2  # from the last depth of a frame
@@ -91,15 +92,12 @@ class PeakByClock:
 
     def _clear(self) -> None:
         self._late: deque[Peak | None] = deque([None] * (cycles_to_peak(self.lanes) - 1))
-        self._beat: Any = None  # of the clock before: depths, marks and both thresholds
+        self._beat: Any = None  # of the clock before: depths, position and both thresholds
 
-    def _judged(self, touching: int, depths: list[int], position: int, on: int, off: int) -> Peak | None:
+    def _judged(self, touching: int, data: int, position: int, on: int, off: int) -> Peak | None:
         """Take the beat of the clock before; `touching` is read now."""
-        for lane, depth in enumerate(depths):
-            last = lane == self.lanes - 1
-            first = bool(position & 4) and lane == 0
-            row_end, frame_end = bool(position & 2) and last, bool(position & 1) and last
-            peak = self.peak.beat(depth, first, row_end, frame_end, off if touching else on)
+        for beat in marked(data, position, self.lanes, self.width):
+            peak = self.peak.beat(*beat, off if touching else on)
         return peak
 
     def clock(
@@ -122,9 +120,8 @@ class PeakByClock:
             row, column = peak.position
             out |= {"any_above": bool(peak.above), "peak": peak.peak, "peak_row": row, "peak_column": column}
         self._late.append(self._judged(touching, *self._beat) if self._beat else None)
-        depths = codes(in_data, self.lanes, self.width)
         on, off = (*codes(on_threshold, 1, 32), *codes(off_threshold, 1, 32))
-        self._beat = (depths, in_position, on, off) if in_valid else None
+        self._beat = (in_data, in_position, on, off) if in_valid else None
         if rst:
             self._clear()
         return out

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_depth.chip.contact import beat_sums
+from tactile_depth.chip.contact.beats import marked
 from tactile_depth.chip.fixed_point import codes
 
 
@@ -112,10 +113,8 @@ class SumsByClock:
             limits = "".join(f"{place:016b}" for place in (*sums.greatest, *sums.least))
             out["sums"] = numbers + limits * bool(sums.area)
         if in_valid:
-            last = self.lanes - 1
-            for lane, depth in enumerate(codes(in_data, self.lanes, self.width)):
-                starts, ends = bool(in_position & 4) and lane == 0, bool(in_position & 1) and lane == last
-                ended = self.sums.beat(depth, starts, ends, *codes(threshold, 1, self.width))
+            for depth, start, _, end in marked(in_data, in_position, self.lanes, self.width):
+                ended = self.sums.beat(depth, start, end, *codes(threshold, 1, self.width))
         self._late.append(ended)
         if rst:
             self._late = deque([None] * len(self._late))
