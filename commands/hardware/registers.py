@@ -350,8 +350,9 @@ def generated(of: Map) -> dict[Path, str]:
     with files.temporary() as folder:
         page = folder / of.page
         MarkdownExporter().export(top, str(page), input_files=[str(of.source.relative_to(ROOT))])
+        text = re.sub(r"- Base Offset: \w+\n- Size: 0x4\n", "", page.read_text())  # of each register: the same again
         return {
-            GENERATED / of.page: f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n{page.read_text()}",
+            GENERATED / of.page: f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n{text}",
             ROOT / "models" / "tactile_depth" / "chip" / "registers" / of.data: records(described) + "\n",
             of.package: package(of, registers, elsewhere),
         }

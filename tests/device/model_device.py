@@ -25,6 +25,7 @@ from tactile_depth.chip.common.td_frame_size import FrameSize
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.contact_events import ContactEvents, Settings
+from tactile_depth.chip.contact.frame_flags import FrameFlags
 from tactile_depth.chip.depth.zero_capture import captured_zero
 from tactile_depth.chip.gradient.flat_field import captured_gains, pixel_gains
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
@@ -194,19 +195,31 @@ class ModelDevice:
         if self.light is not None:
             light = self.registers.values["LIGHT"]
             self.light.follow, self.light.rate = bool(light & 1), light >> 4 & 7
-        slopes, _ = slopes_and_light(picture[None], config, tables, monitor, light=self.light)
+        slopes, gains = slopes_and_light(picture[None], config, tables, monitor, light=self.light)
+        colours = monitor.saturations.total()
         depth = solve(divergence(slopes, config.neumann), config, monitor)
+        solved = monitor.saturations.total()
         self._capture("reference", picture)
         self._capture("zero", depth[0])
         zero = self._zero() if config.zero_offset else None
         codes = zeroed(depth, config, monitor, zero)[0]
         settings = Settings(*(signed(self.registers.values[name]) for name in SETTINGS))
-        record = self.events.whole_frame(codes, settings, time=int(time.monotonic() * 1e6) % (1 << 32))
+        marks = colours > 0, solved > colours, monitor.saturations.total() > solved, self._light_moves(gains), False
+        used = (0, 0, 0) if gains is None else tuple(gains[0].tolist())
+        dark = 0 if tables.gains is None else int(tables.gains.dark(picture).sum())
+        flags = FrameFlags(*marks, used, dark)
+        record = self.events.whole_frame(codes, settings, int(time.monotonic() * 1e6) % (1 << 32), flags)
         self.record = record.words
-        flags = frozenset({"frame_in", "frame_out", "record_valid"})
-        for events in (Events(flags, saturations=sum(monitor.saturations.values())), Events()):
+        events_of_frame = frozenset({"frame_in", "frame_out", "record_valid"})
+        for events in (Events(events_of_frame, saturations=sum(monitor.saturations.values())), Events()):
             self.registers.clock(events)
         self.link.offer(codes.astype(np.int32), record)
+
+    def _light_moves(self, used: np.ndarray | None) -> bool:
+        """Return True if the frame of these gains has moved one by 1/32 or more."""
+        if self.light is None or used is None:
+            return False
+        return bool((np.abs(self.light.gains - used[0]) >= self.light.light.unity >> 5).any())
 
     def _capture(self, name: str, frame: np.ndarray) -> None:
         if name not in self.captures:

@@ -30,7 +30,7 @@ PRESSES = 20
 
 def seen(frame: td.DeviceFrame | td.Result) -> tuple[bytes, object]:
     """Return heights as float32, and the contact without number and time of the frame."""
-    return frame.height_mm.astype(np.float32).tobytes(), frame.contact.record[3:]
+    return frame.height_mm.astype(np.float32).tobytes(), frame.contact.record[3:-1]
 
 
 def small(sample: td.Sample) -> td.Pipeline:
@@ -108,7 +108,7 @@ def test_each_format_of_depth(name: DepthFormatName) -> None:
         values = to_bytes(result.codes[::-1], depth_format, width, shift)  # the bottom row leaves first
         codes = from_bytes(values, size).reshape(shape)[::-1] << shift
         np.testing.assert_array_equal(frame.codes, codes)
-        assert frame.contact.record[3:] == result.contact.record[3:]
+        assert frame.contact.record[3:-1] == result.contact.record[3:-1]
 
 
 @needs_real_data

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import time
 import warnings
@@ -15,6 +16,7 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
+from tactile_depth.chip.contact.frame_flags import FrameFlags
 from tactile_depth.chip.gradient.flat_field import captured_gains
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, received
 from tactile_depth.chip.table_entries import reference_entries
@@ -144,14 +146,69 @@ def test_masks_have_the_values_of_the_depth(
     assert frame.saturations == result.saturations
 
 
-def test_what_a_camera_sees_is_not_known(steady: td.Pipeline, sample: td.Sample, plug: Plug) -> None:
-    ((_, camera),) = steady.reader.pictures(sample.image, "picture")[0]
-    cable = plug(steady, camera=camera[None], camera_s=0.002)
-    with td.Device(cable.address, steady) as device:
+def filmed(
+    pipeline: td.Pipeline, plug: Plug, images: list[np.ndarray], count: int, **form: Any
+) -> list[td.DeviceFrame]:
+    """Return frames of a device whose camera gives pictures, one after another and then the last one again."""
+    camera = np.stack([frame for _, frame in pipeline.reader.pictures(images, "pictures")[0]])
+    cable = plug(pipeline, camera=camera[-1:], camera_s=0.002)
+    with td.Device(cable.address, pipeline, **form) as device:
         device.load()
-        frame = next(device.depth())
-    known = frame.warnings, frame.saturations, frame.dark, frame.outside, frame.light_gains
-    assert known == (None,) * len(known)
+        assert cable.setup is not None
+        cable.setup.camera, cable.setup.camera_s = camera, 0.005
+        return list(itertools.islice(device.depth(), count))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_camera_in_right_light_has_no_doubt(
+    name: DepthFormatName, pipeline: td.Pipeline, sample: td.Sample, plug: Plug
+) -> None:
+    images = [in_light(image, 1 + 0.002 * np.sin(n)) for n in range(10) for image in (sample.image, sample.reference)]
+    frames, warned = told(lambda: filmed(pipeline, plug, images, 100, depth_format=name))
+    assert not warned
+    for frame in frames:
+        assert (frame.warnings, frame.saturations, frame.dark, frame.outside) == ((), None, None, None)
+        assert frame.light_gains == pytest.approx(1, abs=0.03)
+        assert frame.flags == frame.record.flags
+        assert frame.flags._replace(light_gains=(0, 0, 0)) == FrameFlags()
+
+
+@pytest.mark.parametrize(
+    ("scene", "choices", "text"),
+    [
+        (
+            "dim",
+            {},
+            "its light differs from that of the reference by .* or more, and the light gains do not undo it: take",
+        ),
+        (
+            "flicker",
+            {},
+            "its light differs from that of the reference, and the light gains do not undo it yet: take a ref",
+        ),
+        (
+            "deep",
+            {"depth_range_mm": 0.5},
+            r"\d+ of its depths are clipped, heights there are too small: give a larger depth_range",
+        ),
+        ("exchanged", {}, "its gel stands out by .* mm, as if something touched it in the reference: take a reference"),
+    ],
+)
+@pytest.mark.parametrize("name", NAMES)
+def test_what_a_device_says_of_its_camera(
+    scene: str, choices: dict[str, Any], text: str, name: DepthFormatName, sample: td.Sample, plug: Plug
+) -> None:
+    images = {"dim": [in_light(sample.image, 0.4)], "flicker": [in_light(sample.image, 0.8), sample.image]}
+    is_exchanged = scene == "exchanged"
+    reference = sample.image if is_exchanged else sample.reference
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        pipeline = td.Pipeline(sample.sensor, reference, grid=GRID, model="quadratic", **choices)
+    shown = [sample.reference] if is_exchanged else images.get(scene, [sample.image])
+    frames, warned = told(lambda: filmed(pipeline, plug, shown, 40, depth_format=name))
+    (said,) = (each for each in warned if each.startswith("frame "))
+    assert re.fullmatch(rf"frame \d+: {text}.*", said)
+    assert re.search(text, frames[-1].warnings[-1])
 
 
 def test_a_device_with_lanes(pipeline: td.Pipeline, sample: td.Sample, plug: Plug) -> None:

@@ -29,9 +29,9 @@ from tactile_depth.depth.result import Recorder, Result, settings_of, thresholds
 from tactile_depth.depth.stream import Stream, timed, times
 from tactile_depth.depth.twin import PICTURES, Twin, require_flat_field, require_zero_offset
 from tactile_depth.pictures.blocks import Rest
-from tactile_depth.pictures.doubts import Doubt, UnusablePicture, Warned, doubt, tell
+from tactile_depth.pictures.doubts import Doubt, UnusablePicture, Warned, tell
 from tactile_depth.pictures.frames import camera_scale
-from tactile_depth.pictures.light_check import doubts_of
+from tactile_depth.pictures.light_check import clipped_depth, doubts_of, least_clipped
 from tactile_depth.pictures.picture_check import Checked, check_picture
 from tactile_depth.pictures.pictures import Picture, Pictures, pictures_of
 from tactile_depth.pictures.reader import Reader, default_grid, power_of_two_of
@@ -158,8 +158,7 @@ class Pipeline:
         if not is_number(area_threshold_mm) or not 0 <= area_threshold_mm / self.depth_lsb_mm < 2**31:
             raise InputError(Argument("area_threshold_mm", area_threshold_mm), accepted="a depth, 0 or more")
         self._threshold_mm, self._area_threshold_mm = threshold_mm, area_threshold_mm
-        self._zero = no_zero(self.config)
-        self._exact_zero = np.zeros(self.grid)
+        self._zero, self._exact_zero = no_zero(self.config), np.zeros(self.grid)
         self._use_reference(rest)
         if reference is not None and rest is not None:
             self._sources.take_reference(reference)
@@ -351,6 +350,11 @@ class Pipeline:
         """Zero offset at its nodes, depth codes in the order of the stream, int64 (node rows, node columns)."""
         return self._zero
 
+    @property
+    def doubts(self) -> tuple[Doubt, ...]:
+        """Why all heights are uncertain: by the reference and the pictures of the zero offset."""
+        return (*self._doubts, *self._zero_doubts)
+
     def capture_reference(self, pictures: Pictures) -> None:
         """Take the mean of pictures without contact as the reference, as the hardware's capture does.
 
@@ -481,18 +485,16 @@ class Pipeline:
     ) -> tuple[tuple[str, ...], ...]:
         """Return for each picture why its heights are uncertain; warn of it, and in a stream only of what is new."""
         light = [None] * len(checked) if gains is None else gains * LIGHT_GAIN.lsb
-        limit = 2 ** (self.config.depth.width - 1) - 1 - int(np.abs(self._zero).max())  # a clipped code reaches it
-        limit_mm = limit * self.depth_lsb_mm if monitor.saturations else np.inf
+        least = least_clipped(self.config.depth.width, self._zero) if monitor.saturations else np.inf
         texts = []
         for each, gain, depth, slope in zip(checked, light, depth_mm, slopes, strict=True):
             # Clipped depths and a contact in the zero offset would be a part of the slopes that no surface has.
-            clipped = int((np.abs(depth) >= limit_mm).sum())
+            clipped = int((np.abs(depth) >= least * self.depth_lsb_mm).sum())
             has_steps = self.config.neumann and not (clipped or self._zero_doubts)
             steps = slope * self.pixel_pitch_mm if has_steps else None
             doubts = doubts_of(each, gain, depth, self.threshold_mm, steps)
             if clipped and not doubts:
-                text, larger = f": {clipped} of its depths are clipped", ("give a larger ", Argument("depth_range_mm"))
-                doubts = (doubt("clipped depth", each.name, f"{text}, heights there are too small", remedy=larger),)
+                doubts = (clipped_depth(clipped, each.name),)
             tell(doubts if warned is None else warned.new(doubts))
-            texts.append(tuple(map(str, (*self._doubts, *self._zero_doubts, *doubts))))
+            texts.append(tuple(map(str, (*self.doubts, *doubts))))
         return tuple(texts)

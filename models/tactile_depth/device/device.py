@@ -21,6 +21,7 @@ from tactile_depth.depth.twin import PICTURES, require_flat_field, require_zero_
 from tactile_depth.device import captures, sent
 from tactile_depth.device.addresses import open_channel
 from tactile_depth.device.arrived import arrived
+from tactile_depth.device.camera_frame import of_camera
 from tactile_depth.device.channel import Arrival, Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import Exchange, camera_frames
@@ -28,7 +29,7 @@ from tactile_depth.device.frame import DeviceFrame, seen_as
 from tactile_depth.device.registers import Registers, read_words, write_words
 from tactile_depth.device.status import COUNTERS, DeviceStatus
 from tactile_depth.device.tables import load_tables, require_same, wait_in_use, window_doubt
-from tactile_depth.pictures.doubts import UnusablePicture
+from tactile_depth.pictures.doubts import UnusablePicture, Warned
 from tactile_depth.pictures.frames import GREY
 from tactile_depth.pictures.pictures import Picture, Pictures
 from tactile_depth.pictures.reference_check import check_reference
@@ -240,7 +241,8 @@ class Device(AbstractContextManager["Device"]):
         follow the pictures. The host computes the same and compares; frames have the warnings of the pipeline.
 
         A picture whose depth gets lost on the line gives no frame and is counted in `lost`; `DeviceFrame.picture` tells
-        which one is missing. The frames of a camera do not end.
+        which one is missing. The frames of a camera do not end; their warnings are those that the flags of the device
+        and the depth give.
 
         Parameters
         ----------
@@ -270,7 +272,9 @@ class Device(AbstractContextManager["Device"]):
             self._require_whole(self._torn)
             if pictures is None:
                 self._check_window(line)
-                yield from (self._frame(arrival) for arrival in camera_frames(line))
+                warned = Warned()
+                for arrival in camera_frames(line):
+                    yield of_camera(self._frame(arrival), arrival.frame.shift, self._twin, warned)
                 return
             self._require_whole(self._unseen)
             if stream or (stream is None and not sent.are_whole(pictures)):

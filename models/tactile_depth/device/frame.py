@@ -13,6 +13,7 @@ import numpy.typing as npt
 from tactile_depth.base.by_value import ByValue
 from tactile_depth.base.npy import Codes, Flags, Floats
 from tactile_depth.chip.contact.contact_events import Record
+from tactile_depth.chip.contact.frame_flags import FrameFlags
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.depth.result import Contact, Recorder, Result
 
@@ -50,16 +51,16 @@ class DeviceFrame(ByValue):
         Format in which the depth came: `words`, `16-bit` or `averaged`.
     grid : tuple of int
         Rows and columns of the device, in whose pixels `record` counts.
-    warnings : tuple of str, or None
-        Why the heights are uncertain, as of a `Result`: empty if nothing is known against them. None: not known, for a
-        picture of the device's camera, which the host does not see.
+    warnings : tuple of str
+        Why the heights are uncertain, as of a `Result`: empty if nothing is known against them. The host does not see
+        the pictures of the device's camera: what its flags and the depth say of one.
     saturations : dict of str to int, or None
-        Values clipped, by node; None: not known.
+        Values clipped, by node; None: not known, for a picture of the device's camera.
     dark, outside : bool array (rows, columns), or None
         Pixels without light, and those whose slopes lie outside the calibrated range: of averaged depth the values with
-        such a pixel; None: not known.
+        such a pixel; None: not known, but `flags` count them.
     light_gains : float64 array (3,), or None
-        Light of the reference over that of the picture, of red, green and blue; None: not known, or no light gains.
+        Light of the reference over that of the picture, of red, green and blue; None without light gains.
     """
 
     codes: Codes
@@ -74,7 +75,7 @@ class DeviceFrame(ByValue):
     pixel_aspect: float
     depth_format: DepthFormatName
     grid: tuple[int, int]
-    warnings: tuple[str, ...] | None = None
+    warnings: tuple[str, ...] = ()
     saturations: dict[str, int] | None = None
     dark: Flags | None = None
     outside: Flags | None = None
@@ -110,6 +111,11 @@ class DeviceFrame(ByValue):
     def height_mm(self) -> npt.NDArray[np.float32]:
         """Height above the untouched surface in mm, float32 (rows, columns): `Result.height_mm`, rounded once."""
         return self._result.height_mm.astype(np.float32)
+
+    @property
+    def flags(self) -> FrameFlags:
+        """Flags that the device gave with the frame: what it clipped, its light gains, dark and steep pixels."""
+        return self.record.flags
 
     @property
     def depth_mm(self) -> Floats:

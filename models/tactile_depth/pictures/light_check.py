@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactile_depth.base.errors import Part
+from tactile_depth.base.errors import Argument, Part
 from tactile_depth.pictures.blocks import block_means, block_size, largest, medians, smooth, spread
 from tactile_depth.pictures.doubts import LIGHT, TAKE_ANOTHER, Doubt, doubt, percents
 from tactile_depth.pictures.exchanges import CORRECT_IT
@@ -62,16 +62,20 @@ def doubts_of(
         doubts += _other_light(checked.ratios, gains, bool(depth_mm.max() > threshold_mm), name)
     if doubts:  # other light explains gel that stands out
         return tuple(doubts)
-    some = depth_mm[::2, ::2].ravel()
-    rank = len(some) // 200
-    lowest, peak = float(np.partition(some, rank)[rank]), float(some.max())
+    lowest, peak = _range(depth_mm)
     if peak - lowest > 2 * threshold_mm:
         if slopes_mm is not None:
             doubts += _no_surface(depth_mm, slopes_mm, name)
-        at_rest = _at_rest(depth_mm, checked.ratios)
-        if not doubts and lowest - at_rest < -max(2 * threshold_mm, PRESSED_OUT * (peak - at_rest)):
-            doubts += _pressed_out(at_rest - lowest, name)
+        if not doubts:
+            doubts += pressed_out(depth_mm, _at_rest(depth_mm, checked.ratios), threshold_mm, name)
     return tuple(doubts)
+
+
+def _range(depth_mm: np.ndarray) -> tuple[float, float]:
+    """Return the lowest depth of 99.5 % of the pixels, and the largest."""
+    some = depth_mm[::2, ::2].ravel()
+    rank = len(some) // 200
+    return float(np.partition(some, rank)[rank]), float(some.max())
 
 
 def _no_surface(depth_mm: np.ndarray, slopes_mm: np.ndarray, name: Part) -> list[Doubt]:
@@ -101,10 +105,24 @@ def _at_rest(depth_mm: np.ndarray, ratios: np.ndarray | None) -> float:
     return float(np.median(middles[near] if near.any() else middles))
 
 
-def _pressed_out(out_mm: float, name: Part) -> list[Doubt]:
+def pressed_out(depth_mm: np.ndarray, at_rest_mm: float, threshold_mm: float, name: Part) -> list[Doubt]:
     """Doubt a picture whose gel stands out of the untouched surface by as much as it is pressed in."""
-    text = f": its gel stands out by {out_mm:.2f} mm, as if something touched it in the reference"
+    lowest, peak = _range(depth_mm)
+    if not lowest - at_rest_mm < -max(2 * threshold_mm, PRESSED_OUT * (peak - at_rest_mm)):
+        return []
+    text = f": its gel stands out by {at_rest_mm - lowest:.2f} mm, as if something touched it in the reference"
     return [doubt("pressed out", name, text, remedy=TAKE_ANOTHER)]
+
+
+def least_clipped(width: int, zero: np.ndarray) -> int:
+    """Return what a clipped depth code of so many bits is at least, either way, less the zero offset."""
+    return (1 << width - 1) - 1 - int(np.abs(zero).max())
+
+
+def clipped_depth(count: int, name: Part) -> Doubt:
+    """Return the doubt of a picture with clipped depths."""
+    text, larger = f": {count} of its depths are clipped", ("give a larger ", Argument("depth_range_mm"))
+    return doubt("clipped depth", name, f"{text}, heights there are too small", remedy=larger)
 
 
 def _other_light(ratios: np.ndarray, gains: np.ndarray | None, touches: bool, name: Part) -> list[Doubt]:
