@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from PIL import Image
 from skimage import io  # type: ignore[attr-defined]
 
-from tactile_depth.base.errors import InputError
+from tactile_depth.base.errors import InputError, InputWarning
 from tactile_depth.chip.resampling import resampling
 from tactile_depth.pictures.frames import EXIF_ORIENTATION, LARGEST_CAMERA, load_frames, read_picture
 from tactile_depth.sensor.scenes import SCENES, render, scene_pixel_pitch_mm
@@ -237,6 +237,14 @@ def test_the_files_that_macos_puts_beside_pictures_are_skipped(tmp_path: Path) -
     picture(tmp_path / "1.png", noise(20, 20, 3))
     (tmp_path / "._1.png").write_bytes(b"\0\5\26\7")
     assert load_frames(str(tmp_path), (16, 16)).labels == ("1.png",)
+
+
+def test_pictures_of_a_folder_that_are_not_read_are_named(tmp_path: Path) -> None:
+    for name in ("1.png", "2.webp", "10.BMP"):
+        Image.new("RGB", (20, 20)).save(tmp_path / name)
+    (tmp_path / "notes.txt").touch()
+    with pytest.warns(InputWarning, match=r"no PNG or JPEG: 2\.webp, 2 in all: save them as PNG"):
+        assert load_frames(str(tmp_path), (16, 16)).labels == ("1.png",)
 
 
 def npz(path: Path) -> Path:

@@ -197,6 +197,14 @@ def test_right_pictures_are_certain(
     certain(pipeline, doubled)
 
 
+def test_a_picture_of_another_size_than_its_reference_is_warned_of(mini: td.Sensor, reference: np.ndarray) -> None:
+    pipeline = td.Pipeline(mini, reference)
+    smaller = reference[12:-12, 16:-16].copy()  # the same aspect ratio
+    sizes = [f"{shape[1]} x {shape[0]}" for shape in (smaller.shape, reference.shape)]
+    with pytest.warns(td.InputWarning, match=" .* had ".join(sizes) + ", and may show another part of the gel"):
+        pipeline(smaller)
+
+
 def test_drawn_contacts_are_certain(drawn: tuple[td.Pipeline, np.ndarray]) -> None:
     pipeline, picture = drawn
     for light in (1, 0.8, 1.1):

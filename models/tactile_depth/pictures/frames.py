@@ -16,7 +16,7 @@ import numpy as np
 from PIL import Image
 
 from tactile_depth.base.by_value import ByValue
-from tactile_depth.base.errors import Argument, InputError
+from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
 from tactile_depth.base.npy import is_file, read_header
 from tactile_depth.chip.camera_configuration import CameraChoice, CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
@@ -30,6 +30,7 @@ LARGEST_CAMERA = 4096  # largest rows and columns of a frame, so that a damaged 
 PNG_SIGNATURE, JPEG_SIGNATURE = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
 APPLE_DOUBLE = "._"  # macOS puts such a file beside each on a foreign disk; it holds no picture
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg")
+OTHER_SUFFIXES = (".bmp", ".dng", ".gif", ".heic", ".tif", ".tiff", ".webp")  # of pictures that are not read
 EXIF_ORIENTATION, UPRIGHT = 0x0112, 1
 PNG_COLOURS = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with transparency", 6: "RGB with transparency"}
 REST_SCENE = "flat"  # the scene without contact
@@ -254,10 +255,13 @@ def read_pictures(
     except OSError as error:
         raise InputError(f"{name or source}: {error.strerror}: give a file or a folder") from error
     if folder:
-        pictures = (each for each in listed if each.suffix.lower() in PICTURE_SUFFIXES)
-        files = sorted((each for each in pictures if not each.name.startswith(APPLE_DOUBLE)), key=_natural)
+        pictures = sorted((each for each in listed if not each.name.startswith(APPLE_DOUBLE)), key=_natural)
+        files = [each for each in pictures if each.suffix.lower() in PICTURE_SUFFIXES]
         if not files:
             raise InputError(f"{name or source}: a folder without any PNG or JPEG: accepted is {accepted}")
+        if others := [each.name for each in pictures if each.suffix.lower() in OTHER_SUFFIXES]:
+            problem = f"{name or source}: left out is what is no PNG or JPEG: {others[0]}, {len(others)} in all"
+            warn(InputWarning(problem, remedy="save them as PNG"))
         return tuple(p.name for p in files), map(read_picture, files)
     if is_file(path) and path.suffix.lower() == ".npy":
         array = _read_array(path)

@@ -7,13 +7,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError, Part
+from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, warn
 from tactile_depth.chip.resampling import WHOLE, Share
 from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler, middle, picture_grid
 from tactile_depth.pictures.pictures import Pictures, pictures_of
 from tactile_depth.sensor.sensor import Sensor
 
 SYNTHETIC_GRID = (128, 128)
+ONE_SIZE = "give pictures of one size"
 
 
 def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]:
@@ -25,6 +26,9 @@ def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]
 
 class Reader:
     """Reads pictures of a sensor onto a grid.
+
+    A camera that joins pixels shows the same in a whole fraction of the rows and columns; a picture of another size
+    than the first is warned of.
 
     Attributes
     ----------
@@ -53,17 +57,21 @@ class Reader:
             if picture.shape[:2] != (rows, columns):
                 size = f"{picture.shape[1]} x {picture.shape[0]}"
                 problem = f": {size} pixels (columns x rows), but the first picture had {columns} x {rows}"
-                raise InputError(each, problem, remedy="give pictures of one size")
+                raise InputError(each, problem, remedy=ONE_SIZE)
         return middle(np.stack([picture for _, picture in read]), self.share), frames
 
     def _on_grid(self, picture: np.ndarray, name: Part) -> np.ndarray:
         size = (picture.shape[0], picture.shape[1])
         if size not in self._samplers:
             self.sensor.zoom(size, name, self.share)
-            if self.sensor.camera is None and self._samplers:
-                first = next(iter(self._samplers))[::-1]
-                problem = f": {size[1]} x {size[0]} pixels (columns x rows), but the first picture had {first}"
-                raise InputError(name, problem, remedy="give pictures of one size")
+            if self._samplers:
+                rows, columns = next(iter(self._samplers))
+                had = f"the first picture had {columns} x {rows}"
+                problem = f": {size[1]} x {size[0]} pixels (columns x rows), but {had}"
+                if self.sensor.camera is None:
+                    raise InputError(name, problem, remedy=ONE_SIZE)
+                if max(rows, size[0]) % min(rows, size[0]) or max(columns, size[1]) % min(columns, size[1]):
+                    warn(InputWarning(name, problem, ", and may show another part of the gel", remedy=ONE_SIZE))
             self._samplers[size] = grid_sampler(name, size, self._grid, share=self.share)
         return self._samplers[size].frame(picture)
 
