@@ -36,8 +36,9 @@ for (genvar n = 0; n < Latency; n++) begin : g_early
 end
 always_comb begin
   if (started) begin
-    // Behind the proof: frames of so many depths are Latency clocks long.
+    // Behind the proof: frames of so many depths are Latency clocks long; what stands between last beats is the same.
     apart: assert (early == '0);
+    stands: assert (dut.last_flags == flags_last && dut.last_time == begun_last);
     record_due: assert (record_valid == due[Latency-1]);
     if (!record_valid && !was_reset) keeps: assert (record == record_q);
     if (!was_reset && !due[2]) between_frames: assert (touching == touching_q);
