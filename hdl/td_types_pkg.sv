@@ -92,7 +92,7 @@ package td_types_pkg;
     logic [13:0] saturations;    // values clipped: up to 8 bits of them for each of 64 depths a cycle
   } events_t;
 
-  // What STATUS and ARRIVED show as it is.
+  // What STATUS, ARRIVED and SELF_TEST show as it is.
   typedef struct packed {
     logic        busy;      // a frame is in flight
     logic        contact;
@@ -101,6 +101,7 @@ package td_types_pkg;
     logic        stalled;   // the sink of depth holds the pipeline up, or has cost a frame
     logic [13:0] arrived_columns;  // of the row that ended last
     logic [13:0] arrived_rows;     // of the frame that ended last
+    logic [31:0] self_test;        // signature of the last self-test, 0 without
   } levels_t;
 
   // From the register file to every table. A table obeys `write` and `read` if `select` names it. Beside this bus,

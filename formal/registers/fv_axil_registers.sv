@@ -199,6 +199,7 @@ always_comb begin
   else if (read_offset == DepthDroppedOffset) word = given_up;
   else if (read_offset == RecordsLostOffset) word = lost;
   else if (read_offset == ArrivedOffset) word = {16'(levels.arrived_columns), 16'(levels.arrived_rows)};
+  else if (read_offset == SelfTestOffset) word = levels.self_test;
   else if (read_offset == OffThresholdOffset) word = off;
   else if (read_offset == AreaThresholdOffset) word = level;
   else if (read_offset == MinimumAreaOffset) word = area;
@@ -352,6 +353,8 @@ always_comb begin
     stream_settings: assert (contact_settings.drop_frames == drop && 32'(dark_level) == dim
         && 32'(reference_command.log2_frames) == averaged && 32'(zero_command.log2_frames) == zero_averaged);
     interrupt: assert (irq == raised);
+    tests_itself: assert (self_test == (writes(ControlOffset) && data[ControlSelfTestBit] && mask[ControlSelfTestBit]
+        && !rst));
     light_setting: assert (light_command.follow == light[0] && light_command.rate == light[6:4]);
     light_written: assert (light_command.write == (rst ? '0 : writes_gain)
         && (light_command.write == '0 || light_command.gain == 16'(written(32'(gain_before)))));

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_frame_guard: whatever arrives, only whole frames leave; every fault is flagged once; a whole frame passes
-// unchanged, behind a fault too; an early start is kept. Nothing is assumed of the source, nor of en and the time-out.
+// unchanged, behind a fault too; an early start is kept. Nothing is assumed of the source, nor of en and the time-out,
+// nor of s_test, with which a frame is marked and `hunting` stays.
 //
 // The specification is an automaton on frames that counts pixels, not rows and columns:
-//   Idle    between frames                      Open    `count` pixels of a frame taken, nothing wrong
-//   Broken  a fault in the frame: filled up     Dropped between frames behind a fault: words go until a start
+//   Idle    between frames; if it hunts, behind a fault, words go until a start
+//   Open    `count` pixels of a frame taken, nothing wrong
+//   Broken  a fault in the frame: filled up
 
 parameter int Rows = 3, Columns = 4;
 
@@ -16,36 +18,40 @@ logic row_short, row_long, start_missing, start_early, timed_out;
 assign {timed_out, start_early, start_missing, row_long, row_short} = faults;
 
 // What should happen in this clock.
-typedef enum logic [1:0] {Idle, Open, Broken, Dropped} state_e;
+typedef enum logic [1:0] {Idle, Open, Broken} state_e;
+logic hunts, hunts_next;
 state_e state, state_next;
 logic [CountWidth-1:0] count, count_next;
 logic [31:0] silence;  // enabled clocks without a word since the last one of an open frame
-logic between, pixel, filler, row_ends, short_now, long_now, missing_now, early_now, timed_out_now, fault;
+logic pixel, filler, row_now, whole_now, short_now, long_now, missing_now, early_now, timed_out_now, fault;
 always_comb begin
-  between = state == Idle || state == Dropped;
-  pixel = s_valid && (between ? s_user : state == Open && !s_user);
+  pixel = s_valid && (state == Idle ? s_user : state == Open && !s_user);
   filler = state == Broken;
-  row_ends = (count + One) % CountWidth'(Columns) == '0;
-  short_now = pixel && s_last && !row_ends;
-  long_now = pixel && !s_last && row_ends;
-  missing_now = state == Idle && s_valid && !s_user;
+  row_now = (count + One) % CountWidth'(Columns) == '0;
+  whole_now = count + One == Whole;
+  short_now = pixel && s_last && !row_now;
+  long_now = pixel && !s_last && row_now;
+  missing_now = state == Idle && s_valid && !s_user && !hunts;
   early_now = state == Open && s_valid && s_user;
   timed_out_now = state == Open && !s_valid && timeout != 0 && silence >= timeout;
   fault = short_now || long_now || early_now || timed_out_now;
   count_next = pixel || filler ? count + One : count;
   state_next = state;
-  if (missing_now) state_next = Dropped;
+  hunts_next = hunts;
+  if (!s_test && missing_now) hunts_next = 1'b1;
+  if (!s_test && pixel) hunts_next = 1'b0;
   if (pixel || fault || filler) begin
     state_next = filler || fault ? Broken : Open;
     if (count_next == Whole) begin
-      state_next = filler || fault ? Dropped : Idle;
+      if (!s_test) hunts_next = filler || fault;
+      state_next = Idle;
       count_next = '0;
     end
   end
 end
 
 // What should leave in the next enabled clock, and what left in this frame.
-logic leaves, leaves_bad, held, framed;
+logic leaves, leaves_bad, leaves_test, held, framed;
 logic [CountWidth-1:0] place;
 logic [23:0] data;
 logic [CountWidth-1:0] waited;  // enabled clocks for which a start has been refused
@@ -55,6 +61,8 @@ kept #(.Width(30)) u_kept (.clk, .rst, .en, .out({out_valid, out_data, out_posit
 always_ff @(posedge clk) begin
   if (en) begin
     state <= state_next;
+    hunts <= hunts_next;
+    leaves_test <= s_test;
     count <= count_next;
     silence <= s_valid || state != Open ? '0 : silence + 32'd1;
     leaves <= pixel | filler;
@@ -66,6 +74,7 @@ always_ff @(posedge clk) begin
   end
   if (rst) begin
     state <= Idle;
+    hunts <= 1'b0;
     count <= '0;
     leaves <= 1'b0;
     silence <= '0;
@@ -93,8 +102,9 @@ end
 
 always_comb begin
   if (started) begin
-    hunts: assert (hunting == (state == Dropped));
-    ready: assert (s_ready == (en && (between || !s_user)));
+    drops: assert (hunting == hunts);
+    next_pixel: assert ({between, row_ends, frame_ends} == {state == Idle, row_now, whole_now});
+    ready: assert (s_ready == (en && (state == Idle || !s_user)));
     flags_mean: assert ({row_short, row_long, start_missing, start_early, timed_out}
         == (en ? {short_now, long_now, missing_now, early_now, timed_out_now} : 5'd0));
     flagged_once: assert (32'(flags_in_frame) + 32'(flags) <= 1);
@@ -111,12 +121,13 @@ always_comb begin
     end
     frame_start: assert (out_frame_start == (out_valid && left == '0));
     frame_end: assert (out_frame_end == (out_valid && left == Whole - One));
-    if (out_frame_end) marked: assert (out_bad == (flags_of_frame == 2'd1));
-    if (out_frame_end) mark_expected: assert (out_bad == leaves_bad);
+    if (out_frame_end) marked: assert (out_bad == (flags_of_frame == 2'd1 || leaves_test));
+    if (out_frame_end) mark_expected: assert (out_bad == (leaves_bad || leaves_test) && out_test == leaves_test);
 
     good_after_fault: cover (out_frame_end && !out_bad && behind_fault);
-    filled: cover (out_frame_end && out_bad && state == Dropped);
+    filled: cover (out_frame_end && out_bad && hunts && !out_test);
     refused_longest: cover (waited == Whole);
+    tested: cover (out_frame_end && out_test && hunting);
     long_at_end: cover (en && long_now && count == Whole - One);
     missing: cover (start_missing);
     timed_out_late: cover (timed_out && timeout == 32'd3);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // depth_unit: whole frames of depth from what the solver puts out, less the zero offset if there is one.
 //
-//   solved --> frame_output --> [zero_offset] --> depth
-//                  ^       \-> [zero_capture]
+//   solved --> frame_output --> [zero_offset] -+-> depth
+//                  ^       \-> [zero_capture]  \-> depth_signature
 //   frame end --> frame_tags
 //
-// In brackets: with ZeroOffset. A tag waits for each frame that is in the solver: whether the frame was malformed,
-// its bank of the zero offset, and its time. A malformed frame does not leave. Stream in: bursts of the solver, Lanes
-// depth codes in a beat. Stream out: those of whole frames under `en`, in the same order. Latency: 0 cycles; with
-// ZeroOffset that of zero_offset. Models: models/tactile_depth/chip/depth/.
+// In brackets: with ZeroOffset. A tag waits for each frame that is in the solver: whether it was malformed, whether it
+// is of a self-test, its bank of the zero offset, and its time. A malformed frame does not leave, that of a self-test
+// leaves into its signature alone. Stream in: bursts of the solver, Lanes depth codes in a beat. Stream out: those of
+// whole frames under `en`, in the same order. Latency: 0 cycles; with ZeroOffset that of zero_offset. Models:
+// models/tactile_depth/chip/depth/.
 
 `default_nettype none
 
@@ -43,6 +44,7 @@ module depth_unit
 
   input  wire                         pixel_frame_end,
   input  wire                         pixel_bad,
+  input  wire                         pixel_test,
   input  wire  [31:0]                 frame_time,  // of the frame that pixel_frame_end ends
 
   input  wire                         burst_start,
@@ -53,26 +55,39 @@ module depth_unit
   output depth_position_t             depth_position,
   output logic [Lanes*DataWidth-1:0]  depth_data,  // depth codes, signed
   output logic [31:0]                 depth_time,   // of the frame to which depth_data belongs
-  output frame_flags_t                depth_flags   // of that frame; counts with its last beat
+  output frame_flags_t                depth_flags,  // of that frame; counts with its last beat
+
+  input  wire                         self_test,      // a self-test begins
+  output logic [31:0]                 test_signature  // of the last one, 0 until its frame has left
 );
 
-  logic bank, tag_due, tag_bad, tag_bank, tags_held;
+  logic bank, tag_due, tag_bad, tag_test, tag_bank, tags_held;
   logic [31:0] tag_time;
   assign bank = table_bank[TableSelectZero];
-  frame_tags #(.Width(34), .Latency(FrameLatency), .Pixels(Rows * Columns)) u_tags (
-    .clk, .rst, .en, .push(pixel_frame_end), .tag({pixel_bad, bank, frame_time}),
-    .due(tag_due), .due_tag({tag_bad, tag_bank, tag_time}), .held(tags_held)
+  frame_tags #(.Width(35), .Latency(FrameLatency), .Pixels(Rows * Columns)) u_tags (
+    .clk, .rst, .en, .push(pixel_frame_end), .tag({pixel_bad, pixel_test, bank, frame_time}),
+    .due(tag_due), .due_tag({tag_bad, tag_test, tag_bank, tag_time}), .held(tags_held)
   );
 
   assign depth_flags = '0;
 
-  logic active, whole_valid;
+  logic active, whole_valid, whole_test, whole_test_q, leaves, tested;
   depth_position_t whole_position;
   logic [Lanes*DataWidth-1:0] whole_data;
   frame_output #(.Width(Lanes * DataWidth), .Rows(Rows), .Columns(Columns / Lanes)) u_output (
     .clk, .rst, .en, .in_start(burst_start), .in_frame_start(solved_frame_start), .in_data(solved_data),
-    .in_due(tag_due), .in_bad(tag_bad), .active, .out_of_step,
+    .in_due(tag_due), .in_bad(tag_bad & ~tag_test), .active, .out_of_step,
     .out_valid(whole_valid), .out_position(whole_position), .out_data(whole_data)
+  );
+
+  assign whole_test = tag_due ? tag_test : whole_test_q;
+  always_ff @(posedge clk) if (en) whole_test_q <= whole_test;
+
+  assign depth_valid = leaves & ~tested;
+  depth_signature #(.Width(DataWidth), .Lanes(Lanes)) u_signature (
+    .clk, .rst, .en, .clear(self_test), .in_valid(leaves & tested),
+    .in_frame_start(depth_position.frame_start), .in_frame_end(depth_position.frame_end), .in_data(depth_data),
+    .signature(test_signature)
   );
 
   // The zero offset. Its bank goes with the frame: while the frame was in the solver others have begun.
@@ -90,7 +105,7 @@ module depth_unit
       .clk, .rst, .en, .table_command, .table_answer, .table_bank(rst ? bank : tag_bank), .table_in_use(in_use),
       .capture_write(zero_write), .capture_write_node(zero_write_node), .capture_zero(zero_written),
       .in_valid(whole_valid), .in_position(whole_position), .in_data(whole_data),
-      .out_valid(depth_valid), .out_position(depth_position), .out_data(depth_data), .active(zero_active), .saturations
+      .out_valid(leaves), .out_position(depth_position), .out_data(depth_data), .active(zero_active), .saturations
     );
     zero_capture #(
       .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(DataWidth), .MaxLog2(ZeroLog2),
@@ -98,15 +113,21 @@ module depth_unit
     ) u_capture (
       .clk, .rst, .en, .request(capture_command.request), .log2_frames(capture_command.log2_frames),
       .busy(capture_status.busy), .done(capture_status.done),
-      .in_valid(whole_valid), .in_frame_start(whole_position.frame_start),
+      .in_valid(whole_valid & ~whole_test), .in_frame_start(whole_position.frame_start),
       .in_frame_end(whole_position.frame_end), .in_data(whole_data),
       .map_write(zero_write), .map_write_node(zero_write_node), .map_write_zero(zero_written)
     );
     assign table_in_use = 4'(in_use) << TableSelectZero;
     assign busy = tags_held | active | zero_active;
-    always_ff @(posedge clk) if (en && whole_valid && whole_position.frame_start) depth_time <= tag_time;
+    logic depth_test, tested_q;  // of the frame that came in last, and of that which leaves
+    assign tested = depth_position.frame_start ? depth_test : tested_q;
+    always_ff @(posedge clk) begin
+      if (en && whole_valid && whole_position.frame_start) {depth_time, depth_test} <= {tag_time, tag_test};
+      if (en && leaves) tested_q <= tested;
+    end
   end else begin : g_as_solved
-    assign depth_valid = whole_valid;
+    assign leaves = whole_valid;
+    assign tested = whole_test;
     assign depth_position = whole_position;
     assign depth_data = whole_data;
     assign depth_time = tag_time;

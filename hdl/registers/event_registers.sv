@@ -72,7 +72,8 @@ module event_registers
   end
 
   logic [31:0] frames_in, frames_out, frames_dropped, dark_pixels, depth_dropped, records_lost, saturations;
-  logic [31:0] arrived;
+  logic [31:0] arrived, self_test;
+  assign self_test = levels.self_test;
   assign arrived = (32'(levels.arrived_columns) << ArrivedColumnsLsb) | (32'(levels.arrived_rows) << ArrivedRowsLsb);
   assign {saturations, records_lost, depth_dropped, dark_pixels, frames_dropped, frames_out, frames_in} = counts;
   always_comb begin
@@ -88,6 +89,7 @@ module event_registers
       DepthDroppedOffset: read_data = depth_dropped;
       RecordsLostOffset: read_data = records_lost;
       ArrivedOffset: read_data = arrived;
+      SelfTestOffset: read_data = self_test;
       default: read_data = '0;
     endcase
   end

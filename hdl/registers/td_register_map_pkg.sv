@@ -63,6 +63,7 @@ package td_register_map_pkg;
   localparam int LightGainRedOffset = 32'h0d4;
   localparam int LightGainGreenOffset = 32'h0d8;
   localparam int LightGainBlueOffset = 32'h0dc;
+  localparam int SelfTestOffset = 32'h0e0;
 
   // Words of a record of contact, and their offsets, the first in the lowest bits.
   localparam int RecordWords = 15;
@@ -91,6 +92,7 @@ package td_register_map_pkg;
   localparam int ControlHoldContactBit = 0;
   localparam int ControlClearCountersBit = 1;
   localparam int ControlDropFramesBit = 2;
+  localparam int ControlSelfTestBit = 3;
   localparam int StatusRowShortBit = 0;
   localparam int StatusRowLongBit = 1;
   localparam int StatusStartMissingBit = 2;
@@ -197,7 +199,7 @@ package td_register_map_pkg;
       ZeroCaptureOffset, InterruptStatusOffset, InterruptMaskOffset, ArrivedOffset,
       RecordFlagsOffset, RecordLightOffset, RecordPixelsOffset, DeviceOffset, DepthUnitOffset,
       SlopeUnitOffset, PitchOffset, LightOffset, LightGainRedOffset, LightGainGreenOffset,
-      LightGainBlueOffset: is_register = 1'b1;
+      LightGainBlueOffset, SelfTestOffset: is_register = 1'b1;
       default: is_register = 1'b0;
     endcase
   endfunction

@@ -9,8 +9,9 @@
 //   start_missing  no tuser where a frame begins dropped up to the next tuser
 //
 // A fault is high for one cycle, once for each broken frame. What is left of a broken frame on the input is dropped;
-// the filler repeats the last pixel. Stream in: AXI4-Stream Video, ready/valid. Stream out: pixels in raster order;
-// with the last of a frame out_frame_end, and out_bad if it is marked. Latency: 1 cycle; en low: nothing moves.
+// the filler repeats the last pixel. The frame of a self-test (s_test) is marked too, and does not change `hunting`.
+// Stream in: AXI4-Stream Video, ready/valid. Stream out: pixels in raster order; with the last of a frame
+// out_frame_end, and out_bad if it is marked. Latency: 1 cycle; en low: nothing moves.
 // Bit-accurate model: models/tactile_depth/chip/video/frame_guard.py.
 
 `default_nettype none
@@ -30,12 +31,17 @@ module frame_guard
   input  wire  [23:0] s_data,    // three codes of 8 bits
   input  wire         s_last,
   input  wire         s_user,
+  input  wire         s_test,    // the word is of a self-test
+  output logic        between,     // no frame is open, nor filled up; from registers, as the next two
+  output logic        row_ends,    // the pixel that is taken next is the last of a row
+  output logic        frame_ends,  // .. of a frame
   output logic        out_valid,
   output logic [23:0] out_data,  // as s_data
   output position_t   out_position,
   output logic        out_frame_start,
   output logic        out_frame_end,
-  output logic        out_bad,   // with out_frame_end: the frame was malformed
+  output logic        out_bad,   // with out_frame_end: the frame was malformed, or of a self-test
+  output logic        out_test,  // with out_frame_end: the frame was of a self-test
   output faults_t     faults,    // each for one cycle
   output logic        hunting    // words are dropped up to the next start of frame
 );
@@ -49,21 +55,22 @@ module frame_guard
   logic [31:0] silence;
   logic filling;  // completing a broken frame
 
-  logic origin, last_column, frame_end, take, emit;
+  logic origin, take, emit;
   logic row_short, row_long, start_missing, start_early, timed_out, fault_in_frame;
   assign origin = place.first_column & place.first_row;
-  assign last_column = place.last_column;
-  assign frame_end = last_column & place.last_row;
+  assign row_ends = place.last_column;
+  assign frame_ends = row_ends & place.last_row;
+  assign between = origin & ~filling;
 
   // A start of frame is taken only where a frame begins; all else is taken at once, as a pixel or to be dropped.
   logic accept;
-  assign accept = origin & ~filling ? 1'b1 : ~s_user;
+  assign accept = between | ~s_user;
   assign s_ready = en & accept;
   assign take = s_valid & accept & ~filling & (~origin | s_user);  // this word is a pixel
 
-  assign row_short = en & take & s_last & ~last_column;
-  assign row_long = en & take & ~s_last & last_column;
-  assign start_missing = en & s_valid & origin & ~filling & ~s_user & ~hunting;
+  assign row_short = en & take & s_last & ~row_ends;
+  assign row_long = en & take & ~s_last & row_ends;
+  assign start_missing = en & s_valid & between & ~s_user & ~hunting;
   assign start_early = en & s_valid & ~origin & ~filling & s_user;
   assign timed_out = en & ~s_valid & ~origin & ~filling & (timeout != '0) & (silence >= timeout);
   assign fault_in_frame = row_short | row_long | start_early | timed_out;
@@ -80,21 +87,23 @@ module frame_guard
       if (take) out_data <= s_data;
       out_position <= place;
       out_frame_start <= take & origin;
-      out_frame_end <= emit & frame_end;
-      out_bad <= filling | row_long;  // at the end of a frame nothing else can be wrong
+      out_frame_end <= emit & frame_ends;
+      out_bad <= filling | row_long | s_test;  // at the end of a frame nothing else can be wrong
+      out_test <= s_test;
       if (emit) begin
-        column <= last_column ? '0 : column + ColumnWidth'(1);
-        place.first_column <= last_column;
-        place.last_column <= ~last_column & (column == ColumnWidth'(Columns - 2));
-        if (last_column) begin
-          row <= frame_end ? '0 : row + RowWidth'(1);
-          place.first_row <= frame_end;
-          place.last_row <= ~frame_end & (row == RowWidth'(Rows - 2));
+        column <= row_ends ? '0 : column + ColumnWidth'(1);
+        place.first_column <= row_ends;
+        place.last_column <= ~row_ends & (column == ColumnWidth'(Columns - 2));
+        if (row_ends) begin
+          row <= frame_ends ? '0 : row + RowWidth'(1);
+          place.first_row <= frame_ends;
+          place.last_row <= ~frame_ends & (row == RowWidth'(Rows - 2));
         end
       end
       silence <= (s_valid | origin | filling) ? '0 : silence + 32'd1;
-      filling <= (filling | fault_in_frame) & ~(emit & frame_end);
-      if (emit & frame_end) hunting <= filling | row_long;
+      filling <= (filling | fault_in_frame) & ~(emit & frame_ends);
+      if (s_test) hunting <= hunting;
+      else if (emit & frame_ends) hunting <= filling | row_long;
       else if (start_missing) hunting <= 1'b1;
       else if (take) hunting <= 1'b0;
     end

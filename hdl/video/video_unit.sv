@@ -2,11 +2,12 @@
 // video_unit: the pixels of whole frames from an AXI4-Stream Video input, with their position and the time of the
 // frame.
 //
-//   s_axis -> td_axis_skid -+-> frame_guard -> pixel
+//   s_axis -> td_axis_skid -+-> test_picture -> frame_guard -> pixel
 //                           +-> td_frame_size -> arrived_columns, arrived_rows
 //
 // Stream in: 24-bit pixels, raster order, ready/valid. Stream out: Rows x Columns pixels a frame, under `en`; with the
-// first of a frame pixel_frame_start, with the last pixel_frame_end, and pixel_bad if the frame was malformed.
+// first of a frame pixel_frame_start, with the last pixel_frame_end, and pixel_bad if the frame was malformed; the
+// picture of a self-test is marked as malformed too, and by pixel_test.
 // Latency: 2 cycles. A gap in, a gap out. Model: models/tactile_depth/chip/video/frame_guard.py.
 
 `default_nettype none
@@ -29,6 +30,7 @@ module video_unit
   input  wire         s_axis_tlast,
   input  wire         s_axis_tuser,
 
+  input  wire         self_test,  // asks for the picture of a self-test
   input  wire  [31:0] timeout,  // of a source that falls silent inside a frame, in cycles; 0: none
   output faults_t     faults,
   output logic        hunting,  // pixels are dropped up to the next start of frame
@@ -42,6 +44,7 @@ module video_unit
   output logic        pixel_frame_start,
   output logic        pixel_frame_end,
   output logic        pixel_bad,
+  output logic        pixel_test,
 
   output logic [31:0] now,        // cycles since reset
   output logic [31:0] frame_time  // `now` when the first pixel of this frame was taken
@@ -55,12 +58,21 @@ module video_unit
     .m_valid(held_valid), .m_ready(held_ready), .m_data({held_user, held_last, held_data})
   );
 
+  logic between, row_ends, frame_ends, tested_valid, tested_ready, tested_last, tested_user, testing;
+  logic [23:0] tested_data;
+  test_picture u_test (
+    .clk, .rst, .request(self_test), .between, .row_ends, .frame_ends,
+    .s_valid(held_valid), .s_ready(held_ready), .s_data(held_data), .s_last(held_last), .s_user(held_user),
+    .m_valid(tested_valid), .m_ready(tested_ready), .m_data(tested_data), .m_last(tested_last), .m_user(tested_user),
+    .m_test(testing)
+  );
+
   frame_guard #(.Rows(Rows), .Columns(Columns)) u_guard (
     .clk, .rst, .en, .timeout,
-    .s_valid(held_valid), .s_ready(held_ready), .s_data(held_data), .s_last(held_last), .s_user(held_user),
-    .out_valid(pixel_valid), .out_data(pixel_data), .out_position(pixel_position),
-    .out_frame_start(pixel_frame_start), .out_frame_end(pixel_frame_end), .out_bad(pixel_bad), .faults,
-    .hunting
+    .s_valid(tested_valid), .s_ready(tested_ready), .s_data(tested_data), .s_last(tested_last), .s_user(tested_user),
+    .s_test(testing), .between, .row_ends, .frame_ends, .out_valid(pixel_valid), .out_data(pixel_data),
+    .out_position(pixel_position), .out_frame_start(pixel_frame_start), .out_frame_end(pixel_frame_end),
+    .out_bad(pixel_bad), .out_test(pixel_test), .faults, .hunting
   );
 
   td_frame_size #(.CountWidth(14)) u_size (

@@ -76,6 +76,8 @@ PARAMETERS = (
     *("FlatField", "Polynomial", "Corrections", "LightGains", "ZeroOffset", "Lanes", "BlockLog2", "GainWidth"),
     *("DepthMantissa", "DepthExponent", "SlopeMantissa", "SlopeExponent", "PitchNm"),
 )
+CONTROL = REGISTERS["CONTROL"]
+SELF_TEST = CONTROL.field("self_test").mask
 CONTACT = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
 
 
@@ -160,6 +162,7 @@ class Registers:
         light["gain"] = (ones | before & ~mask) & (1 << LIGHT_GAIN.width) - 1
         table["write"] = len(model.table_writes) > written
         if None not in (port.address, port.data):
+            out["self_test"] = colour == CONTROL.name and bool(bus["write"] and ones & SELF_TEST)
             out |= {"light_command": pack("light_command_t", light), "table_command": pack("table_command_t", table)}
         for name in CAPTURES:
             request = {"request": model.captures[started:] == [name], "log2_frames": log2[name]}

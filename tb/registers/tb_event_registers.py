@@ -6,7 +6,15 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.chip.registers.event_registers import ARRIVED, COUNTERS, LATENCY, LEVELS, STATUS, EventRegisters
+from tactile_depth.chip.registers.event_registers import (
+    ARRIVED,
+    COUNTERS,
+    LATENCY,
+    LEVELS,
+    SELF_TEST,
+    STATUS,
+    EventRegisters,
+)
 from tactile_depth.chip.registers.register_map import WORD
 from tb import lockstep, structs
 from tb.registers.bus import NAME_AT, Bus
@@ -35,6 +43,7 @@ class Registers:
         shown = {
             "STATUS": STATUS.pack(**{level: levels[level] for level in LEVELS}),
             "ARRIVED": ARRIVED.pack(rows=levels["arrived_rows"], columns=levels["arrived_columns"]),
+            SELF_TEST: levels["self_test"],
         }
         out = {"read_data": model.values.get(name, 0) | shown.get(name, 0), "irq": model.irq}
         if pins["write"]:
@@ -51,7 +60,7 @@ class Registers:
 @cocotb.test()
 async def registers(dut: Any) -> None:
     chance, bits = random.Random(cocotb.RANDOM_SEED), len(dut.events)
-    bus = Bus(dut, "STATUS", "INTERRUPT_STATUS", "CONTROL", "ARRIVED", LATENCY, *COUNTERS)
+    bus = Bus(dut, "STATUS", "INTERRUPT_STATUS", "CONTROL", "ARRIVED", SELF_TEST, LATENCY, *COUNTERS)
     pins = {
         **bus.choices,
         "events": [0, (1 << bits) - 1, *(1 << bit for bit in range(bits))],

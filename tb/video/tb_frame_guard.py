@@ -18,7 +18,7 @@ PROTOCOL = {
     "counts": "live & ~reset",
     "out_valid out_frame_start out_frame_end": "counts & en",
     "out_data out_position": "counts & en & out_valid",
-    "out_bad": "counts & en & out_valid & out_frame_end",
+    "out_bad out_test": "counts & en & out_valid & out_frame_end",
 }
 MUTANTS = Mutants(outside=("silence",))
 PROOFS = tuple(
@@ -33,7 +33,8 @@ PROOFS = tuple(
 @cocotb.test()
 async def words(dut: Any) -> None:
     chance = random.Random(cocotb.RANDOM_SEED)
-    pins = {"en": 1.0, "s_valid": 1.0, "s_data": WORD, "s_last": 0.1, "s_user": 0.1, "timeout": [5, 0, 1, 2, 8]}
+    pins = {"en": 1.0, "s_valid": 1.0, "s_data": WORD, "timeout": [5, 0, 1, 2, 8]}
+    pins |= dict.fromkeys(("s_last", "s_user", "s_test"), 0.1)
 
     def legal(core: FrameGuard, pins: Pins) -> None:
         """Set each mark, wrong where the choice says so; a tenth of the starts is missing; some silences are long."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 
 from tactile_depth.chip.limits import CUBIC
 from tactile_depth.chip.registers.axil_port import Response, offset_of, strobed_bits
-from tactile_depth.chip.registers.event_registers import ARRIVED, LEVELS, STATUS, EventRegisters
+from tactile_depth.chip.registers.event_registers import ARRIVED, LEVELS, SELF_TEST, STATUS, EventRegisters
 from tactile_depth.chip.registers.register_map import MAP, REGISTERS, TABLES
 from tactile_depth.chip.registers.setting_registers import SettingRegisters
 from tactile_depth.chip.registers.table_access import PORTS, SIZE, TableAccess
@@ -137,6 +137,7 @@ class Live:
     stalled: bool = False
     arrived_columns: int = 0
     arrived_rows: int = 0
+    self_test: int = 0
     capturing: frozenset[str] = frozenset()
     ending: frozenset[str] = frozenset()
     record: tuple[int, ...] = (0,) * len(RECORD)
@@ -209,6 +210,7 @@ class AxilRegisters:
             return self.entry(self.table, index)[PORTS.index(register.name)], Response.OKAY
         shown = dict(zip(RECORD, live.record, strict=True)) | {
             ARRIVED.name: ARRIVED.pack(rows=live.arrived_rows, columns=live.arrived_columns),
+            SELF_TEST: live.self_test,
             STATUS.name: STATUS.pack(**{name: int(getattr(live, name)) for name in LEVELS}),
             **{capture.name: capture.pack(busy=int(table in live.capturing)) for table, capture in CAPTURES.items()},
             COMMIT.name: self.banks.pending(live.in_use),

@@ -38,6 +38,7 @@ SATURATIONS = "SATURATIONS"
 COUNTERS = (*dict.fromkeys(EVENT_COUNTERS.values()), SATURATIONS)
 LATENCY = "FIRST_DEPTH_LATENCY"
 ARRIVED = REGISTERS["ARRIVED"]
+SELF_TEST = "SELF_TEST"
 LEVELS = ("busy", "contact", "touching", "hunting", "stalled")
 """Bits of STATUS that show an input as it is."""
 

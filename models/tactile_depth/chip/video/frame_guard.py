@@ -71,7 +71,8 @@ class FrameGuard:
     pixels : list of int
         Of the present frame, as they leave.
     filling, hunting : bool
-        A broken frame is filled up; words up to the next start are dropped and not flagged.
+        A broken frame is filled up; words up to the next start are dropped and not flagged, but for those of a
+        self-test.
     silence : int
         Cycles without a word inside a frame.
     out : dict
@@ -86,23 +87,25 @@ class FrameGuard:
     silence: int = 0
     out: dict[str, int] = field(default_factory=dict)
 
-    def _leave(self, data: int, bad: bool) -> None:
+    def _leave(self, data: int, bad: bool, is_test: bool = False) -> None:
         row, column = divmod(len(self.pixels), self.columns)
         self.pixels.append(data)
         starts, ends = (row == 0, column == 0), (row == self.rows - 1, column == self.columns - 1)
         position = sum(mark << bit for bit, mark in enumerate((*starts, *ends)))
         self.out = {"out_valid": 1, "out_data": data, "out_position": position, "out_frame_start": all(starts)}
-        self.filling, self.hunting = bad and not all(ends), bad and all(ends)
+        self.filling = bad and not all(ends)
+        if all(ends) and not is_test:
+            self.hunting = bad
         if all(ends):
-            self.out |= {"out_frame_end": 1, "out_bad": bad}
+            self.out |= {"out_frame_end": 1, "out_bad": bad or is_test, "out_test": is_test}
             self.pixels = []
 
-    def fill(self) -> None:
+    def fill(self, is_test: bool = False) -> None:
         """Let a pixel of filler leave."""
         self.silence = 0
-        self._leave(self.pixels[-1], bad=True)
+        self._leave(self.pixels[-1], True, is_test)
 
-    def take(self, word: Word | None, timeout: int = 0) -> str:
+    def take(self, word: Word | None, timeout: int = 0, is_test: bool = False) -> str:
         """Take a word, None for silence, while no frame is filled up; return the fault that it shows.
 
         An early start is not taken: it breaks the frame, and then begins the next.
@@ -119,22 +122,26 @@ class FrameGuard:
             self.filling = True
             return "start_early"
         if not self.pixels and not word.user:
-            fault, self.hunting = "" if self.hunting else "start_missing", True
+            fault, self.hunting = "" if self.hunting else "start_missing", self.hunting or not is_test
             return fault
         if word.last != (len(self.pixels) % self.columns == self.columns - 1):
             fault = "row_short" if word.last else "row_long"
-        self._leave(word.data, bool(fault))
+        self.hunting &= is_test
+        self._leave(word.data, bool(fault), is_test)
         return fault
 
     def clock(self, **pins: int) -> dict[str, int]:
         """Advance by one clock edge; return the outputs before it that count."""
-        ready = pins["en"] and not (self.pixels and pins["s_user"])
-        out, fault = {"out_valid": 0, "out_frame_start": 0, "out_frame_end": 0, "hunting": self.hunting} | self.out, ""
+        between, left = not self.pixels, self.rows * self.columns - len(self.pixels)
+        ready = pins["en"] and (between or not pins["s_user"])
+        marks: dict[str, int] = {"between": between, "row_ends": left % self.columns == 1, "frame_ends": left == 1}
+        marks |= {"out_valid": 0, "out_frame_start": 0, "out_frame_end": 0, "hunting": self.hunting}
+        out, fault = marks | self.out, ""
         if pins["en"] and self.filling:
-            self.fill()
+            self.fill(bool(pins["s_test"]))
         elif pins["en"]:
             word = Word(pins["s_data"], pins["s_last"], pins["s_user"]) if pins["s_valid"] else None
-            fault = self.take(word, pins["timeout"])
+            fault = self.take(word, pins["timeout"], bool(pins["s_test"]))
         if pins["rst"]:
             self.pixels, self.filling, self.hunting, self.silence, self.out = [], False, False, 0, {}
         return {"s_ready": ready, "faults": sum((name == fault) << bit for bit, name in enumerate(FAULTS)), **out}
