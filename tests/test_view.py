@@ -254,9 +254,13 @@ def test_the_simulator_plays_what_a_pipeline_reads(tmp_path: Path) -> None:
     ],
 )
 def test_a_camera_sends_the_full_picture(words: Any, picture: Any, window: Any) -> None:
-    """The grid covers what the calibration's pictures show, so its pixels have their size in mm."""
+    """The grid covers what the calibration's pictures show, so its pixels have their size in mm; more is warned of."""
     variables = (*run_request.CONFIGURING, *run_request.CAMERA)
-    frames, sensor, _ = synthesis.design(run_request.parse(words, variables, "sensor", ""))
+    with warnings.catch_warnings(record=True) as given:
+        warnings.simplefilter("always")
+        frames, sensor, _ = synthesis.design(run_request.parse(words, variables, "sensor", ""))
+    told = "window=(64, 48, 512, 384) shows gel up to 27 pixels beyond the calibration's pictures"
+    assert [str(each.message).startswith(told) for each in given] == [True] * ("WINDOW" in words[-1])
     assert frames.camera is not None
     assert (frames.camera.picture, frames.camera.crop) == (picture, window)
     shares = view_of(words[1].partition("=")[2]) if "CROP" in words[-1] else (1, 1)

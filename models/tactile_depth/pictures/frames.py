@@ -167,10 +167,26 @@ def on_grid(sensor: Sensor, frames: Frames, whole: bool = False) -> Sensor:
     if frames.camera is None and (whole or sensor.camera is not None):
         scale = grid_scale(sensor, frames.pixels.shape[1:3])
     if frames.camera is not None:
+        _warn_of_window(sensor, frames)
         columns, rows = frames.camera.centre_shift
         pitch_mm = sensor.pixel_pitch_mm / zoom
         placed = sensor.centred_at(columns * pitch_mm, rows * pitch_mm)
     return placed.scaled(scale, frames.reference)
+
+
+def _warn_of_window(sensor: Sensor, frames: Frames) -> None:
+    """Warn of a camera's window that shows gel that the calibration's pictures do not show."""
+    if sensor.camera is None or frames.camera is None or frames.picture_size is None:
+        return
+    x, y, width, height = frames.camera.crop
+    beyond = 0.0
+    for first, length, whole, share in zip((y, x), (height, width), frames.picture_size, frames.share, strict=True):
+        margin = float(whole * (1 - share) / 2)
+        beyond = max(beyond, margin - first, first + length - (whole - margin))
+    if beyond > 1:
+        problem = f" shows gel up to {beyond:.0f} pixels beyond the calibration's pictures, which is not calibrated"
+        remedy = "omit it for the view of the calibration"
+        warn(InputWarning(Argument("window", frames.camera.crop), problem, remedy=remedy))
 
 
 def load_frames(
