@@ -22,6 +22,8 @@ try:
 except ImportError as error:
     sys.exit(f"tables of tactile_depth: {error} ({sys.executable}): run `make setup`, put {ROOT}/.venv/bin on PATH")
 
+PATHS = ("CALIBRATION", "REFERENCE", "ZERO")  # relative ones count from the folder of the core that calls it
+
 
 def generate(description: Path, folder: Path) -> None:
     """Write the module, its tables and a core that holds both into a folder. Raises InputError."""
@@ -29,9 +31,14 @@ def generate(description: Path, folder: Path) -> None:
     values = dict(wanted.get("parameters") or {})
     module = str(values.pop("NAME", ""))
     wrapped.check_name(module)
-    for key in values:
+    for key, value in values.items():
         if key not in wrapped.CHOICES:
             raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(wrapped.CHOICES)}")
+        if value is None:
+            raise InputError(f"{key}: it has no value: omit it")
+        beside = Path(wanted.get("files_root", ""), str(value))
+        if key in PATHS and beside.is_file():
+            values[key] = beside
     words = [f"{key}={value}" for key, value in values.items()]
     request = run_request.parse(words, wrapped.CHOICES, wrapped.PRESET, frames="")
     (path,) = wrapped.write(request, folder, module, f"{module}/").modules

@@ -29,7 +29,7 @@ from systemrdl.node import AddrmapNode, FieldNode, RegNode
 
 from commands.common import wrapper
 from commands.common.header import sentence
-from commands.common.repository import GENERATED, ROOT, sources
+from commands.common.repository import GENERATED, ROOT, sources, testbench
 from commands.common.tabular import Table, records
 from commands.hardware.ip_xact import Module, write
 from tactile_depth.base import files
@@ -289,9 +289,10 @@ def address_width(registers: list[Register]) -> int:
 
 
 def fusesoc_core() -> str:
-    """Return the text of tactile_depth.core with every file of hdl/, packages first."""
+    """Return the text of tactile_depth.core with every file of hdl/, packages first, and testbench of the whole."""
     files = "".join(f"      - {path.relative_to(ROOT)}\n" for path in sources())
-    return re.sub(r"(?<=  rtl:\n    files:\n)( {6}- .*\n)+", files, FUSESOC.read_text())
+    text = re.sub(r"(?<=  rtl:\n    files:\n)( {6}- .*\n)+", files, FUSESOC.read_text())
+    return re.sub(r"(?<=cocotb_module: tb.exit_status,).*", testbench("tactile_depth"), text)
 
 
 def readme(page: Path) -> str:

@@ -13,7 +13,9 @@ import yaml
 from cocotb_tools.check_results import get_results
 from cocotb_tools.config import pygpi_entry_point
 from find_libpython import find_libpython
+from PIL import Image
 
+import tactile_depth as td
 from commands.common import repository, simulator
 from tactile_depth.chip.rom_files import table_files
 from tb.settings import RunSettings
@@ -46,9 +48,10 @@ def test_part_is_that_of_the_vivado_script(core: Any) -> None:
     assert re.search(r"^set part (\S+)$", script, re.M)[1] == core["targets"]["synth"]["flow_options"]["part"]  # type: ignore[index]
 
 
-def generated(folder: Path, parameters: Any) -> Any:
+def generated(folder: Path, parameters: Any, core_folder: Path | str = "") -> Any:
     description = folder / "wanted.yml"
-    description.write_text(yaml.safe_dump({"vlnv": "::tables:0", "parameters": parameters}))
+    wanted = {"vlnv": "::tables:0", "parameters": parameters, "files_root": str(core_folder)}
+    description.write_text(yaml.safe_dump(wanted))
     command = [sys.executable, str(repository.ROOT / "commands" / "hardware" / "fusesoc.py"), str(description)]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
@@ -129,3 +132,15 @@ def test_the_generator_refuses_what_it_does_not_know(tmp_path: Path) -> None:
     result = generated(tmp_path, {"N": 16})
     assert result.returncode == 2
     assert "NAME=: accepted are small letters" in result.stderr
+    result = generated(tmp_path, {"NAME": "finger", "ZERO": None})
+    assert "ZERO: it has no value: omit it" in result.stderr
+
+
+def test_paths_count_from_the_folder_of_the_core(tmp_path: Path) -> None:
+    sample = td.sample("ball")
+    (tmp_path / "core").mkdir()
+    Image.fromarray(sample.reference).save(tmp_path / "core" / "background.png")
+    words = {"NAME": "finger", "ROWS": 24, "COLS": 32, "CALIBRATION": "synthetic", "REFERENCE": "background.png"}
+    result = generated(tmp_path, words, tmp_path / "core")
+    path = tmp_path / "core" / "background.png"
+    assert f"REFERENCE={path} ZERO={path}" in result.stdout, result.stderr
