@@ -90,8 +90,9 @@ static void load(struct link *l, const uint8_t *picture)
 {
   static const char *const results[] = {
       NULL, "no tactile_depth answers", "the device has another grid", "the device has other formats",
-      "the device is another build", "the device has other units", "the device has a table of another size",
-      "tables stay pending", "the device did not take every entry"};
+      "the device is another build", "the device has other units",
+      "the device computes with other numbers: build it for this calibration",
+      "the device has a table of another size", "tables stay pending", "the device did not take every entry"};
   int result = tactile_depth_load(link_write, link_read, l, TACTILE_DEPTH_ALL_TABLES);
 
   if (result == TACTILE_DEPTH_STAYS_PENDING && !l->failure) { /* of a program before, until a frame takes them */
@@ -193,6 +194,8 @@ int main(int count, char **words)
   begin(&l);
   load(&l, picture);
   settle(&l, picture);
+  if (!l.failure && tactile_depth_holds(link_write, link_read, &l) != TACTILE_DEPTH_ALL_TABLES)
+    l.failure = "the device uses other tables than were loaded: another program writes to it";
   if (l.failure) {
     fprintf(stderr, "%s: %s\n", words[1], l.failure);
     return 1;

@@ -95,9 +95,9 @@ module tactile_depth
   logic signed [GradientWidth-1:0] slope_gx, slope_gy;
   gradient_unit #(.TableFolder(TableFolder), .Config(Config)) u_gradient (
     .clk, .rst, .en, .table_command, .table_answer(slope_answer), .table_bank, .table_in_use(slope_in_use), .dark_level,
-    .capture_command(reference_command), .capture_status(reference_status), .dark(events.dark),
-    .light_command, .light_gains, .saturations(slope_saturations), .pixel_valid, .pixel_data, .pixel_position,
-    .pixel_bad, .slope_valid, .slope_position, .slope_gx, .slope_gy
+    .capture_command(reference_command), .capture_status(reference_status), .dark(events.dark), .light_command,
+    .light_gains, .saturations(slope_saturations), .pixel_valid, .pixel_data, .pixel_position, .pixel_bad, .slope_valid,
+    .slope_position, .slope_gx, .slope_gy
   );
 
   logic burst_start, solved_frame_start;
@@ -138,7 +138,7 @@ module tactile_depth
   assign events.saturations = 14'(solver_saturations) + 14'(slope_saturations) + 14'(depth_saturations);
   assign levels.busy = video_busy | depth_busy | m_axis_tvalid;
   assign levels.contact = contact;
-  axil_registers #(.Config(Config)) u_registers (
+  axil_registers #(.SignatureFile({TableFolder, "signatures.hex"}), .Config(Config)) u_registers (
     .clk, .rst, .cold_rst, .s_axil_awaddr, .s_axil_awprot, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata,
     .s_axil_wstrb, .s_axil_wvalid, .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr,
     .s_axil_arprot, .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready,

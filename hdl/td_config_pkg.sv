@@ -153,6 +153,9 @@ package td_config_pkg;
     32'd128  // Columns
   };
 
+  // The fields that the register ARITHMETIC holds.
+  localparam logic [ConfigBits/32-1:0] ArithmeticFields = 62'b00000000000000000000111111011111111011111110111111000111111011;
+
   // Return the number in a field of a configuration.
   function automatic int value(input logic [ConfigBits-1:0] config_word, input int field);
     value = config_word[32*field+:32];

@@ -144,9 +144,19 @@ package td_types_pkg;
     logic [3:0] log2_frames;
   } capture_command_t;
 
+  // What a capture writes into its free bank, and the words by which hdl/registers/table_signatures.sv knows it.
   typedef struct packed {
-    logic busy;
-    logic done;
+    logic        writes;  // a word of the bank changes
+    logic        starts;  // a run of all its entries begins, before the first of its steps
+    logic        steps;   // `word` is that of the next entry, or the signature from 0 of the next entries
+    logic        ends;    // with the last of the steps
+    logic [31:0] word;    // sign-extended; 0 without a step
+  } captured_t;
+
+  typedef struct packed {
+    logic      busy;
+    logic      done;
+    captured_t captured;
   } capture_status_t;
 
   // From the registers to the light gains. Colours: red, green, blue from the lowest bit.
@@ -194,6 +204,18 @@ package td_types_pkg;
   // The signature of words, which starts with all ones, and of one word more: a multiple-input signature register.
   function automatic logic [31:0] signature_step(input logic [31:0] last, input logic [31:0] word);
     signature_step = (last >> 1) ^ (last[0] ? 32'hEDB8_8320 : 32'd0) ^ word;
+  endfunction
+
+  // The register ARITHMETIC: the signature of the numbers of a configuration that depth of a picture depends on. Icarus
+  // takes no loop that declares its variable here.
+  function automatic logic [31:0] arithmetic(input logic [td_config_pkg::ConfigBits-1:0] config_word);
+    int n;
+    logic [31:0] signature;
+    signature = '1;
+    for (n = 0; n < td_config_pkg::ConfigBits / 32; n = n + 1) begin
+      if (td_config_pkg::ArithmeticFields[n]) signature = signature_step(signature, config_word[32*n+:32]);
+    end
+    arithmetic = signature;
   endfunction
 
   // Nodes of a map: one for each complete block of pixels.

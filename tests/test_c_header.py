@@ -31,8 +31,8 @@ from tb.structures import Structure
 
 WARNINGS = ("-Wall", "-Wextra", "-Werror", "-pedantic")
 ALL = COMMIT.mask()
-RESULTS = ["LOADED", "NO_DEVICE", "OTHER_GRID", "OTHER_FORMAT", "OTHER_BUILD", "OTHER_UNIT", "OTHER_SIZE"]
-RESULTS += ["STAYS_PENDING", "REFUSED"]
+RESULTS = ["LOADED", "NO_DEVICE", "OTHER_GRID", "OTHER_FORMAT", "OTHER_BUILD", "OTHER_UNIT", "OTHER_NUMBERS"]
+RESULTS += ["OTHER_SIZE", "STAYS_PENDING", "REFUSED"]
 GRADIENT_MODELS = ("cubic", "quadratic", "lut")
 
 
@@ -237,6 +237,7 @@ def test_some_tables_are_loaded_and_the_others_stay(program: Program) -> None:
         ("DEVICE", "lanes", "LOADED"),
         ("DEPTH_UNIT", "mantissa", "OTHER_UNIT"),
         ("SLOPE_UNIT", "exponent", "OTHER_UNIT"),
+        ("ARITHMETIC", "value", "OTHER_NUMBERS"),
         ("PITCH", "value", "LOADED"),
     ],
 )

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from commands.common import repository
+from tactile_depth.chip.registers.device_description import is_arithmetic
 from tactile_depth.chip.registers.register_map import ADDRESS_WIDTH
 from tactile_depth.chip.tactile_depth import CONSTANTS, default_parameters
 
@@ -99,6 +100,7 @@ def package() -> str:
     listed = [(literal(number), name) for name, number in fields.items()][::-1]
     words = "".join(f"    {word},  // {name}\n" for word, name in listed[:-1])
     last, name = listed[-1]
+    arithmetic = "".join(str(int(is_arithmetic(name))) for _, name in listed)
     return f"""// SPDX-License-Identifier: Apache-2.0
 // td_config_pkg: the configuration of a pipeline as one value, and constants that no configuration changes.
 //
@@ -116,6 +118,9 @@ package td_config_pkg;
   localparam logic [ConfigBits-1:0] DefaultConfig = {{
 {words}    {last}  // {name}
   }};
+
+  // The fields that the register ARITHMETIC holds.
+  localparam logic [ConfigBits/32-1:0] ArithmeticFields = {len(fields)}'b{arithmetic};
 
   // Return the number in a field of a configuration.
   function automatic int value(input logic [ConfigBits-1:0] config_word, input int field);

@@ -112,7 +112,7 @@ module depth_unit
       .Lanes(Lanes)
     ) u_capture (
       .clk, .rst, .en, .request(capture_command.request), .log2_frames(capture_command.log2_frames),
-      .busy(capture_status.busy), .done(capture_status.done),
+      .busy(capture_status.busy), .done(capture_status.done), .captured(capture_status.captured),
       .in_valid(whole_valid & ~whole_test), .in_frame_start(whole_position.frame_start),
       .in_frame_end(whole_position.frame_end), .in_data(whole_data),
       .map_write(zero_write), .map_write_node(zero_write_node), .map_write_zero(zero_written)

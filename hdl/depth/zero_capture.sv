@@ -35,6 +35,7 @@ module zero_capture
   input  wire  [3:0]              log2_frames,
   output logic                    busy,
   output logic                    done,
+  output captured_t               captured,         // the zero offsets that are written, for their signature
 
   input  wire                     in_valid,
   input  wire                     in_frame_start,   // first beat of a frame
@@ -75,12 +76,14 @@ module zero_capture
   state_e state;
   logic [3:0] log2, log2_next;
   logic [CountWidth-1:0] frames_to_come;  // after this one
-  logic take, frame_start, frame_end, begins, ends;
+  logic take, frame_start, frame_end, begins, ends, sums_up, last_frame;
   assign take = g_level[Levels].valid;
   assign {frame_start, frame_end} = g_level[Levels].marks;
   assign begins = take & frame_start & state == Armed;
   assign log2_next = log2_frames > 4'($unsigned(MaxLog2)) ? 4'(MaxLog2) : log2_frames;
   assign busy = state != Idle | done;
+  assign sums_up = take & (state == Summing | begins);
+  assign last_frame = (begins ? CountWidth'(log2_next) : frames_to_come) == '0;
 
   logic read_en, write_en, complete;
   logic [NodeWidth-1:0] read_node, write_node;
@@ -89,8 +92,8 @@ module zero_capture
     .Rows(Rows), .Columns(Columns / Lanes), .BlockLog2(BlockLog2), .ColumnLog2(BlockLog2 - Levels), .Channels(Side),
     .Width(Width + Levels), .SumWidth(SumWidth)
   ) u_sum (
-    .clk, .rst(rst | request), .in_valid(take & (state == Summing | begins)), .in_frame_start(frame_start),
-    .in_first_frame(begins), .in_last_frame((begins ? CountWidth'(log2_next) : frames_to_come) == '0),
+    .clk, .rst(rst | request), .in_valid(sums_up), .in_frame_start(frame_start), .in_first_frame(begins),
+    .in_last_frame(last_frame),
     .in_data(g_level[Levels].words),
     .read_en, .read_block(read_node), .read_sums(sums_read),
     .write_en, .write_block(write_node), .write_sums(sums), .write_complete(complete)
@@ -107,12 +110,25 @@ module zero_capture
     td_round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(Width + 1)) u_round (
       .in(scaled), .out(mean), .clipped()
     );
-    always_ff @(posedge clk) map_write_zero[s*Width+:Width] <= mean[Width-1:0];
+    always_ff @(posedge clk) map_write_zero[s*Width+:Width] <= complete & ~request & ~rst ? mean[Width-1:0] : '0;
   end
 
   logic zero_valid = 1'b0;  // a cycle before the first reset writes nothing
   assign map_write = zero_valid & ~rst;  // at power-up it is not known which bank is free
   assign ends = zero_valid & map_write_node == NodeWidth'(Nodes - 1);
+
+  for (genvar s = 0; s < Side; s++) begin : g_signature  // from 0, of those that are written at once
+    logic [31:0] zero, signature;
+    assign zero = 32'($signed(map_write_zero[s*Width+:Width]));
+    if (s == 0) begin : g_first
+      assign signature = zero;
+    end else begin : g_next
+      assign signature = signature_step(g_signature[s-1].signature, zero);
+    end
+  end
+  assign captured = {
+    map_write, sums_up & frame_start & last_frame, map_write, ends & ~rst, g_signature[Side-1].signature
+  };
 
   always_ff @(posedge clk) begin
     zero_valid <= complete;

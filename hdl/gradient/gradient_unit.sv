@@ -121,7 +121,7 @@ module gradient_unit
       .GainFraction(GainWidth + DarkestLog2), .MaxLog2(CaptureLog2)
     ) u_capture (
       .clk, .rst, .en, .request(capture_command.request), .log2_frames(capture_command.log2_frames),
-      .busy(capture_status.busy), .done(capture_status.done),
+      .busy(capture_status.busy), .done(capture_status.done), .captured(capture_status.captured),
       .in_valid(pixel_valid), .in_pixel(pixel_data), .in_position(pixel_position), .in_bad(pixel_bad),
       .map_write(capture_write), .map_write_node(capture_write_node), .map_write_gains(capture_gains),
       .map_read(capture_read), .map_read_node(capture_read_node), .map_read_gains(capture_read_gains)

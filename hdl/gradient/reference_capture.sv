@@ -33,6 +33,7 @@ module reference_capture
   input  wire  [3:0]           log2_frames,
   output logic                 busy,
   output logic                 done,
+  output captured_t            captured,         // the gains of a node, then 0, for its signature
 
   input  wire                  in_valid,
   input  wire  [23:0]          in_pixel,         // three codes of 8 bits
@@ -105,8 +106,14 @@ module reference_capture
   assign map_write_node = gains_valid ? divide_node : sum_write_node;
   assign map_write_gains = gains_valid ? word : sums;
 
+  logic steps;
+  logic [Width-1:0] step_word;
+  assign captured = {map_write, last, steps, done, 32'(step_word)};
+
   always_ff @(posedge clk) begin
     step <= step + 3'd1;
+    steps <= (divided | gains_valid) & ~request & ~rst;
+    step_word <= divided & ~request & ~rst ? gain : '0;
     fetched <= map_read_gains;
     divide_start <= 1'b0;
     gains_valid <= node_ends;

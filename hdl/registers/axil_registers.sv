@@ -5,6 +5,7 @@
 //                        -> event_registers   <- events, irq
 //                        -> table_banks      <-> banks, captures
 //                        -> table_access     <-> entries of the tables
+//                        -> table_signatures  <- captures
 //
 // The map is docs/generated/registers.md. A write takes effect, unless it is refused, in the cycle in which axil_port
 // raises `write`; a read shows the registers as they were before the write of the same cycle. An event counts for each
@@ -19,6 +20,7 @@ module axil_registers
   import td_register_map_pkg::*;
   import td_types_pkg::*;
 #(
+  parameter SignatureFile = "",  // of the tables at power-up: table_signatures.sv
   parameter logic [ConfigBits-1:0] Config = DefaultConfig,
   localparam int Tridiagonal      = value(Config, TridiagonalField),
   localparam int Neumann          = value(Config, NeumannField),
@@ -200,7 +202,15 @@ module axil_registers
     .table_answer
   );
 
-  logic [31:0] word;  // that no core above holds
+  logic [31:0] signature_data;
+  table_signatures #(.File(SignatureFile), .Side(side(Lanes, BlockLog2))) u_signatures (
+    .clk, .rst, .cold_rst, .write, .write_offset, .write_mask, .read_offset, .read_data(signature_data),
+    .table_command, .table_in_use, .reference_captured(reference_status.captured), .zero_captured(zero_status.captured)
+  );
+
+  localparam logic [31:0] ArithmeticWord = arithmetic(Config);
+
+  logic [31:0] word;  // that no core above holds, and signatures
   always_comb begin
     case (read_offset)
       IdOffset: word = IdReset;
@@ -209,7 +219,8 @@ module axil_registers
       DeviceOffset: word = DeviceWord;
       DepthUnitOffset: word = DepthUnitWord;
       SlopeUnitOffset: word = SlopeUnitWord;
-      default: word = '0;
+      ArithmeticOffset: word = ArithmeticWord;
+      default: word = signature_data;
     endcase
     for (int n = 0; n < RecordWords; n++) begin
       if (read_offset == RecordOffsets[32*n+:32]) word = word | record[32*n+:32];

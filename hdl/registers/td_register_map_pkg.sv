@@ -55,6 +55,8 @@ package td_register_map_pkg;
   localparam int RecordFlagsOffset = 32'h0ac;
   localparam int RecordLightOffset = 32'h0b0;
   localparam int RecordPixelsOffset = 32'h0b4;
+  localparam int TableSignatureOffset = 32'h0b8;
+  localparam int ArithmeticOffset = 32'h0bc;
   localparam int DeviceOffset = 32'h0c0;
   localparam int DepthUnitOffset = 32'h0c4;
   localparam int SlopeUnitOffset = 32'h0c8;
@@ -116,9 +118,11 @@ package td_register_map_pkg;
   localparam int ReferenceCaptureLog2FramesLsb = 0;
   localparam int ReferenceCaptureStartBit = 8;
   localparam int ReferenceCaptureBusyBit = 9;
+  localparam int ReferenceCaptureHeldBit = 10;
   localparam int ZeroCaptureLog2FramesLsb = 0;
   localparam int ZeroCaptureStartBit = 8;
   localparam int ZeroCaptureBusyBit = 9;
+  localparam int ZeroCaptureHeldBit = 10;
   localparam int InterruptStatusRecordBit = 0;
   localparam int InterruptStatusFrameDroppedBit = 1;
   localparam int InterruptMaskRecordBit = 0;
@@ -197,9 +201,9 @@ package td_register_map_pkg;
       RecordAreaThresholdOffset, RecordAreaOffset, RecordLeastOffset, RecordGreatestOffset,
       RecordWeightLowOffset, RecordWeightHighOffset, RecordCentroidOffset, AreaThresholdOffset,
       ZeroCaptureOffset, InterruptStatusOffset, InterruptMaskOffset, ArrivedOffset,
-      RecordFlagsOffset, RecordLightOffset, RecordPixelsOffset, DeviceOffset, DepthUnitOffset,
-      SlopeUnitOffset, PitchOffset, LightOffset, LightGainRedOffset, LightGainGreenOffset,
-      LightGainBlueOffset, SelfTestOffset: is_register = 1'b1;
+      RecordFlagsOffset, RecordLightOffset, RecordPixelsOffset, TableSignatureOffset,
+      ArithmeticOffset, DeviceOffset, DepthUnitOffset, SlopeUnitOffset, PitchOffset,
+      LightOffset, LightGainRedOffset, LightGainGreenOffset, LightGainBlueOffset, SelfTestOffset: is_register = 1'b1;
       default: is_register = 1'b0;
     endcase
   endfunction

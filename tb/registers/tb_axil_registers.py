@@ -7,18 +7,22 @@ from typing import Any
 import cocotb
 
 from formal.entries import FULL_WIDTH, Proof
+from tactile_depth.chip.common.td_node_map import side
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.fixed_point import codes
 from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.registers.axil_port import LATE_CLOCKS, AxilPort
 from tactile_depth.chip.registers.axil_registers import GAINS, RECORD, AxilRegisters, Build, Events, Live
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.registers.table_access import LOW
 from tactile_depth.chip.registers.table_banks import CAPTURES
+from tactile_depth.chip.registers.table_signatures import TableSignatures
 from tactile_depth.chip.tactile_depth import config_value, default_parameters, top_parameters
 from tb.axil import CLIENT
 from tb.lockstep import CLOCKS, WORD, Pins, play
 from tb.registers.bus import CHANNELS, NAME_AT, OFFSET, PINS
-from tb.structs import pack, unpack
+from tb.registers.tb_table_signatures import advance, captured_words
+from tb.structs import members, pack, unpack
 from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
 
 
@@ -71,13 +75,9 @@ PROOFS = tuple(
     for polynomial, corrections, camera in ((0, 0, 0), (1, 0, 1), (1, 1, 0))
 )
 
-PARAMETERS = (
-    *("Tridiagonal", "Neumann", "Rows", "Columns", "DataWidth", "GradientWidth", "GradientFraction", "BitsPerChannel"),
-    *("FlatField", "Polynomial", "Corrections", "LightGains", "ZeroOffset", "Lanes", "BlockLog2", "GainWidth"),
-    *("DepthMantissa", "DepthExponent", "SlopeMantissa", "SlopeExponent", "PitchNm"),
-)
 CONTROL = REGISTERS["CONTROL"]
 SELF_TEST = CONTROL.field("self_test").mask
+CAPTURED = (1 << sum(width for _, width in members("captured_t").values())) - 1
 CONTACT = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
 
 
@@ -99,6 +99,8 @@ class Registers:
 
     def __init__(self, build: Build) -> None:
         self.port, self.model = AxilPort(), AxilRegisters(build)
+        p = build.parameters
+        self.signatures = TableSignatures(side=side(p["Lanes"], p["BlockLog2"]))
         self.asked, self.had_entry = "", False
         self.waiting: set[str] = set()
 
@@ -129,10 +131,13 @@ class Registers:
             in_use=pins["table_in_use"],
             record=words(pins["record"], len(RECORD), 32),
             light_gains=words(pins["light_gains"], len(GAINS), LIGHT_GAIN.width),
+            signature=self.signatures.shown,
+            held=self.signatures.held(pins["table_in_use"]),
         )
         starts = bool(pins["frame_start"] and not pins["rst"])
         offset, at, (ones, mask) = port.address or 0, port.asked or 0, port.data or (0, 0)
         table = {"select": model.table, "index": values["TABLE_INDEX"], "high": values["TABLE_HIGH"], "low": ones}
+        table |= {"read": 0, "write": 0}
         light = REGISTERS["LIGHT"].unpack(values["LIGHT"])
         log2 = {name: register.unpack(values[register.name])["log2_frames"] for name, register in CAPTURES.items()}
         out = {name: value for name, value in bus.items() if name.startswith("s_axil")} | self.settings()
@@ -171,6 +176,12 @@ class Registers:
             command = {name: value or 0 for name, value in bus.items() if name.startswith(("write", "read_offset"))}
             out["register_command"] = pack("register_command_t", command)
 
+        status_words = {f"{table}_captured": pins[f"{table}_status"] & CAPTURED for table in CAPTURES}
+        written_to = {"write": int(bus["write"] or 0), "write_offset": offset, "write_mask": mask}
+        advance(
+            self.signatures, pins | written_to | status_words, {name: int(value or 0) for name, value in table.items()}
+        )
+
         events = unpack("events_t", pins["events"])
         saturations, valid = events.pop("saturations"), pins["first_depth_latency_valid"]
         flags = frozenset(name for name in events if events[name])
@@ -188,7 +199,8 @@ class Registers:
 
 @cocotb.test()
 async def registers(dut: Any) -> None:
-    model = Registers(Build({name: getattr(dut, name).value.to_signed() for name in PARAMETERS}))
+    numbers = codes(int(dut.Config.value), len(default_parameters()), 32)
+    model = Registers(Build(dict(zip(default_parameters(), numbers, strict=True))))
     bits = [1 << bit for bit in range(len(dut.events))]
     status = [pack("capture_status_t", {"busy": busy, "done": done}) for busy, done in ((0, 0), (1, 0), (1, 1))]
     own, width, chance = [*OFFSET.values()], len(dut.s_axil_awaddr), random.Random(cocotb.RANDOM_SEED)
@@ -203,7 +215,10 @@ async def registers(dut: Any) -> None:
         "first_depth_latency_valid": 1.0,
         "frame_start": 1.0,
         "table_in_use": [0, 15, 1, 2, 4, 8],
-        **{f"{table}_status": status for table in CAPTURES},
+        **{
+            f"{table}_status": [state | words for words in captured_words(chance) for state in status]
+            for table in CAPTURES
+        },
     }
 
     def legal(registers: Registers, pins: Pins) -> None:

@@ -4,7 +4,7 @@
     python -m tests.device.model_device FILE [FOLDER] [--pins]
 
 The process speaks as the simulator of the RTL does: bytes of the line on standard input and output, SIGUSR1 is a reset,
-SIGUSR2 a power-up. FILE is a pickle of `Setup`. Tables hold zeros at first, so that a test sees what is loaded.
+SIGUSR2 a power-up. FILE is a pickle of `Setup`.
 """
 
 from __future__ import annotations
@@ -15,12 +15,14 @@ import select
 import signal
 import sys
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from tactile_depth.chip.common.signature import Captured
 from tactile_depth.chip.common.td_frame_size import FrameSize
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
@@ -38,12 +40,14 @@ from tactile_depth.chip.registers.axil_port import Response
 from tactile_depth.chip.registers.axil_registers import RECORD, AxilRegisters, Build, Events, Live
 from tactile_depth.chip.registers.register_map import TABLES
 from tactile_depth.chip.registers.table_banks import CAPTURES
+from tactile_depth.chip.registers.table_signatures import REFERENCE, ZERO, TableSignatures, power_up_words
 from tactile_depth.chip.table_entries import one_word, reference_entries
 from tactile_depth.chip.tactile_depth import Tables, slopes_and_light, solve, top_parameters, zeroed
 from tactile_depth.chip.video.frame_guard import FrameGuard, Word
 
 SETTINGS = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
 SIGNED = 1 << 31
+BUS = {"select", "index", "low", "write", "read"}  # members of table_command_t
 
 
 @dataclass
@@ -52,6 +56,8 @@ class Setup:
 
     Attributes
     ----------
+    tables : dict of int64 array (entries, 2)
+        That it holds at power-up; others hold zeros, so that a test sees what is loaded.
     camera : uint8 array (frames, rows, columns, 3), or None
         Pictures of its camera, one after another without end.
     camera_s : float
@@ -66,6 +72,7 @@ class Setup:
 
     config: Configuration
     pitch_mm: float
+    tables: dict[str, np.ndarray] = field(default_factory=dict)
     camera: np.ndarray | None = None
     camera_s: float = 0.02
     camera_starts: bool = True
@@ -94,11 +101,18 @@ class ModelDevice:
         self.registers = AxilRegisters(build, self._entry)
         sizes = {name: build.table_sizes[code] for name, code in TABLES.items()}
         self.tables = {name: np.zeros((2, size, 2), np.int64) for name, size in sizes.items() if size}
+        self.signatures = TableSignatures()
         bottom_first = config.solver == "tridiagonal"
         shape = link.Build(config.rows, config.columns, config.data_width, bottom_first)
         self.link = LinkDevice(shape, self._read, self._write)
         self.events = ContactEvents(config.rows, config.columns, config.data_width, bottom_first)
         self._begin()
+
+    def hold(self, tables: Mapping[str, np.ndarray]) -> None:
+        """Hold tables from power-up on, by name: entries (n, 2), lower and upper word."""
+        for name, entries in tables.items():
+            self.tables[name][:] = entries
+        self.signatures = TableSignatures(power_up_words(tables))
 
     def _begin(self) -> None:
         self.light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
@@ -112,6 +126,7 @@ class ModelDevice:
         self.link.reset()
         self.registers.reset()
         self.events.reset()
+        self._sign(rst=1)
         self._begin()
 
     # Registers.
@@ -121,7 +136,8 @@ class ModelDevice:
         banks, capturing = self.registers.banks, frozenset(self.captures)
         levels = {"touching": self.events.touching, "hunting": self._guard.hunting}
         size = {"arrived_columns": self._size.columns, "arrived_rows": self._size.rows}
-        own = {"in_use": banks.bank, "capturing": capturing, "record": self.record, "light_gains": gains}
+        signed = {"signature": self.signatures.shown, "held": self.signatures.held(banks.bank)}
+        own = {**signed, "in_use": banks.bank, "capturing": capturing, "record": self.record, "light_gains": gains}
         return Live(**own, **levels, **size)  # type: ignore[arg-type]
 
     def _free(self, code: int) -> int:
@@ -132,14 +148,26 @@ class ModelDevice:
         low, high = self.tables[name][self._free(code), index].tolist()
         return high & 0xFFFF_FFFF, low & 0xFFFF_FFFF
 
+    def _sign(self, captured: tuple[str, Captured] = ("reference", Captured()), **signals: Any) -> None:
+        """Let the signatures see a clock, of the bus or of a capture."""
+        command = dict.fromkeys(("write", "read", "low"), 0) | {name: signals.pop(name) for name in {*signals} & BUS}
+        command |= {"select": self.registers.table, "index": self.registers.values["TABLE_INDEX"]} | command
+        words = {code: Captured() for code in (REFERENCE, ZERO)} | {TABLES[captured[0]]: captured[1]}
+        self.signatures.clock(command, self.registers.banks.bank, words, **signals)
+
     def _read(self, address: int) -> int | None:
+        self._sign(read=int(self.registers.is_port(address)))
         word, response = self.registers.read(address, self._live())
         return word if response == Response.OKAY else None
 
     def _write(self, address: int, value: int) -> bool:
-        registers = self.registers
+        registers, table, index = self.registers, self.registers.table, self.registers.values["TABLE_INDEX"]
         if registers.write(address, value, live=self._live()) != Response.OKAY:
             return False
+        bus: dict[str, Any] = {"select": table, "index": index, "low": value, "write": len(registers.table_writes)}
+        self._sign(**bus, write_offset=address)
+        for _ in range(2):
+            self._sign()
         names = {code: name for name, code in TABLES.items()}
         for code, index, high, low in registers.table_writes:
             self.tables[names[code]][self._free(code), index] = signed(low), signed(high)
@@ -235,6 +263,10 @@ class ModelDevice:
             else one_word(captured_zero(frames, self.config))
         )
         self.tables[name][self._free(TABLES[name])] = entries
+        self._sign((name, Captured(starts=1)))
+        for index, word in enumerate(entries[:, 0].tolist(), 1):
+            self._sign((name, Captured(writes=1, steps=1, ends=index == len(entries), word=word)))
+        self._sign()
         self.registers.clock(Events(captured=frozenset({name})))
 
     def _used(self, name: str) -> np.ndarray:
@@ -267,7 +299,7 @@ class Serving:
 
     def __init__(self, setup: Setup, source: int, sink: int) -> None:
         self.setup, self.source, self.sink = setup, source, sink
-        self.device = ModelDevice(setup.config, setup.pitch_mm)
+        self._power_up()
         self.wanted: set[str] = set()  # `reset`, `power_up` or `end`, from signals and other threads
         self._random = np.random.default_rng(1)
         self._shown, self._next = 0, time.monotonic()
@@ -295,7 +327,11 @@ class Serving:
             self.device.reset()
         if "power_up" in self.wanted:
             self.wanted.discard("power_up")
-            self.device = ModelDevice(self.setup.config, self.setup.pitch_mm)
+            self._power_up()
+
+    def _power_up(self) -> None:
+        self.device = ModelDevice(self.setup.config, self.setup.pitch_mm)
+        self.device.hold(self.setup.tables)
 
     def _receive(self, data: bytes) -> None:
         first, *pieces = data.split(b"\0")

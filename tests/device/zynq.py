@@ -189,8 +189,7 @@ class Zynq:
 
     def load(self, pipeline: td.Pipeline) -> None:
         """Put the tables and the thresholds of a pipeline into the device."""
-        for name, entries in table_entries(pipeline.sensor, pipeline.config, pipeline.zero_codes).items():
-            self.model.tables[name][:] = entries
+        self.model.hold(table_entries(pipeline.sensor, pipeline.config, pipeline.zero_codes))
         settings = pipeline.settings(pipeline.threshold_mm, pipeline.threshold_mm, pipeline.area_threshold_mm)
         self.model.registers.values |= thresholds_of(settings)
 

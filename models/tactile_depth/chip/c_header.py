@@ -16,12 +16,13 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.registers.axil_registers import Build
 from tactile_depth.chip.registers.register_map import MAP, REGISTERS, TABLES, WORD
 from tactile_depth.chip.registers.table_banks import COMMIT
+from tactile_depth.chip.registers.table_signatures import table_signatures
 from tactile_depth.chip.table_entries import ONE_WORD, table_entries
 from tactile_depth.chip.tactile_depth import top_parameters
 
 FILE = "tactile_depth_tables.h"
 PREFIX = "TACTILE_DEPTH_"
-SHOWN = ("ID", "GRID", "FORMAT", "DEVICE", "DEPTH_UNIT", "SLOPE_UNIT")
+SHOWN = ("ID", "GRID", "FORMAT", "DEVICE", "DEPTH_UNIT", "SLOPE_UNIT", "ARITHMETIC")
 """Registers that a device of the configuration shows; of DEVICE all fields but the lanes."""
 WORDS_OF_LINE = 8
 NO_THRESHOLDS: Mapping[str, int] = MappingProxyType({})
@@ -131,9 +132,10 @@ def _tables(tables: Mapping[str, np.ndarray]) -> str:
     bits = {name: COMMIT.pack(**{name: 1}) for name in tables}
     macros = "".join(define(f"{name.upper()}_TABLE", word(bit)) for name, bit in bits.items())
     macros += define("ALL_TABLES", word(sum(bits.values()))) + define("TABLES", len(tables))
+    signatures = table_signatures(tables)
     listed = "".join(
         f"  {{{REGISTERS['TABLE_SELECT'].pack(select=TABLES[name])}u, {word(bits[name])}, {len(entries)}u, "
-        f"{1 if name in ONE_WORD else 2}u, tactile_depth_{name}}},\n"
+        f"{1 if name in ONE_WORD else 2}u, {word(signatures[name])}, tactile_depth_{name}}},\n"
         for name, entries in tables.items()
     )
     return (
@@ -145,6 +147,7 @@ struct tactile_depth_table {
   uint32_t commit;         /* its bit of TABLE_COMMIT */
   uint32_t entries;        /* TABLE_SIZE */
   uint32_t words_of_entry; /* 1: TABLE_LOW alone; 2: TABLE_HIGH, then TABLE_LOW */
+  uint32_t signature;      /* TABLE_SIGNATURE */
   const uint32_t *words;
 };
 

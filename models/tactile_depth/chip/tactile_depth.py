@@ -58,14 +58,18 @@ from tactile_depth.chip.poisson import spectral_solver, tridiagonal_solver, wide
 from tactile_depth.chip.poisson.cores import NUMPY, Cores
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.device_description import description_parameters
+from tactile_depth.chip.registers.register_map import WORD_BITS
+from tactile_depth.chip.registers.table_signatures import power_up_words
 from tactile_depth.chip.rom_files import (
     write_crcs,
     write_gains,
     write_gradient,
     write_polynomials,
     write_solver,
+    write_words,
     write_zero,
 )
+from tactile_depth.chip.table_entries import table_entries
 
 CONSTANTS = {
     "GuardBits": (GUARD_BITS, "bits of the arithmetic below a stored word"),
@@ -84,6 +88,8 @@ CONSTANTS = {
     "ZeroLog2": (LARGEST_LOG2, "base-2 logarithm of the most frames in a capture of the zero offset"),
 }
 """Numbers that both the models and the RTL use, and that no configuration changes, with their meaning."""
+SIGNATURES = "signatures.hex"
+"""File of the signatures of tables at power-up, for hdl/registers/table_signatures.sv."""
 DERIVED = ("InWidth", "Width", "StoreDrop")
 """Parameters that hdl/poisson derives from fields."""
 
@@ -348,6 +354,8 @@ def write_roms(
                 write_gradient(own / "gradient.hex", corrections, CORRECTION_WIDTH)
         else:
             write_gradient(own / "gradient.hex", gradient_codes(calibration, config), config.gradient.width)
+        entries = table_entries(calibration, config, zero, gains)
+        write_words(own / SIGNATURES, power_up_words(entries), WORD_BITS)
         crc = write_crcs(own)
         for path in own.iterdir():
             path.replace(folder / path.name)

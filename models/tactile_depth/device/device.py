@@ -8,17 +8,18 @@ from contextlib import AbstractContextManager, closing, contextmanager
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError, is_number, one_of, require_flag, warn
+from tactile_depth.base.errors import Argument, InputError, InputWarning, is_number, one_of, require_flag, warn
 from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.gradient.flat_field import require_light, untouched_of
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.chip.registers.table_signatures import NOT_KNOWN
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.depth.result import Recorder, Result, thresholds_of
 from tactile_depth.depth.twin import PICTURES, require_flat_field, require_zero_offset
-from tactile_depth.device import captures, sent
+from tactile_depth.device import captures, held, sent
 from tactile_depth.device.addresses import open_channel
 from tactile_depth.device.arrived import arrived
 from tactile_depth.device.camera_frame import of_camera
@@ -35,7 +36,7 @@ from tactile_depth.pictures.pictures import Picture, Pictures
 from tactile_depth.pictures.reference_check import check_reference
 
 LIGHT = REGISTERS["LIGHT"]
-CALIBRATION, OF_CAMERA = "calibration", "the reference that the device took from its camera"
+OF_CAMERA = "the reference that the device took from its camera"
 CAPTURED = 8
 """Pictures of the device's camera that a capture takes the mean of."""
 
@@ -98,11 +99,17 @@ class Device(AbstractContextManager["Device"]):
             "area_mm": pipeline.area_threshold_mm,
         }
         self._settings = pipeline.settings(**self._thresholds_mm)
-        self._torn: set[str] = set()  # what a load or a capture has begun to write and not ended
-        self._unseen: set[str] = set()  # tables that a capture has taken from the device's camera
+        self._tables = held.signatures_of(pipeline)  # that the device is to use
+        self._unseen: set[str] = set()  # those of a capture whose pictures this program did not send
         self._is_closed = self._is_window_checked = False
+        self._is_set = False  # the settings are those of this program
         self._line: Channel | None = self._connect()
         self._twin = pipeline.of_device(self._lanes)  # with what the device holds, by what is known
+        try:
+            self._accept_captures(self._line)
+        except BaseException:
+            self.close()
+            raise
 
     def __exit__(self, *raised: object) -> None:
         self.close()
@@ -128,7 +135,8 @@ class Device(AbstractContextManager["Device"]):
         """
         with self._open_line() as line:
             self._lanes = require_same(line, self.pipeline)
-            self._torn.add(CALIBRATION)
+            self._twin, self._tables = self.pipeline.of_device(self._lanes), held.signatures_of(self.pipeline)
+            self._unseen.clear()
             with Exchange(line) as exchange:
 
                 def untouched() -> None:
@@ -138,9 +146,8 @@ class Device(AbstractContextManager["Device"]):
                 self._settings = self.pipeline.settings(**self._thresholds_mm)
                 write_words(line, [*self._words.items(), (LIGHT.name, LIGHT.pack(follow=1))])
                 wait_in_use(line, untouched)
-        self._twin = self.pipeline.of_device(self._lanes)
-        self._torn.clear()
-        self._unseen.clear()
+            self._is_set = True
+            held.require_tables(line, self._tables)
 
     def capture_reference(self, pictures: Pictures | None = None, *, frames: int = CAPTURED) -> None:
         """Take the mean of pictures without contact as the reference, in the device.
@@ -182,7 +189,7 @@ class Device(AbstractContextManager["Device"]):
         if pictures is None:
             self._capture_of_camera("zero", frames, LARGEST_LOG2)
             return
-        self._require_whole({*self._torn, *self._unseen} - {"zero"})
+        self._require_seen(self._unseen - {"zero"})
         twin = self._twin.of_device(self._lanes)
         twin.capture_zero(pictures)
         taken = np.stack([frame for _, frame in twin.reader.pictures(pictures, PICTURES)[0]])
@@ -268,15 +275,15 @@ class Device(AbstractContextManager["Device"]):
         if pictures is None and stream is False:
             raise InputError(Argument("stream", stream), ": without pictures", remedy="give pictures")
         with self._open_line() as line:
+            held.require_tables(line, self._tables)
             light = self._require_settings(line)
-            self._require_whole(self._torn)
             if pictures is None:
                 self._check_window(line)
                 warned = Warned()
                 for arrival in camera_frames(line):
                     yield of_camera(self._frame(arrival), arrival.frame.shift, self._twin, warned)
                 return
-            self._require_whole(self._unseen)
+            self._require_seen(self._unseen)
             if stream or (stream is None and not sent.are_whole(pictures)):
                 frames = sent.streamed(line, self._twin, pictures, light)
             else:
@@ -356,6 +363,7 @@ class Device(AbstractContextManager["Device"]):
             captures.capture_of_camera(line, table, count, untouched)
             if table == "reference":
                 self._check_captured(captures.read_captured(line, table, untouched))
+            self._tables |= held.read_signatures(line, [table])
         self._unseen.add(table)
 
     def _check_captured(self, entries: np.ndarray) -> None:
@@ -375,22 +383,43 @@ class Device(AbstractContextManager["Device"]):
     def _capturing(self, table: str, twin: Pipeline | None = None) -> Iterator[Channel]:
         """Give the line for the capture of a table, which is then that of `twin`."""
         with self._open_line() as line:
-            self._torn.add(table)
+            others = {name: word for name, word in self._tables.items() if name != table}
+            held.require_tables(line, others, is_settled=False)
+            self._tables[table] = NOT_KNOWN  # until it has ended
             yield line
-        self._torn.discard(table)
         if twin is not None:
             self._twin = twin
+            self._tables[table] = held.signatures_of(twin)[table]
             self._unseen.discard(table)
 
-    def _require_whole(self, tables: Iterable[str]) -> None:
+    def _accept_captures(self, line: Channel) -> None:
+        """Take tables of the device's own captures, such as of an earlier program, for right, and say so."""
+        if not (names := [name for name in held.captured(line) if name in self._tables]):
+            return
+        words = held.read_signatures(line, names)
+        names = [name for name in names if words[name] not in (NOT_KNOWN, self._tables[name])]
+        self._tables |= {name: words[name] for name in names}
+        self._unseen |= {*names}
+        if names:
+            problem = f"the {' and the '.join(names)} of the device comes from a capture before this program"
+            warn(InputWarning(problem, remedy="call load() for those of the pipeline"))
+
+    def _require_seen(self, tables: Iterable[str]) -> None:
         """Raise DeviceError if there are tables whose content this host does not know."""
         for table in sorted(tables):
             problem = f"the {table} of the device is not known to this program"
             raise DeviceError(problem, remedy="call load() first, or capture from pictures")
 
     def _require_settings(self, line: Channel) -> int:
-        """Return the word of `LIGHT`; raise DeviceError unless the other settings are those that this host wrote."""
+        """Return the word of `LIGHT`; raise DeviceError unless the other settings are those that this host wrote.
+
+        Settings of before this program are overwritten, once.
+        """
         words = read_words(line, [*self._words, LIGHT.name])
+        if not self._is_set:
+            words |= self._words | {LIGHT.name: words[LIGHT.name] | LIGHT.field("follow").mask}
+            write_words(line, list(words.items()))
+            self._is_set = True
         differing = [
             name for name, word in self._words.items() if (words[name] ^ word) & REGISTERS[name].fields[0].mask
         ]

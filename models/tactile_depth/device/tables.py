@@ -21,6 +21,7 @@ from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.registers import read_words, write_words
 from tactile_depth.sensor.view import share_of
 
+ARITHMETIC = "ARITHMETIC"
 DESCRIPTION = ("GRID", "FORMAT", "DEVICE", "DEPTH_UNIT", "SLOPE_UNIT")
 CAMERA = ("CAMERA_PICTURE", "CAMERA_WINDOW", "CAMERA_WINDOW_SIZE")
 # Largest difference of a window from the calibration's view, in the length and the middle of each side, relative to the
@@ -41,7 +42,7 @@ def require_same(line: Channel, pipeline: Pipeline) -> int:
 
     The lanes may differ, and are returned. Raises DeviceError if the device is no tactile_depth, or does not answer.
     """
-    words = read_words(line, ["ID", *DESCRIPTION])
+    words = read_words(line, ["ID", *DESCRIPTION, ARITHMETIC])
     if words["ID"] != REGISTERS["ID"].reset:
         raise DeviceError(
             f"the device has another ID, {words['ID']:#010x}", remedy="build it with hdl/tactile_depth.sv"
@@ -55,6 +56,9 @@ def require_same(line: Channel, pipeline: Pipeline) -> int:
     ]
     if differing:
         raise InputError(f"the device has another configuration: {'; '.join(differing)}", remedy=REMEDY)
+    if words[ARITHMETIC] != expected[ARITHMETIC]:
+        problem = "the device computes with other numbers than the pipeline (ARITHMETIC)"
+        raise InputError(problem, remedy="build the device for this calibration")
     return REGISTERS["DEVICE"].unpack(words["DEVICE"])["lanes"]
 
 
@@ -141,7 +145,7 @@ def wait_in_use(line: Channel, give_picture: Callable[[], None], also_captures: 
     quiet_ends, pictures = time.monotonic() + line.quiet_s, 0
     most = 2 + (1 << 8) * also_captures  # pictures of a capture, one that takes its table, and one that was malformed
     ends = time.monotonic() + line.limit_s
-    while pending := _pending(line, also_captures):
+    while changing := pending(line, also_captures):
         if time.monotonic() < quiet_ends:
             continue
         if pictures < most:
@@ -149,11 +153,11 @@ def wait_in_use(line: Channel, give_picture: Callable[[], None], also_captures: 
             give_picture()
             ends = time.monotonic() + line.limit_s
         elif time.monotonic() > ends:
-            problem = f"tables of the device stay pending ({', '.join(pending)}), although pictures were sent"
+            problem = f"tables of the device stay pending ({', '.join(changing)}), although pictures were sent"
             raise DeviceError(problem, remedy="reset the device, then call load()")
 
 
-def _pending(line: Channel, also_captures: bool) -> list[str]:
+def pending(line: Channel, also_captures: bool) -> list[str]:
     """Return the tables that are not in use yet, and the captures under way."""
     words = read_words(line, [*BUSY, COMMIT.name])  # the captures first: the end of one sets a bit of TABLE_COMMIT
     busy = [name for name in BUSY if also_captures and words[name] & REGISTERS[name].field("busy").mask]

@@ -8,10 +8,11 @@ from collections import deque
 import numpy as np
 
 from tactile_depth.chip.common import td_node_map
+from tactile_depth.chip.common.signature import Captured, signature
 from tactile_depth.chip.common.td_block_sum import CYCLES_TO_SUM, block_sum
 from tactile_depth.chip.common.td_round_saturate import round_half_even
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.fixed_point import joined, split
+from tactile_depth.chip.fixed_point import codes, joined, split
 from tactile_depth.chip.resources import BLOCK, Memory, Parts, Words
 
 LARGEST_LOG2 = 8
@@ -28,22 +29,22 @@ def cycles(lanes: int, block_log2: int) -> int:
     return levels(lanes, block_log2) + CYCLES_TO_SUM + 2
 
 
-def captured_zero(codes: np.ndarray, config: Configuration) -> np.ndarray:
+def captured_zero(depths: np.ndarray, config: Configuration) -> np.ndarray:
     """Return the mean of each block over frames, rounded with ties to even.
 
     Parameters
     ----------
-    codes : int64 array (2**k, rows, columns)
+    depths : int64 array (2**k, rows, columns)
         Depth before a zero offset is subtracted.
 
     Returns
     -------
     int64 array (node rows, node columns)
     """
-    count = len(codes)
+    count = len(depths)
     assert count.bit_count() == 1, "a power of two of frames"
     log2 = count.bit_length() - 1
-    sums = block_sum(codes, config.reference_block_log2).sum(axis=0)
+    sums = block_sum(depths, config.reference_block_log2).sum(axis=0)
     return round_half_even(sums, 2 * config.reference_block_log2 + log2)
 
 
@@ -64,6 +65,7 @@ class ZeroCapture:
         self._columns, self._nodes = columns >> block_log2, (columns >> block_log2) * (rows >> block_log2)
         self.size, self.place, self.busy = rows * self._row, 0, False
         self._beats: deque[tuple[int, int] | None] = deque([None] * levels(lanes, block_log2))
+        self._starts = False  # the last frame of a capture
         self._stop()
 
     def _stop(self) -> None:
@@ -79,6 +81,7 @@ class ZeroCapture:
             if self._inside and not self._frames:
                 self._count, self._sums = 1 << min(log2_frames, self._largest), [0] * self._nodes
             self._frames += self._inside
+            self._starts = self._inside and self._frames == self._count
         first = (row >> self._log2) * self._columns + (column >> self._log2)
         if not self._inside or first >= self._nodes:
             return None
@@ -105,8 +108,10 @@ class ZeroCapture:
         self._done = node == self._nodes // self._side - 1
         taken = pins["en"] and pins["in_valid"]
         self._beats.append((self.place, pins["in_data"]) if taken else None)
-        beat = self._beats.popleft()
+        beat, self._starts = self._beats.popleft(), False
         self._late.append(beat and self._take(*beat, pins["log2_frames"]))
+        word = 0 if zero is None else signature(codes(zero, self._side, self._width), 0)
+        out["captured"] = Captured(valid, self._starts, valid, valid and self._done, word).bits
         self.place = (self.place + 1) % self.size if taken else self.place
         if pins["request"] or pins["rst"]:
             self._stop()

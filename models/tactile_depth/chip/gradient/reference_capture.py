@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.chip.common import td_divide
+from tactile_depth.chip.common.signature import Captured
 from tactile_depth.chip.common.td_block_sum import BlockSum
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import joined, split
@@ -38,8 +39,12 @@ def reference_capture_parameters(config: Configuration) -> dict[str, int]:
 
 def node_clocks(width: int) -> int:
     """Return the cycles of a node, with gains of `width` bits."""
-    a_gain = td_divide.cycles(width + 1) + 1  # with one bit to round by; and a cycle to take it
-    return READ_CLOCKS + 3 * a_gain
+    return READ_CLOCKS + 3 * gain_clocks(width)
+
+
+def gain_clocks(width: int) -> int:
+    """Return the cycles of a gain: with one bit to round by, and one to take it."""
+    return td_divide.cycles(width + 1) + 1
 
 
 class ReferenceCapture:
@@ -83,6 +88,19 @@ class ReferenceCapture:
             self._to_come = None if bad or last else self._to_come - 1
             self.at = 0 if last and not bad else -1
 
+    def _signed(self) -> tuple[bool, bool, int]:
+        """Return whether this is the clock of an entry of the signature, whether it is the last one, and its word."""
+        node, step = divmod(self.at, self._node_clocks)
+        channels = {self._node_clocks - channel * gain_clocks(self._width): 2 - channel for channel in (1, 2)}
+        if node >= 0 and step in channels:
+            channel = channels[step]
+        elif node > 0 and step < 2:
+            channel = 2 + step
+        else:
+            return False, False, 0
+        gains = [*split(self._gains, 3, self._width), 0]
+        return True, self.at == self.clocks, gains[channel]
+
     def clock(
         self, *, rst: int, request: int, log2_frames: int, in_pixel: int, in_position: int, in_bad: int, **pins: int
     ) -> dict[str, int | None]:
@@ -113,6 +131,8 @@ class ReferenceCapture:
             words = np.array(split(pins["map_read_gains"], 3, self._width))
             gains = gains_of(words, 1 << self._scale + self._log2, self._width)
             self._gains = joined(gains.tolist(), self._width)
+        whole = take and in_position >> 2 == 3 and self._to_come == 0 and not in_bad
+        out["captured"] = Captured(bool(write), bool(whole), *self._signed()).bits
         self.at = -1 if self.at in (-1, self.clocks) else self.at + 1
         if take:
             self._take(starts, in_position, in_bad, log2_frames)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 
 from tactile_depth.chip.limits import CUBIC
 from tactile_depth.chip.registers.axil_port import Response, offset_of, strobed_bits
+from tactile_depth.chip.registers.device_description import arithmetic_word
 from tactile_depth.chip.registers.event_registers import ARRIVED, LEVELS, SELF_TEST, STATUS, EventRegisters
 from tactile_depth.chip.registers.register_map import MAP, REGISTERS, TABLES
 from tactile_depth.chip.registers.setting_registers import SettingRegisters
@@ -85,6 +86,7 @@ class Build:
             ),
             "DEPTH_UNIT": depth.pack(mantissa=p["DepthMantissa"], exponent=p["DepthExponent"] & exponent),
             "SLOPE_UNIT": slope.pack(mantissa=p["SlopeMantissa"], exponent=p["SlopeExponent"] & exponent),
+            "ARITHMETIC": arithmetic_word(p),
         }
 
 
@@ -127,6 +129,10 @@ class Live:
         Words of the contact record.
     light_gains : tuple of int
         Gains of red, green, blue.
+    signature : int
+        TABLE_SIGNATURE.
+    held : frozenset of str
+        Tables whose bank in use comes from a capture.
     """
 
     busy: bool = False
@@ -142,6 +148,8 @@ class Live:
     ending: frozenset[str] = frozenset()
     record: tuple[int, ...] = (0,) * len(RECORD)
     light_gains: tuple[int, ...] = (0,) * len(GAINS)
+    signature: int = 0
+    held: frozenset[str] = frozenset()
 
 
 @dataclass
@@ -212,7 +220,11 @@ class AxilRegisters:
             ARRIVED.name: ARRIVED.pack(rows=live.arrived_rows, columns=live.arrived_columns),
             SELF_TEST: live.self_test,
             STATUS.name: STATUS.pack(**{name: int(getattr(live, name)) for name in LEVELS}),
-            **{capture.name: capture.pack(busy=int(table in live.capturing)) for table, capture in CAPTURES.items()},
+            **{
+                capture.name: capture.pack(busy=int(table in live.capturing), held=int(table in live.held))
+                for table, capture in CAPTURES.items()
+            },
+            "TABLE_SIGNATURE": live.signature,
             COMMIT.name: self.banks.pending(live.in_use),
             SIZE: self.access.sizes.get(self.table, 0),
             **(dict(zip(GAINS, live.light_gains, strict=True)) if self.build.parameters["LightGains"] else {}),

@@ -6,12 +6,30 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from tactile_depth.chip.common.signature import signature
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.registers.register_map import REGISTERS
 
 DEPTH_UNIT = REGISTERS["DEPTH_UNIT"]  # SLOPE_UNIT has the same fields
 MANTISSA_BITS = DEPTH_UNIT.field("mantissa").width
 NM_PER_MM = 1_000_000
+
+BESIDE_ARITHMETIC = (
+    *("Lanes", "RowInverseIn", "RowInverseOut", "WordsPerRow", "DownWords", "DownTableWords", "UpTableWords"),
+    *("DownSettledWidth", "UpSettledWidth", "FrameLatency", "StoreStyle", "CaptureLog2", "PitchNm", "TablesCrc"),
+)
+"""Fields of Config that depth of a picture does not depend on but in last bits, by the lanes, beside those of the
+camera."""
+
+
+def is_arithmetic(name: str) -> bool:
+    """Return True if the register ARITHMETIC holds the field of Config."""
+    return name not in BESIDE_ARITHMETIC and not name.startswith("Camera")
+
+
+def arithmetic_word(parameters: Mapping[str, int]) -> int:
+    """Return the word of the register ARITHMETIC from all fields of Config, in their order."""
+    return signature(number for name, number in parameters.items() if is_arithmetic(name))
 
 
 def scaled(value: float) -> tuple[int, int]:

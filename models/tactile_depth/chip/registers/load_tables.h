@@ -7,6 +7,7 @@ enum tactile_depth_result {
   TACTILE_DEPTH_OTHER_FORMAT,  /* FORMAT: words of the device have other formats */
   TACTILE_DEPTH_OTHER_BUILD,   /* DEVICE: another solver, boundary, gradient model or option; lanes may differ */
   TACTILE_DEPTH_OTHER_UNIT,    /* DEPTH_UNIT, SLOPE_UNIT: codes of the device have other units */
+  TACTILE_DEPTH_OTHER_NUMBERS, /* ARITHMETIC: the device computes with other numbers */
   TACTILE_DEPTH_OTHER_SIZE,    /* TABLE_SIZE: a table of the device has another number of entries */
   TACTILE_DEPTH_STAYS_PENDING, /* TABLE_COMMIT: no frame took an earlier table, or a capture has not ended */
   TACTILE_DEPTH_REFUSED        /* TABLE_INDEX: the device did not take every entry of a table */
@@ -37,6 +38,8 @@ static inline int tactile_depth_check(tactile_depth_write write, tactile_depth_r
   if (read(context, TACTILE_DEPTH_DEPTH_UNIT_ADDRESS) != TACTILE_DEPTH_DEPTH_UNIT ||
       read(context, TACTILE_DEPTH_SLOPE_UNIT_ADDRESS) != TACTILE_DEPTH_SLOPE_UNIT)
     return TACTILE_DEPTH_OTHER_UNIT;
+  if (read(context, TACTILE_DEPTH_ARITHMETIC_ADDRESS) != TACTILE_DEPTH_ARITHMETIC)
+    return TACTILE_DEPTH_OTHER_NUMBERS;
   for (place = 0; place < TACTILE_DEPTH_TABLES; place++) {
     write(context, TACTILE_DEPTH_TABLE_SELECT_ADDRESS, tactile_depth_tables[place].select);
     if (read(context, TACTILE_DEPTH_TABLE_SIZE_ADDRESS) != tactile_depth_tables[place].entries)
@@ -98,4 +101,18 @@ static inline int tactile_depth_load(
     write(context, TACTILE_DEPTH_TABLE_COMMIT_ADDRESS, commit & TACTILE_DEPTH_ALL_TABLES);
   }
   return result;
+}
+
+/* Return the bits of the tables of this file that frames use: those that were loaded, from the first frame behind
+   tactile_depth_load to the next capture or load of another program. */
+static inline uint32_t tactile_depth_holds(tactile_depth_write write, tactile_depth_read read, void *context)
+{
+  uint32_t place, held = 0;
+
+  for (place = 0; place < TACTILE_DEPTH_TABLES; place++) {
+    write(context, TACTILE_DEPTH_TABLE_SELECT_ADDRESS, tactile_depth_tables[place].select);
+    if (read(context, TACTILE_DEPTH_TABLE_SIGNATURE_ADDRESS) == tactile_depth_tables[place].signature)
+      held |= tactile_depth_tables[place].commit;
+  }
+  return held;
 }
