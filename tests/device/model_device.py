@@ -38,9 +38,10 @@ from tactile_depth.chip.link.device import LinkDevice
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.axil_port import Response
 from tactile_depth.chip.registers.axil_registers import RECORD, AxilRegisters, Build, Events, Live
-from tactile_depth.chip.registers.register_map import TABLES
+from tactile_depth.chip.registers.register_map import REGISTERS, TABLES
 from tactile_depth.chip.registers.table_banks import CAPTURES
 from tactile_depth.chip.registers.table_signatures import REFERENCE, ZERO, TableSignatures, power_up_words
+from tactile_depth.chip.self_test import self_test
 from tactile_depth.chip.table_entries import one_word, reference_entries
 from tactile_depth.chip.tactile_depth import Tables, slopes_and_light, solve, top_parameters, zeroed
 from tactile_depth.chip.video.frame_guard import FrameGuard, Word
@@ -120,6 +121,7 @@ class ModelDevice:
         self.captures: dict[str, list[np.ndarray]] = {}  # frames that are taken, by table
         self.wanted: dict[str, int] = {}  # frames of each capture
         self._frame: list[int] = []
+        self.tested = 0  # signature of the last self-test
         self._size, self._guard = FrameSize(), FrameGuard(self.config.rows, self.config.columns)
 
     def reset(self) -> None:
@@ -137,7 +139,8 @@ class ModelDevice:
         levels = {"touching": self.events.touching, "hunting": self._guard.hunting}
         size = {"arrived_columns": self._size.columns, "arrived_rows": self._size.rows}
         signed = {"signature": self.signatures.shown, "held": self.signatures.held(banks.bank)}
-        own = {**signed, "in_use": banks.bank, "capturing": capturing, "record": self.record, "light_gains": gains}
+        own = {**signed, "in_use": banks.bank, "capturing": capturing, "record": self.record}
+        own |= {"light_gains": gains, "self_test": self.tested}
         return Live(**own, **levels, **size)  # type: ignore[arg-type]
 
     def _free(self, code: int) -> int:
@@ -181,6 +184,14 @@ class ModelDevice:
         for done in (registers.table_writes, registers.captures, registers.gains_written):
             done.clear()
         registers.clock(Events())
+        control = REGISTERS["CONTROL"]
+        if address == control.offset and value & control.field("self_test").mask:
+            registers.clock(Events(frame_start=True))
+            gains, zero = (
+                None if self.light is None else self.light.gains,
+                self._zero() if "zero" in self.tables else None,
+            )
+            self.tested = self_test(self.config, self._tables(), zero, registers.values["DARK_LEVEL"], gains)
         return True
 
     # Pictures.

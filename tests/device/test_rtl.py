@@ -85,7 +85,9 @@ def test_the_table_of_a_capture_is_read_back() -> None:
     gains = reference_gains(captured.sensor, captured.config)
     with td.Device("sim", small(sample)) as device:
         device.load()
+        device.self_test()
         device.capture_reference(dimmer(sample))
+        device.self_test()
         with device._open_line() as line:
             words = captures.read_captured(line, "reference", functools.partial(line.send, device._untouched))
         (frame,) = device.depth(sample.image)
@@ -126,6 +128,7 @@ def test_real_presses() -> None:
         device.load()
         device.capture_reference(background)
         device.capture_zero(background)
+        device.self_test()
         frames = list(device.depth(iter(presses)))
     assert [frame.lost for frame in frames] == [0] * PRESSES
     for frame, result in zip(frames, captured.stream(presses), strict=True):

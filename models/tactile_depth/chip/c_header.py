@@ -14,9 +14,11 @@ from tactile_depth.chip import registers
 from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.registers.axil_registers import Build
+from tactile_depth.chip.registers.event_registers import SELF_TEST
 from tactile_depth.chip.registers.register_map import MAP, REGISTERS, TABLES, WORD
 from tactile_depth.chip.registers.table_banks import COMMIT
 from tactile_depth.chip.registers.table_signatures import table_signatures
+from tactile_depth.chip.self_test import built_in
 from tactile_depth.chip.table_entries import ONE_WORD, table_entries
 from tactile_depth.chip.tactile_depth import top_parameters
 
@@ -58,6 +60,7 @@ def c_header(
         _units(calibration, config),
         _device(calibration, config),
         _thresholds(thresholds),
+        _self_test(built_in(calibration, config, zero, gains)),
         _registers(),
         _tables(tables),
         loader,
@@ -114,6 +117,12 @@ def _thresholds(thresholds: Mapping[str, int]) -> str:
         return ""
     listed = "".join(define(name, word(code)) for name, code in thresholds.items())
     return "/* Values for the registers of these names, which tactile_depth_load does not write. */\n" + listed
+
+
+def _self_test(signature: int) -> str:
+    """Return the word of a device that computes right."""
+    text = "/* What SELF_TEST shows with these tables, light gains of 1 and DARK_LEVEL 0, as after a reset. */\n"
+    return text + define(SELF_TEST, word(signature))
 
 
 def _registers() -> str:

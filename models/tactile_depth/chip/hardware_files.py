@@ -15,6 +15,7 @@ from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.rom_files import table_files
+from tactile_depth.chip.self_test import built_in
 from tactile_depth.chip.tactile_depth import config_value, top_parameters, write_roms
 
 PARAMETERS = "parameters.json"
@@ -63,6 +64,7 @@ def write_files(
         "parameters": {"Config": config_value(fields)},
         "fields": fields,
         "registers": dict(thresholds),
+        "self_test": built_in(sensor, config, zero, gains),
         "grid": [config.rows, config.columns],
         "depth_lsb_mm": config.depth_lsb_px * sensor.pixel_pitch_mm,
         "pixel_pitch_mm": sensor.pixel_pitch_mm,

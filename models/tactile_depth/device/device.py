@@ -16,6 +16,7 @@ from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.registers.table_signatures import NOT_KNOWN
+from tactile_depth.chip.self_test import self_test
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.depth.result import Recorder, Result, thresholds_of
 from tactile_depth.depth.twin import PICTURES, require_flat_field, require_zero_offset
@@ -28,6 +29,7 @@ from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import Exchange, camera_frames
 from tactile_depth.device.frame import DeviceFrame, seen_as
 from tactile_depth.device.registers import Registers, read_words, write_words
+from tactile_depth.device.self_test import signature_of
 from tactile_depth.device.status import COUNTERS, DeviceStatus
 from tactile_depth.device.tables import load_tables, require_same, wait_in_use, window_doubt
 from tactile_depth.pictures.doubts import UnusablePicture, Warned
@@ -290,6 +292,28 @@ class Device(AbstractContextManager["Device"]):
                 frames = sent.single(line, self._twin, pictures)
             with closing(frames):
                 yield from (self._frame(arrival, index, result) for index, arrival, result in frames)
+
+    def self_test(self) -> None:
+        """Let the device compute the depth of a picture of its own, and compare that with the pipeline's.
+
+        It finds entries of tables and logic that differ; the pictures of a camera wait for the time of one.
+
+        Raises
+        ------
+        DeviceError
+            The device computes something else, or it does not answer.
+        """
+        with self._open_line() as line:
+            held.require_tables(line, self._tables)
+            self._require_seen(self._unseen)
+            dark_level = read_words(line, ["DARK_LEVEL"])["DARK_LEVEL"]
+            shown, twin = signature_of(line), self._twin
+        wanted = self_test(twin.config, twin.twin.tables, twin.zero_codes, dark_level)
+        if shown != wanted:
+            problem = (
+                f"the device computes something else than the pipeline: SELF_TEST is {shown:#010x}, not {wanted:#010x}"
+            )
+            raise DeviceError(problem, remedy="call load(); if it stays, the device is built differently or faulty")
 
     def status(self) -> DeviceStatus:
         """Return the state of the device and of the link."""
