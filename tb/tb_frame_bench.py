@@ -15,7 +15,7 @@ from tactile_depth.chip.registers.register_map import REGISTERS
 from tb.settings import RUN
 
 CLOCK_NS = 6
-READ = ("STATUS", "FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "FIRST_DEPTH_LATENCY")
+READ = ("STATUS", "FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "FIRST_DEPTH_LATENCY", "SELF_TEST")
 
 
 @cocotb.test()

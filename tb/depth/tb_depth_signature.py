@@ -12,7 +12,7 @@ from tb.stream import parameters
 from tb.structures import BOTH, ICARUS, of_parameters
 
 built = of_parameters("Width Lanes")
-STRUCTURES = (built(15, 1, on=BOTH), built(12, 4, on=ICARUS, mutants=ICARUS), built(32, 2))
+STRUCTURES = (built(15, 1, on=BOTH), built(12, 4, on=ICARUS), built(6, 2, mutants=ICARUS), built(32, 2))
 PROTOCOL = {"counts": "live & ~reset"}
 PROOFS = tuple(
     Proof("every code is folded alike; one code of a beat, and four", {"Width": 12, "Lanes": lanes}) for lanes in (1, 4)
