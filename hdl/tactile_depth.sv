@@ -72,32 +72,33 @@ module tactile_depth
   events_t events;
   levels_t levels;
   logic [31:0] timeout, now, frame_time, depth_time, first_depth_latency;
-  logic self_test, video_busy, pixel_valid, pixel_frame_start, pixel_frame_end, pixel_bad, pixel_test;
+  logic self_test, video_busy, pixel_valid, pixel_frame_start, pixel_frame_end, pixel_bad, pixel_test, resumed;
   logic [23:0] pixel_data;
   position_t pixel_position;
   video_unit #(.Config(Config)) u_video (
     .clk, .rst, .en, .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
     .self_test, .timeout, .faults(events.faults), .hunting(levels.hunting), .arrived_columns(levels.arrived_columns),
     .arrived_rows(levels.arrived_rows), .busy(video_busy), .pixel_valid, .pixel_data, .pixel_position,
-    .pixel_frame_start, .pixel_frame_end, .pixel_bad, .pixel_test, .now, .frame_time
+    .pixel_frame_start, .pixel_frame_end, .pixel_bad, .pixel_test, .resumed, .now, .frame_time
   );
 
   table_command_t table_command;
   table_answer_t slope_answer, zero_answer;
   capture_command_t reference_command, zero_command;
   capture_status_t reference_status, zero_status;
-  logic [7:0] dark_level;
+  logic [7:0] dark_level, slope_limit;
   logic [3:0] table_bank, slope_in_use, zero_in_use, slope_saturations;
   light_command_t light_command;
   logic [2:0][LightGainWidth-1:0] light_gains;
-  logic slope_valid;
+  logic slope_valid, slope_flags_valid;
+  frame_flags_t slope_flags, depth_flags;
   position_t slope_position;
   logic signed [GradientWidth-1:0] slope_gx, slope_gy;
   gradient_unit #(.TableFolder(TableFolder), .Config(Config)) u_gradient (
     .clk, .rst, .en, .table_command, .table_answer(slope_answer), .table_bank, .table_in_use(slope_in_use), .dark_level,
-    .capture_command(reference_command), .capture_status(reference_status), .dark(events.dark), .light_command,
-    .light_gains, .saturations(slope_saturations), .pixel_valid, .pixel_data, .pixel_position, .pixel_bad, .slope_valid,
-    .slope_position, .slope_gx, .slope_gy
+    .slope_limit, .capture_command(reference_command), .capture_status(reference_status), .dark(events.dark),
+    .light_command, .light_gains, .saturations(slope_saturations), .pixel_valid, .pixel_data, .pixel_position,
+    .pixel_bad, .resumed, .slope_valid, .slope_position, .slope_gx, .slope_gy, .slope_flags_valid, .slope_flags
   );
 
   logic burst_start, solved_frame_start;
@@ -110,15 +111,14 @@ module tactile_depth
   );
 
   logic out_of_step, depth_busy, depth_valid;
-  frame_flags_t depth_flags;
   depth_position_t depth_position;
   logic [Lanes*DataWidth-1:0] depth_data;
   depth_unit #(.TableFolder(TableFolder), .Config(Config)) u_depth (
     .clk, .rst, .en, .table_command, .table_answer(zero_answer), .table_bank, .table_in_use(zero_in_use),
     .capture_command(zero_command), .capture_status(zero_status), .saturations(depth_saturations), .out_of_step,
-    .busy(depth_busy), .pixel_frame_end, .pixel_bad, .pixel_test, .frame_time, .burst_start, .solved_frame_start,
-    .solved_data, .depth_valid, .depth_position, .depth_data, .depth_time, .depth_flags, .self_test,
-    .test_signature(levels.self_test)
+    .busy(depth_busy), .pixel_frame_start, .pixel_frame_end, .pixel_bad, .pixel_test, .frame_time, .slope_flags_valid,
+    .slope_flags, .burst_start, .solved_frame_start, .solved_data, .solver_clipped(solver_saturations != '0),
+    .depth_valid, .depth_position, .depth_data, .depth_time, .depth_flags, .self_test, .test_signature(levels.self_test)
   );
 
   contact_settings_t contact_settings;
@@ -143,8 +143,8 @@ module tactile_depth
     .s_axil_wstrb, .s_axil_wvalid, .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr,
     .s_axil_arprot, .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready,
     .irq, .events, .levels, .first_depth_latency, .first_depth_latency_valid, .record, .contact_settings, .timeout,
-    .self_test, .dark_level, .light_command, .light_gains, .frame_start(en & pixel_frame_start), .table_command,
-    .table_answer(slope_answer | zero_answer), .table_bank, .table_in_use(slope_in_use | zero_in_use),
+    .self_test, .dark_level, .slope_limit, .light_command, .light_gains, .frame_start(en & pixel_frame_start),
+    .table_command, .table_answer(slope_answer | zero_answer), .table_bank, .table_in_use(slope_in_use | zero_in_use),
     .reference_command, .reference_status, .zero_command, .zero_status, .register_command, .register_answer
   );
 

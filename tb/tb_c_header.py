@@ -10,6 +10,7 @@ import numpy as np
 from cocotb.task import bridge, resume
 
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.frame_marks import slope_limit
 from tactile_depth.chip.registers.axil_port import Response
 from tactile_depth.chip.table_entries import table_entries
 from tactile_depth.sensor.synthetic import synthetic
@@ -31,6 +32,7 @@ def calibration(config: Configuration) -> dict[str, Any]:
         gradient=sensor.gradient * rng.uniform(0.2, 0.9, sensor.gradient.shape),
         coefficients=sensor.coefficients * 0.7,
         pixel_pitch_mm=PITCH_MM,
+        fitted_slope={config.gradient_model: 0.3},
     )
     limit = 1 << config.data_width - 4
     return {
@@ -68,6 +70,8 @@ async def loaded(dut: Any) -> None:
     tables = table_entries(**calibration(pipeline.config))
     assert await pipeline.read("TABLE_COMMIT") == COMMIT.pack(**dict.fromkeys(tables, 1))
     assert await pipeline.read("PITCH") == round(PITCH_MM * 1e6)
+    pipeline.scoreboard.slope_limit = await pipeline.read("SLOPE_LIMIT")
+    assert pipeline.scoreboard.slope_limit == slope_limit(calibration(pipeline.config)["calibration"], pipeline.config)
     for name, entries in tables.items():
         assert (entries != pipeline.tables.content.entries[name]).any(), (
             f"the test is void: {name} is that of the build"

@@ -89,6 +89,7 @@ void device_write(void *context, uint32_t address, uint32_t word)
   case AT(TABLE_INDEX):
   case AT(TABLE_HIGH):
   case AT(PITCH):
+  case AT(SLOPE_LIMIT):
     device->words[address / sizeof(uint32_t)] = word;
     break;
   default:  // a register that no loader of tables has to write

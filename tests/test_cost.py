@@ -125,7 +125,7 @@ def test_multipliers_and_memories_are_those_of_the_rtl(tmp_path: Path, choices: 
         if cell["type"] == "$mul" and not is_address(cell):
             wires = cell["connections"]
             multipliers[tuple(sorted((operand_width(wires["A"]), operand_width(wires["B"]))))] += 1
-        elif cell["type"].startswith("$mem"):
+        elif cell["type"].startswith("$mem") and "proc_rom" not in name:  # which makes one of a case of constants
             behind_wrapper = name.split(".")[-2].startswith(
                 "g_"
             )  # td_ram.sv and td_rom.sv name their array in a generate
@@ -138,7 +138,8 @@ def test_multipliers_and_memories_are_those_of_the_rtl(tmp_path: Path, choices: 
     assert multipliers == Counter(tuple(sorted((m.a, m.b))) for m in counted.multipliers)
     assert memories == Counter((memory.core, memory.width, memory.words) for memory in counted.memories)
     assert {multiplier.core for multiplier in counted.multipliers} <= repository.cores().keys()
-    assert others <= {"u_depth.u_tags.due_clock", "u_depth.u_tags.tags"}, "registers of a few words, of frame_tags.sv"
+    tags = {f"u_depth.u_tags.{name}" for name in ("due_clock", "lates", "tags")}
+    assert others <= tags, "registers of a few words, of frame_tags.sv"
 
 
 @pytest.mark.parametrize("size", [32, 64, 128, 256, 512])

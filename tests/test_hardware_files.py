@@ -10,6 +10,7 @@ import pytest
 import tactile_depth as td
 from tactile_depth.base.files import RECORD
 from tactile_depth.chip.c_header import FILE, c_header
+from tactile_depth.chip.gradient.frame_marks import slope_limit
 from tactile_depth.chip.rom_files import write_words
 from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters
 from tactile_depth.chip.tactile_depth import write_roms as write_tables
@@ -37,6 +38,7 @@ def test_hardware_writes_what_the_pipeline_computes_with(tmp_path: Path, small: 
     assert described["parameters"] == hdl_parameters(small.config, small.pixel_pitch_mm, tables_crc=crc)
     tables = {path.name: path.read_text() for path in (tmp_path / "again").iterdir()}
     assert described["tables"] == sorted(tables)
+    assert described["registers"].pop("SLOPE_LIMIT") == slope_limit(small.sensor, small.config)
     tables[described["c_header"]] = c_header(
         small.sensor, small.config, small._zero, small._gains, described["registers"]
     )

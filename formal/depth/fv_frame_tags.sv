@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_frame_tags: an arbitrary tag is due exactly Latency enabled clocks after it was pushed, unchanged, and nothing
-// else is ever due; held is high just while there are tags.
+// else is ever due; held is high just while there are tags; then, for Keep enabled clocks, its late part is there, and
+// whether it was marked.
 
-parameter int Width = 1, Latency = 10, Pixels = 4;
+parameter int Width = 1, LateWidth = 1, Latency = 10, Keep = 2, Pixels = 4;
 input logic pick;
 
 logic [Latency-1:0] pushed;
@@ -16,6 +17,27 @@ always_ff @(posedge clk) begin
   if (rst) pushed <= '0;
 end
 
+// The late part of the tag that was pushed last, and of the picked one; the age of that, in enabled clocks.
+
+localparam int AgeWidth = $clog2(Latency + Keep + 2);
+logic newest, has_part, is_marked, ages;
+logic [LateWidth-1:0] part;
+logic [AgeWidth-1:0] age;
+always_ff @(posedge clk) begin
+  is_marked <= is_marked | mark;
+  if (en) begin
+    if (ages) age <= age + AgeWidth'(1);
+    if (age == AgeWidth'(Latency + Keep)) ages <= 1'b0;
+    if (newest && late) {has_part, part} <= {1'b1, late_part};
+    if (push) newest <= 1'b0;
+    if (push && pick && !ages) begin
+      {newest, ages, has_part, is_marked} <= {3'b110, marked | mark};
+      age <= AgeWidth'(1);
+    end
+  end
+  if (rst) {newest, ages, has_part} <= '0;
+end
+
 int tags;  // on their way
 always_comb begin
   tags = 0;
@@ -27,8 +49,13 @@ always_comb begin
     due_just_then: assert (due == pushed[Latency-1]);
     if (followed_due) own_tag: assert (due && due_tag == value);
     held_meanwhile: assert (held == (pushed != '0));
+    if (ages && age > AgeWidth'(Latency)) begin
+      own_mark: assert (late_marked == is_marked);
+      if (has_part) own_part: assert (late_tag == part);
+    end
     most_tags: cover (tags == (Latency + Pixels - 1) / Pixels && due);
     alone: cover (due && en && pushed[Latency-2:0] == '0);
+    kept: cover (ages && has_part && age == AgeWidth'(Latency + Keep) && part == '1 && is_marked);
   end
 end
 

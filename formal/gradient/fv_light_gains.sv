@@ -20,11 +20,11 @@ localparam int GainFraction = GainWidth - 1, Drop = RatioFraction + GainFraction
 
 logic first, last, commits, in_frame, bad;
 logic [3*RatioWidth-1:0] ratios;
-logic [3*GainWidth-1:0] used, frame_gains, gains_q;
+logic [3*GainWidth-1:0] in_force, frame_gains, gains_q;
 assign ratios = {in_blue, in_green, in_red};
 assign first = in_valid && (&in_position[1:0]);
 assign last = in_valid && (&in_position[3:2]);
-assign used = first ? gains : frame_gains;
+assign in_force = first ? gains : frame_gains;
 assign commits = en && last && follow && !bad && !in_bad;
 
 logic [1:0] valid;
@@ -36,7 +36,7 @@ logic [1:0] expected_clips;
 always_comb begin
   for (int c = 0; c < 3; c++) begin
     int product, rounded;
-    product = int'(ratios[c*RatioWidth+:RatioWidth]) * int'(used[c*GainWidth+:GainWidth])
+    product = int'(ratios[c*RatioWidth+:RatioWidth]) * int'(in_force[c*GainWidth+:GainWidth])
         - (1 << (RatioFraction + GainFraction));
     rounded = product >>> Drop;
     if (product[Drop-1:0] > Drop'(1 << (Drop - 1)) || (product[Drop-1:0] == Drop'(1 << (Drop - 1)) && rounded[0])) begin
@@ -64,7 +64,7 @@ always_ff @(posedge clk) begin
     position <= {position[3:0], in_position};
     expected <= {expected[3*OutWidth-1:0], results};
     clips_q <= clips;
-    if (in_valid) frame_gains <= used;
+    if (in_valid) frame_gains <= in_force;
     bad <= (bad || in_bad) && !last;
   end
   if (rst) begin
@@ -96,6 +96,7 @@ if (Moves == 0) begin : g_pixels
       end
       clipped_counted: assert (saturations == expected_clips);
       within_limits: assert (in_limits == '1);
+      if (in_valid && !first) used_are_those: assert (used == frame_gains);
       gains_stay_or_are_set: assert (is_expected == '1);
       clipped: cover (saturations == 2'd2 && out_valid);
       uses_what_was_written: cover (out_valid && out_position == 4'b0011 && frame_gains[0+:GainWidth] == GainWidth'(2 * Least + 1));
@@ -111,7 +112,7 @@ end else begin : g_moves
     .slowed({g_colour[2].slowed, g_colour[1].slowed, g_colour[0].slowed}),
     .up({g_colour[2].up, g_colour[1].up, g_colour[0].up}),
     .down({g_colour[2].down, g_colour[1].down, g_colour[0].down}),
-    .moves({g_colour[2].move, g_colour[1].move, g_colour[0].move}),
+    .moved({g_colour[2].move, g_colour[1].move, g_colour[0].move}),
     .row(fv_light_gains.row), .column(fv_light_gains.column)
   );
 end

@@ -39,7 +39,8 @@ module light_gains_move #(
   input logic [2:0]                 up,
   input logic [2:0]                 down,
   input logic                       near_enough,
-  input logic [3*(GainWidth+1)-1:0] moves,
+  input logic [3*(GainWidth+1)-1:0] moved,
+  input logic                       moves,
   input logic [15:0]                row,
   input logic [15:0]                column
 );
@@ -50,6 +51,7 @@ module light_gains_move #(
   localparam int Drop = SumLog2 + OutFraction - (GainWidth - 1);
   localparam int Least = 1 << (GainWidth - 2), Most = (1 << GainWidth) - 1;
   localparam int Step = 1 << (GainWidth - 4);
+  localparam int Quiet = GainWidth > 6 ? GainWidth - 6 : 0;  // 1/32, or the last bit
 
   logic started = 1'b0;
   always_ff @(posedge clk) started <= 1'b1;
@@ -94,7 +96,7 @@ module light_gains_move #(
   // The move by the rule.
 
   int move[3], wanted[3];
-  logic [2:0] move_q, differs, counts_agree, compared_agrees, moves_agree;
+  logic [2:0] move_q, differs, counts_agree, compared_agrees, moves_agree, far;
   logic [3*GainWidth-1:0] wanted_q;
   always_comb begin
     assume (!started || rate == rate_q);  // a move is prepared before the last pixel comes
@@ -115,7 +117,8 @@ module light_gains_move #(
       counts_agree[c] = core_net[c] == net[c] && core_sum[c] == sum[c];
       compared_agrees[c] = int'($signed(slowed[6*c+:6])) == total && up[c] == (8 * int'(net[c]) <= -3 * Pixels)
           && down[c] == (8 * int'(net[c]) >= 3 * Pixels) && near_enough == (4 * int'(near) >= Pixels);
-      moves_agree[c] = int'($signed(moves[c*(GainWidth+1)+:GainWidth+1])) == move[c];
+      moves_agree[c] = int'($signed(moved[c*(GainWidth+1)+:GainWidth+1])) == move[c];
+      far[c] = move[c] >= (1 << Quiet) || move[c] < -(1 << Quiet);
       differs[c] = gains[c*GainWidth+:GainWidth] != wanted_q[c*GainWidth+:GainWidth];
     end
   end
@@ -134,6 +137,7 @@ module light_gains_move #(
       if (row != '0 || column >= 16'd1) goes_on: assert (in_frame);
       if (row != '0 || column >= 16'd2) stays: assert (steady >= 2'd1);
       if (row != '0 || column >= 16'd3) stayed: assert (steady >= 2'd2);
+      if (in_last_row && column == 16'(Columns - 1)) told: assert (moves == (far != '0));
       if (in_last_row && column >= 16'd1) taken: assert (!(valid_q && !position_q[2]));
       if (in_last_row && column >= 16'd2) left: assert (!(out_valid && !out_position[2]));
       if (in_last_row && column >= 16'd3) counted: assert (!counts);

@@ -93,7 +93,7 @@ always_comb begin
       || offset == InterruptStatusOffset || offset == InterruptMaskOffset || offset == PitchOffset
       || offset == OffThresholdOffset || offset == AreaThresholdOffset || offset == MinimumAreaOffset
       || offset == DebounceOffset
-      || offset == LightOffset || offset == LightGainRedOffset || offset == LightGainGreenOffset
+      || offset == SlopeLimitOffset || offset == LightOffset || offset == LightGainRedOffset || offset == LightGainGreenOffset
       || offset == LightGainBlueOffset
       || (offset == ReferenceCaptureOffset && (ReferenceWords != 0 || !(data[ReferenceCaptureStartBit] && strobes[ReferenceCaptureStartBit/8])))
       || (offset == ZeroCaptureOffset
@@ -124,7 +124,7 @@ logic [2:0] writes_gain;
 assign writes_gain = {writes(LightGainBlueOffset), writes(LightGainGreenOffset), writes(LightGainRedOffset)};
 logic [LightGainWidth-1:0] gain_before;
 assign gain_before = writes_gain[0] ? light_gains[0] : writes_gain[1] ? light_gains[1] : light_gains[2];
-logic [31:0] dim, averaged, zero_averaged, off, level, area, frames_needed, dark, given_up, lost;
+logic [31:0] dim, steepest, averaged, zero_averaged, off, level, area, frames_needed, dark, given_up, lost;
 logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, latency;
 logic clears;
 assign clears = writes(ControlOffset) & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
@@ -187,6 +187,7 @@ always_comb begin
   else if (read_offset == TableCommitOffset) word = 32'(waits);
   else if (read_offset == TableSizeOffset) word = size;
   else if (read_offset == DarkLevelOffset) word = dim;
+  else if (read_offset == SlopeLimitOffset) word = steepest;
   else if (read_offset == ReferenceCaptureOffset) begin
     word = averaged;
     word[ReferenceCaptureBusyBit] = reference_status.busy;
@@ -271,6 +272,7 @@ always_ff @(posedge clk) begin
   if (writes(ControlOffset) && mask[ControlHoldContactBit]) hold <= data[ControlHoldContactBit];
   if (writes(ControlOffset) && mask[ControlDropFramesBit]) drop <= data[ControlDropFramesBit];
   if (writes(DarkLevelOffset)) dim <= written(dim) & 32'hff;
+  if (writes(SlopeLimitOffset)) steepest <= written(steepest) & 32'hff;
   if (writes_capture) averaged <= written(averaged) & 32'hf;
   if (writes_zero) zero_averaged <= written(zero_averaged) & 32'hf;
   if (writes(OffThresholdOffset)) off <= written(off);
@@ -319,6 +321,7 @@ always_ff @(posedge clk) begin
     {interrupts, unmasked, raised} <= '0;
     width_nm <= PitchNm;
     light <= 32'd1;
+    steepest <= 32'hff;
     {silence, index, select, high, sticky, frames_in, frames_out, frames_dropped, clipped, latency} <= '0;
   end
   if (cold_rst) bank <= '0;
@@ -350,7 +353,7 @@ always_comb begin
         && contact_settings.hold_contact == hold);
     contact_words: assert (contact_settings.off_threshold == off && contact_settings.area_threshold == level
         && contact_settings.minimum_area == area && 32'(contact_settings.debounce) == frames_needed);
-    stream_settings: assert (contact_settings.drop_frames == drop && 32'(dark_level) == dim
+    stream_settings: assert (contact_settings.drop_frames == drop && 32'(dark_level) == dim && 32'(slope_limit) == steepest
         && 32'(reference_command.log2_frames) == averaged && 32'(zero_command.log2_frames) == zero_averaged);
     interrupt: assert (irq == raised);
     tests_itself: assert (self_test == (writes(ControlOffset) && data[ControlSelfTestBit] && mask[ControlSelfTestBit]

@@ -3,12 +3,12 @@
 //
 //   solved --> frame_output --> [zero_offset] -+-> depth
 //                  ^       \-> [zero_capture]  \-> depth_signature
-//   frame end --> frame_tags
+//   frame end --> frame_tags --> depth_flags
 //
 // In brackets: with ZeroOffset. A tag waits for each frame that is in the solver: whether it was malformed, whether it
-// is of a self-test, its bank of the zero offset, and its time. A malformed frame does not leave, that of a self-test
-// leaves into its signature alone. Stream in: bursts of the solver, Lanes depth codes in a beat. Stream out: those of
-// whole frames under `en`, in the same order. Latency: 0 cycles; with ZeroOffset that of zero_offset. Models:
+// is of a self-test, its bank of the zero offset, its time and its flags. A malformed frame does not leave, that of a
+// self-test leaves into its signature alone. Stream in: bursts of the solver, Lanes depth codes in a beat. Stream out:
+// those of whole frames under `en`, in the same order. Latency: 0 cycles; with ZeroOffset that of zero_offset. Models:
 // models/tactile_depth/chip/depth/.
 
 `default_nettype none
@@ -42,14 +42,18 @@ module depth_unit
   output logic                        out_of_step,  // a frame does not leave the solver when it is due
   output logic                        busy,         // a frame is in the solver, or here
 
+  input  wire                         pixel_frame_start,
   input  wire                         pixel_frame_end,
   input  wire                         pixel_bad,
   input  wire                         pixel_test,
   input  wire  [31:0]                 frame_time,  // of the frame that pixel_frame_end ends
+  input  wire                         slope_flags_valid,  // behind pixel_frame_end
+  input  wire frame_flags_t           slope_flags,
 
   input  wire                         burst_start,
   input  wire                         solved_frame_start,
   input  wire  [Lanes*DataWidth-1:0]  solved_data,  // depth codes, signed
+  input  wire                         solver_clipped,  // for one cycle each, before the last depth of a frame
 
   output logic                        depth_valid,
   output depth_position_t             depth_position,
@@ -61,15 +65,19 @@ module depth_unit
   output logic [31:0]                 test_signature  // of the last one, 0 until its frame has left
 );
 
-  logic bank, tag_due, tag_bad, tag_test, tag_bank, tags_held;
-  logic [31:0] tag_time;
-  assign bank = table_bank[TableSelectZero];
-  frame_tags #(.Width(35), .Latency(FrameLatency), .Pixels(Rows * Columns)) u_tags (
-    .clk, .rst, .en, .push(pixel_frame_end), .tag({pixel_bad, pixel_test, bank, frame_time}),
-    .due(tag_due), .due_tag({tag_bad, tag_test, tag_bank, tag_time}), .held(tags_held)
-  );
+  localparam int ToFlags = ZeroOffset != 0 ? 12 + $clog2(Lanes) : 1;  // at most, from due to the flags
 
-  assign depth_flags = '0;
+  logic bank, tag_due, tag_bad, tag_test, tag_bank, tags_held, entering_clipped, tag_clipped;
+  logic [31:0] tag_time;
+  frame_flags_t tag_flags;
+  assign bank = table_bank[TableSelectZero];
+  frame_tags #(
+    .Width(35), .LateWidth($bits(frame_flags_t)), .Latency(FrameLatency), .Keep(ToFlags), .Pixels(Rows * Columns)
+  ) u_tags (
+    .clk, .rst, .en, .push(pixel_frame_end), .tag({pixel_bad, pixel_test, bank, frame_time}), .marked(entering_clipped),
+    .late(slope_flags_valid), .late_part(slope_flags), .mark(solver_clipped), .due(tag_due),
+    .due_tag({tag_bad, tag_test, tag_bank, tag_time}), .late_tag(tag_flags), .late_marked(tag_clipped), .held(tags_held)
+  );
 
   logic active, whole_valid, whole_test, whole_test_q, leaves, tested;
   depth_position_t whole_position;
@@ -82,6 +90,12 @@ module depth_unit
 
   assign whole_test = tag_due ? tag_test : whole_test_q;
   always_ff @(posedge clk) if (en) whole_test_q <= whole_test;
+
+  depth_flags u_flags (
+    .clk, .rst, .en, .frame_start(pixel_frame_start), .solver_clipped, .entering_clipped, .in_flags(tag_flags),
+    .marked(tag_clipped), .zero_clipped(saturations != '0), .depth_starts(leaves & depth_position.frame_start),
+    .depth_ends(leaves & depth_position.frame_end), .out_flags(depth_flags)
+  );
 
   assign depth_valid = leaves & ~tested;
   depth_signature #(.Width(DataWidth), .Lanes(Lanes)) u_signature (

@@ -8,8 +8,8 @@
 // the light; with Corrections of slopes by colour. Without FlatField colours are as the camera sent them. Stream in:
 // pixels R in 23:16, B in 15:8, G in 7:0, raster order. Stream out: slopes gx along the row and gy down the column,
 // signed codes of GradientWidth bits; the tables say how many are fraction bits. Latency:
-// models/tactile_depth/chip/latency.py; a gap in, a gap out. Model: slopes_and_light in
-// models/tactile_depth/chip/tactile_depth.py.
+// models/tactile_depth/chip/latency.py; a gap in, a gap out. Behind a frame's last slope come its flags. Models:
+// slopes_and_light and depth_and_flags in models/tactile_depth/chip/tactile_depth.py.
 
 `default_nettype none
 
@@ -45,6 +45,7 @@ module gradient_unit
   input  wire  [3:0]                      table_bank,
   output logic [3:0]                      table_in_use,
   input  wire  [7:0]                      dark_level,
+  input  wire  [7:0]                      slope_limit,
   input  wire capture_command_t           capture_command,
   output capture_status_t                 capture_status,
   output logic                            dark,         // a pixel was held from its neighbour
@@ -56,11 +57,14 @@ module gradient_unit
   input  wire  [23:0]                     pixel_data,  // R in 23:16, B in 15:8, G in 7:0
   input  wire position_t                  pixel_position,
   input  wire                             pixel_bad,
+  input  wire                             resumed,  // of the frame whose last pixel came last
 
   output logic                            slope_valid,
   output position_t                       slope_position,
   output logic signed [GradientWidth-1:0] slope_gx,  // slope code
-  output logic signed [GradientWidth-1:0] slope_gy   // slope code
+  output logic signed [GradientWidth-1:0] slope_gy,  // slope code
+  output logic                            slope_flags_valid,
+  output frame_flags_t                    slope_flags  // those of solver and zero offset 0
 );
 
   logic coefficients_in_use, gradient_in_use, reference_in_use;
@@ -71,8 +75,9 @@ module gradient_unit
 
   // Colours, relative to the reference if there is one.
 
-  logic colour_valid;
+  logic colour_valid, relative_ends, light_moves;
   position_t colour_position;
+  logic [2:0][LightGainWidth-1:0] light_used;
   localparam int ColourWidth = Polynomial != 0 ? DeviationWidth : CodeWidth;
   logic [ColourWidth-1:0] red, green, blue;
   logic [1:0] ratio_saturations, light_saturations, slope_saturations;
@@ -105,7 +110,7 @@ module gradient_unit
         .GainWidth(LightGainWidth), .OutWidth(DeviationWidth), .OutFraction(DeviationFraction)
       ) u_light (
         .clk, .rst, .en, .follow(light_command.follow), .rate(light_command.rate), .write(light_command.write),
-        .write_gain(light_command.gain), .gains(light_gains),
+        .write_gain(light_command.gain), .gains(light_gains), .used(light_used), .moves(light_moves),
         .in_bad(pixel_valid & pixel_position.last_row & pixel_position.last_column & pixel_bad),
         .in_valid(relative_valid), .in_position(relative_position), .in_red(relative[0]), .in_green(relative[1]),
         .in_blue(relative[2]), .out_valid(colour_valid), .out_position(colour_position), .out_red(red),
@@ -114,8 +119,9 @@ module gradient_unit
     end else begin : g_no_light
       assign {blue, green, red} = relative;
       assign {colour_valid, colour_position} = {relative_valid, relative_position};
-      assign {light_gains, light_saturations} = '0;
+      assign {light_gains, light_used, light_moves, light_saturations} = '0;
     end
+    assign relative_ends = relative_valid & relative_position.last_row & relative_position.last_column;
     reference_capture #(
       .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth),
       .GainFraction(GainWidth + DarkestLog2), .MaxLog2(CaptureLog2)
@@ -130,7 +136,8 @@ module gradient_unit
     assign {red, blue, green} = pixel_data;
     assign colour_valid = pixel_valid;
     assign colour_position = pixel_position;
-    assign {dark, ratio_saturations, light_saturations, light_gains} = '0;
+    assign relative_ends = pixel_valid & pixel_position.last_row & pixel_position.last_column;
+    assign {dark, ratio_saturations, light_saturations, light_gains, light_used, light_moves} = '0;
     assign {capture_status, reference_in_use, reference_answer} = '0;
   end
 
@@ -185,6 +192,15 @@ module gradient_unit
     assign {slope_saturations, coefficients_in_use, coefficients_answer} = '0;
   end
 
+  frame_marks #(.Width(GradientWidth), .Pixels(Rows * Columns)) u_marks (
+    .clk, .rst, .en, .slope_limit, .relative_ends, .relative_clipped(ratio_saturations != '0), .dark,
+    .light_gains(light_used), .light_moves,
+    .colour_ends(colour_valid & colour_position.last_row & colour_position.last_column),
+    .colour_clipped(light_saturations != '0), .slope_valid,
+    .slope_ends(slope_valid & slope_position.last_row & slope_position.last_column),
+    .slope_clipped(slope_saturations != '0), .slope_gx, .slope_gy, .resumed,
+    .out_valid(slope_flags_valid), .out_flags(slope_flags)
+  );
 
 endmodule
 

@@ -12,7 +12,7 @@
 // and 1/2 <= gain < 2; slow is rate, and 1 more if the frame used a gain below 7/8: in more light a gain moves less, or
 // it would swing. A frame uses the gains as they stood when its first pixel came, and moves them as its last pixel
 // comes, if `follow` is high and `in_bad` was not. `write` of a colour replaces its gain by write_gain, and wins; less
-// than 1/2 counts as 1/2.
+// than 1/2 counts as 1/2. `moves`, with a frame's last pixel: a gain moves by more than 1/32, or by 1/32 down.
 // Stream in: colours relative to the reference, raster order. Stream out: deviations, I gain / reference - 1.
 // Latency: 2 cycles; a gap in, a gap out. Bit-accurate model: models/tactile_depth/chip/gradient/light_gains.py.
 
@@ -38,6 +38,8 @@ module light_gains
   input  wire  [2:0]                  write,       // red, green, blue from the lowest, as in all that follows
   input  wire  [GainWidth-1:0]        write_gain,
   output logic [2:0][GainWidth-1:0]   gains,       // of the next frame
+  output logic [2:0][GainWidth-1:0]   used,        // of this frame, with its pixels but the first
+  output logic                        moves,
 
   input  wire                         in_bad,      // before or with a frame's last pixel: the frame was malformed
   input  wire                         in_valid,
@@ -64,6 +66,8 @@ module light_gains
   localparam int SumLog2 = $clog2((2 * Pixels + 2) / 3);  // so that a gain moves by 3/16 to 3/2 of the mean
   localparam int SumDrop = SumLog2 + OutFraction - GainFraction;
   localparam int MoveWidth = GainWidth + 1;
+  localparam int QuietLog2 = 5;  // -log2 of the move from which the gains do not fit the light
+  localparam int QuietWidth = GainFraction > QuietLog2 ? GainFraction - QuietLog2 : 0;  // bits of a smaller one
   localparam logic [GainWidth-1:0] One = GainWidth'(1) << GainFraction;
   localparam logic signed [MoveWidth-1:0] Step = MoveWidth'(1 << (GainFraction - NearLog2));
 
@@ -85,7 +89,6 @@ module light_gains
   position_t position_q;
   logic [2:0] clipped;
   logic [2:0][RatioWidth-1:0] ratios;
-  logic [2:0][GainWidth-1:0] used;
   logic [2:0][OutWidth-1:0] deviations, out;
   assign ratios = {in_blue, in_green, in_red};
   assign {out_blue, out_green, out_red} = out;
@@ -103,7 +106,7 @@ module light_gains
 
   // Pixels without contact, and whether they are enough.
 
-  logic [2:0] above, below;
+  logic [2:0] above, below, moves_far;
   logic [CountWidth-1:0] near_count;
   logic near_enough;
   always_ff @(posedge clk) begin
@@ -111,6 +114,7 @@ module light_gains
     near_enough <= {near_count, 2'b00} >= (CountWidth + 2)'($unsigned(Pixels));
   end
 
+  assign moves = |moves_far;
   for (genvar c = 0; c < 3; c++) begin : g_colour
     logic signed [ProductWidth-1:0] product, difference;
     td_multiply #(.AWidth(RatioWidth + 1), .BWidth(GainWidth + 1)) u_product (
@@ -131,6 +135,7 @@ module light_gains
       .in(slowed), .out(mean), .clipped()
     );
     assign moved = $signed({1'b0, gains[c]}) - move;
+    assign moves_far[c] = move[MoveWidth-1:QuietWidth] != {(MoveWidth - QuietWidth) {move[MoveWidth-1]}};
     assign kept = moved[GainWidth] ? '1 : moved[GainWidth-1:0];  // no move takes a gain of 1/2 below 0
     assign chosen = write[c] ? write_gain : commits ? kept : gains[c];
     logic [3:0] slow;

@@ -80,6 +80,7 @@ module axil_registers
   output logic [31:0]               timeout,
   output logic                      self_test,  // for the clock of the write
   output logic [7:0]                dark_level,
+  output logic [7:0]                slope_limit,
   output light_command_t            light_command,
   input  wire  [2:0][LightGainWidth-1:0] light_gains,  // ignored without LightGains
 
@@ -149,6 +150,7 @@ module axil_registers
   assign timeout = settings[TimeoutSetting];
   assign self_test = write && write_offset == ControlOffset && write_ones[ControlSelfTestBit] && !rst;
   assign dark_level = settings[DarkLevelSetting][7:0];
+  assign slope_limit = settings[SlopeLimitSetting][7:0];
 
   // Light gains, which light_gains holds; a write replaces the bytes that are strobed.
 

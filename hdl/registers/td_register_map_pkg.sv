@@ -66,6 +66,7 @@ package td_register_map_pkg;
   localparam int LightGainGreenOffset = 32'h0d8;
   localparam int LightGainBlueOffset = 32'h0dc;
   localparam int SelfTestOffset = 32'h0e0;
+  localparam int SlopeLimitOffset = 32'h0e4;
 
   // Words of a record of contact, and their offsets, the first in the lowest bits.
   localparam int RecordWords = 15;
@@ -83,6 +84,7 @@ package td_register_map_pkg;
   localparam int DebounceReset = 32'h00000001;
   localparam int DeviceReset = 32'h01000000;
   localparam int LightReset = 32'h00000001;
+  localparam int SlopeLimitReset = 32'h000000ff;
 
   // Bits: number of a flag, lowest of a wider field.
   localparam int GridRowsLsb = 0;
@@ -159,7 +161,7 @@ package td_register_map_pkg;
   localparam int DevicePolynomials = 1;
 
   // Registers that software alone writes, by number, in words of 32 bits, the lowest first.
-  localparam int Settings = 14;
+  localparam int Settings = 15;
   localparam int ControlSetting = 0;
   localparam int ThresholdSetting = 1;
   localparam int TimeoutSetting = 2;
@@ -174,18 +176,19 @@ package td_register_map_pkg;
   localparam int InterruptMaskSetting = 11;
   localparam int PitchSetting = 12;
   localparam int LightSetting = 13;
+  localparam int SlopeLimitSetting = 14;
   localparam logic [32*Settings-1:0] SettingOffsets = {
-    LightOffset, PitchOffset, InterruptMaskOffset, ZeroCaptureOffset, AreaThresholdOffset, DebounceOffset,
-    MinimumAreaOffset, OffThresholdOffset, ReferenceCaptureOffset, DarkLevelOffset, TableSelectOffset,
-    TimeoutOffset, ThresholdOffset, ControlOffset
+    SlopeLimitOffset, LightOffset, PitchOffset, InterruptMaskOffset, ZeroCaptureOffset, AreaThresholdOffset,
+    DebounceOffset, MinimumAreaOffset, OffThresholdOffset, ReferenceCaptureOffset, DarkLevelOffset,
+    TableSelectOffset, TimeoutOffset, ThresholdOffset, ControlOffset
   };
   localparam logic [32*Settings-1:0] SettingMasks = {
-    32'h00000071, 32'hffffffff, 32'h00000003, 32'h0000000f, 32'hffffffff, 32'h000000ff, 32'hffffffff, 32'hffffffff,
-    32'h0000000f, 32'h000000ff, 32'h00000003, 32'hffffffff, 32'hffffffff, 32'h00000005
+    32'h000000ff, 32'h00000071, 32'hffffffff, 32'h00000003, 32'h0000000f, 32'hffffffff, 32'h000000ff, 32'hffffffff,
+    32'hffffffff, 32'h0000000f, 32'h000000ff, 32'h00000003, 32'hffffffff, 32'hffffffff, 32'h00000005
   };
   localparam logic [32*Settings-1:0] SettingResets = {
-    32'h00000001, 32'h00000000, 32'h00000000, 32'h00000000, 32'h00000000, 32'h00000001, 32'h00000001, 32'h7fffffff,
-    32'h00000000, 32'h00000000, 32'h00000000, 32'h00000000, 32'h7fffffff, 32'h00000000
+    32'h000000ff, 32'h00000001, 32'h00000000, 32'h00000000, 32'h00000000, 32'h00000000, 32'h00000001, 32'h00000001,
+    32'h7fffffff, 32'h00000000, 32'h00000000, 32'h00000000, 32'h00000000, 32'h7fffffff, 32'h00000000
   };
 
   // Offsets that can be read, and those that can be written.
@@ -203,7 +206,8 @@ package td_register_map_pkg;
       ZeroCaptureOffset, InterruptStatusOffset, InterruptMaskOffset, ArrivedOffset,
       RecordFlagsOffset, RecordLightOffset, RecordPixelsOffset, TableSignatureOffset,
       ArithmeticOffset, DeviceOffset, DepthUnitOffset, SlopeUnitOffset, PitchOffset,
-      LightOffset, LightGainRedOffset, LightGainGreenOffset, LightGainBlueOffset, SelfTestOffset: is_register = 1'b1;
+      LightOffset, LightGainRedOffset, LightGainGreenOffset, LightGainBlueOffset,
+      SelfTestOffset, SlopeLimitOffset: is_register = 1'b1;
       default: is_register = 1'b0;
     endcase
   endfunction
@@ -213,7 +217,8 @@ package td_register_map_pkg;
       TableIndexOffset, TableHighOffset, TableLowOffset, TableCommitOffset, DarkLevelOffset,
       ReferenceCaptureOffset, OffThresholdOffset, MinimumAreaOffset, DebounceOffset,
       AreaThresholdOffset, ZeroCaptureOffset, InterruptStatusOffset, InterruptMaskOffset,
-      PitchOffset, LightOffset, LightGainRedOffset, LightGainGreenOffset, LightGainBlueOffset: is_writable = 1'b1;
+      PitchOffset, LightOffset, LightGainRedOffset, LightGainGreenOffset, LightGainBlueOffset,
+      SlopeLimitOffset: is_writable = 1'b1;
       default: is_writable = 1'b0;
     endcase
   endfunction

@@ -45,6 +45,7 @@ module video_unit
   output logic        pixel_frame_end,
   output logic        pixel_bad,
   output logic        pixel_test,
+  output logic        resumed,    // pixels were dropped before the frame that pixel_frame_end ended last
 
   output logic [31:0] now,        // cycles since reset
   output logic [31:0] frame_time  // `now` when the first pixel of this frame was taken
@@ -81,12 +82,15 @@ module video_unit
   );
 
   logic taking;  // a frame has begun and not ended
+  logic hunted, frame_resumed;  // in the cycle before; of the frame that comes
   logic [31:0] arrival_time;
   assign busy = held_valid | pixel_frame_start | taking;
   always_ff @(posedge clk) begin
     now <= now + 32'd1;
     if (s_axis_tvalid && s_axis_tready && s_axis_tuser) arrival_time <= now;
-    if (en && pixel_frame_start) frame_time <= arrival_time;
+    if (en) hunted <= hunting;
+    if (en && pixel_frame_start) {frame_time, frame_resumed} <= {arrival_time, hunted};
+    if (en && pixel_frame_end) resumed <= frame_resumed;
     if (en) taking <= (pixel_frame_start | taking) & ~pixel_frame_end;
     if (rst) begin
       now <= '0;

@@ -11,27 +11,32 @@ from tb.lockstep import WORD, Pins, play
 from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
-# Two frames in flight, one, exactly two, four; the first again, for mutants.
-built = of_parameters("Width Latency Pixels")
+# Two frames in flight, one, exactly two, four, and a place more since a part is kept; the first again, for mutants.
+built = of_parameters("Width LateWidth Latency Keep Pixels")
 STRUCTURES = (
-    built(33, 37, 24, on=VERILATOR),
-    built(4, 9, 16, on=ICARUS),
-    built(33, 32, 16),
-    built(33, 50, 13),
-    built(4, 9, 6, mutants=ICARUS),
+    built(33, 7, 37, 5, 24, on=VERILATOR),
+    built(4, 7, 9, 6, 16, on=ICARUS),
+    built(33, 7, 30, 2, 16),
+    built(33, 96, 50, 12, 13),
+    built(4, 3, 10, 3, 6, mutants=ICARUS),
+    built(4, 3, 9, 6, 16, mutants=ICARUS),
 )
 PROOFS = tuple(
-    Proof(f"one, two and three places; {WORD_FREE}", {"Latency": latency, "Pixels": pixels})
-    for latency, pixels in ((3, 4), (5, 4), (7, 3))
+    Proof(
+        f"one, two and three places; {WORD_FREE}",
+        {"Width": 1, "LateWidth": 1, "Latency": latency, "Keep": keep, "Pixels": pixels},
+    )
+    for latency, keep, pixels in ((3, 1, 4), (4, 2, 4), (7, 2, 3))
 )
 
 
 @cocotb.test()
 async def tags(dut: Any) -> None:
-    latency, pixels = parameters(dut, "Latency", "Pixels")
+    latency, keep, pixels = parameters(dut, "Latency", "Keep", "Pixels")
 
     def legal(model: FrameTags, pins: Pins) -> None:
         """Push no sooner than a frame behind the last push."""
-        pins["push"] &= all(model.now >= due - latency + pixels for due in model.due_clock)
+        pins["push"] &= model.pushed is None or model.now >= model.pushed.due + pixels - latency
 
-    await play(dut, FrameTags(latency), {"en": 1.0, "push": 1.0, "tag": WORD}, legal)
+    choices = {"en": 1.0, "push": 1.0, "tag": WORD, "marked": 0.3, "late": 0.5, "late_part": WORD, "mark": 0.1}
+    await play(dut, FrameTags(latency, keep), choices, legal)

@@ -29,7 +29,8 @@ PROTOCOL = {
     "raster_places": {},
     "in_position": "place",
     "counts": "live & ~reset & en",
-    "gains": "live",
+    "gains used": "live",
+    "moves": "live & in_valid & in_position[3] & in_position[2]",
     "saturations": "live & ~reset",
     "out_position out_red out_green out_blue": "counts & out_valid",
 }

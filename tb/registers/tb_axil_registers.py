@@ -114,6 +114,7 @@ class Registers:
             "contact_settings": pack("contact_settings_t", contact),
             "timeout": values["TIMEOUT"],
             "dark_level": values["DARK_LEVEL"],
+            "slope_limit": values["SLOPE_LIMIT"],
             "irq": self.model.events.irq,
         }
 

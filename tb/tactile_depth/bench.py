@@ -190,7 +190,7 @@ class Pipeline:
     def depth_of(self, *frames: Stream) -> np.ndarray:
         """Return the expected depth codes (frames, rows, columns) of whole frames."""
         words = [[word.data for word in frame if word is not None] for frame in frames]
-        return self.scoreboard.model(words, self.tables.content)[0]
+        return self.scoreboard.model(words, self.tables.content)
 
     async def hold_light(self) -> None:
         """Hold the light gains as they are, in a build with light gains."""

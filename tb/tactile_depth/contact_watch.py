@@ -10,6 +10,7 @@ from cocotb.triggers import RisingEdge
 
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.contact_events import ContactEvents, Settings, record
+from tactile_depth.chip.contact.frame_flags import FrameFlags
 from tactile_depth.chip.contact.threshold_comparator import ThresholdComparator
 from tactile_depth.chip.latency import last_pixel_to_first_depth
 from tactile_depth.chip.registers.register_map import MAP, REGISTERS
@@ -152,7 +153,9 @@ class ContactWatch:
                 await edge
             assert dut.rst.value or (held is None and not words), "a record ended early"
 
-    def check_events(self, depth: np.ndarray, taken: Sequence[int]) -> None:
+    def check_events(
+        self, depth: np.ndarray, taken: Sequence[int], flags: Sequence[FrameFlags], beside: Sequence[bool]
+    ) -> None:
         """Compare the record of each frame with the model's.
 
         Parameters
@@ -160,14 +163,19 @@ class ContactWatch:
         depth : int64 array (frames, rows, columns)
         taken : sequence of int
             Clock of the first pixel of each frame.
+        flags : sequence of FrameFlags
+            Those of each frame as if it were alone.
+        beside : sequence of bool
+            The solver clipped in a frame that was in the pipeline beside this one, so it may have set its flag.
         """
+        records = [record(words) for words in self.packets]
         columns, wanted = self.config.columns, []
-        for codes, settings in zip(depth, self.settings, strict=True):
+        for codes, settings, own, may, made in zip(depth, self.settings, flags, beside, records, strict=True):
+            expected = own._replace(depth_clipped=own.depth_clipped or (may and made.flags.depth_clipped))
             for place, code in enumerate(codes.flat):
                 row_ends, frame_ends = place % columns == columns - 1, place == self.pixels - 1
-                made = self.events.beat(int(code), not place, row_ends, frame_ends, settings, 0)
-            wanted.append(made)
-        records = [record(words) for words in self.packets]
+                event = self.events.beat(int(code), not place, row_ends, frame_ends, settings, 0, expected)
+            wanted.append(event)
         assert [made._replace(time=0) for made in records] == wanted, "records of contact events"
         times = [made.time for made in records]
         assert [time - times[0] for time in times] == [clock - taken[0] for clock in taken], "time stamps"

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass
-from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -14,11 +14,12 @@ import numpy as np
 from tactile_depth.chip.common.td_frame_size import FrameSize
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.contact.frame_flags import FrameFlags
+from tactile_depth.chip.gradient.frame_marks import NO_LIMIT
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
 from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
-from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.chip.tactile_depth import slopes_and_light, solve, zeroed
+from tactile_depth.chip.tactile_depth import depth_and_flags
 from tactile_depth.chip.video.frame_guard import Frame, Guarded, frame_guard
 from tb.axil import RegisterClient
 from tb.axis import AxisMonitor
@@ -29,6 +30,8 @@ from tb.tactile_depth.device_tables import Content
 
 STATUS, ARRIVED = REGISTERS["STATUS"], REGISTERS["ARRIVED"]
 STICKY = {"timed_out": "timeout"}  # names of faults and of status bits, where they differ
+Lit = tuple[np.ndarray | None, bool]
+"""Light gains of a frame, int64 (3,), None without, and whether the light moves."""
 COUNTERS = ("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "DARK_PIXELS", "DEPTH_DROPPED", "RECORDS_LOST")
 
 
@@ -40,6 +43,8 @@ class Checked:
     ----------
     codes : int64 array (frames, rows, columns)
         Depth of the frames that left.
+    flags : list of FrameFlags
+        Their flags, as if each was alone.
     faults : list of str
         Faults in their order.
     taken : list of (int, int)
@@ -49,6 +54,7 @@ class Checked:
     """
 
     codes: np.ndarray
+    flags: list[FrameFlags]
     faults: list[str]
     taken: list[tuple[int, int]]
     first_depths: list[int]
@@ -65,10 +71,12 @@ class Scoreboard:
         Bits of STATUS that are expected to be set.
     latency : int
         Expected value of FIRST_DEPTH_LATENCY, as measured at the pins.
-    dark_level : int
-        Value of the register that the next frames use.
+    dark_level, slope_limit : int
+        Values of the registers that the next frames use.
     hunting, size : bool, FrameSize
         State of the guard, and what ARRIVED shows.
+    beside : bool
+        The solver clipped in a self-test, whose flag frames beside it may have.
     light : LightFilter or None
         Light gains of the next frame, and how they follow; None in a build without.
     """
@@ -83,48 +91,37 @@ class Scoreboard:
         """Expect the state after a reset."""
         self.counters = dict.fromkeys(COUNTERS, 0)
         self.sticky: set[str] = set()
-        self.latency = self.dark_level = 0
-        self.hunting, self.size = False, FrameSize()
+        self.latency, self.dark_level, self.slope_limit = 0, 0, NO_LIMIT
+        self.hunting, self.size, self.beside = False, FrameSize(), False
         self.light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
 
-    def light_of(self, words: Any, content: Content, light: LightFilter | None, bad: bool = False) -> np.ndarray | None:
-        """Return the light gains, int64 (3,), of a frame of pixel words, and move them in `light`; None without."""
+    def light_of(self, words: Any, content: Content, light: LightFilter | None, bad: bool = False) -> Lit:
+        """Return the light of a frame of pixel words, whose gains move in `light`."""
         if light is None:
-            return None
+            return None, False
         assert content.slopes.gains is not None
         rgb = unpack(words).reshape(self.rows, self.columns, 3)
-        return light.take(content.slopes.gains.ratios(rgb, self.dark_level), bad)
+        return light.take(content.slopes.gains.ratios(rgb, self.dark_level), bad), light.moves
 
-    def before_the_zero(
-        self, words: Any, content: Content, monitor: Monitor | None = None, light: Any = None
-    ) -> np.ndarray:
-        """Return the depth codes (frames, rows, columns) of pixel words before the zero offset is subtracted.
+    def before_the_zero(self, words: Any, content: Content, light: LightFilter | None) -> np.ndarray:
+        """Return the depth codes (frames, rows, columns) of pixel words before the zero offset is subtracted."""
+        frames = [self.frame(each, content, self.light_of(each, content, light), Monitor()) for each in words]
+        return np.stack([depth for depth, _, _ in frames])
 
-        `light` are their light gains (frames, 3), by default those of a filter at reset.
-        """
-        rgb = unpack(words).reshape(-1, self.rows, self.columns, 3)
-        slopes, _ = slopes_and_light(rgb, self.config, content.slopes, monitor, self.dark_level, light)
-        return solve(divergence(slopes, self.config.neumann), self.config, monitor)
+    def frame(
+        self, words: Any, content: Content, light: Lit, monitor: Monitor, resumed: bool = False
+    ) -> tuple[np.ndarray, np.ndarray, FrameFlags]:
+        """Return the depth codes of a frame before and after the zero offset, and its flags as if it were alone."""
+        marks: dict[str, Any] = {"light": light[0], "light_moves": light[1], "resumed": resumed}
+        marks |= {"dark_level": self.dark_level, "limit": self.slope_limit, "zero": content.zero}
+        rgb = unpack(words).reshape(self.rows, self.columns, 3)
+        return depth_and_flags(rgb, self.config, content.slopes, monitor, **marks)
 
-    def model(
-        self, words: Any, contents: Content | Sequence[Content], lights: Sequence[Any] | None = None
-    ) -> tuple[np.ndarray, int]:
-        """Return the depth codes (frames, rows, columns) of pixel words, and the number of values clipped.
-
-        `contents` is the content of the tables, one for all frames or one for each. `lights` are the light gains of
-        each frame, by default those after a reset.
-        """
-        monitor = Monitor()
-        each = [contents] * len(words) if isinstance(contents, Content) else contents
-        if lights is None:
-            light = None if self.light is None else LightFilter(self.light.light)
-            lights = [self.light_of(frame, content, light) for frame, content in zip(words, each, strict=True)]
-        codes = [np.zeros((0, self.rows, self.columns), np.int64)]
-        for _, alike in groupby(zip(words, each, lights, strict=True), key=lambda frame: id(frame[1])):
-            some, (content, *_), gains = zip(*alike, strict=True)
-            before = self.before_the_zero(some, content, monitor, None if self.light is None else np.array(gains))
-            codes.append(zeroed(before, self.config, monitor, content.zero))
-        return np.concatenate(codes), monitor.saturations.total()
+    def model(self, words: Any, content: Content) -> np.ndarray:
+        """Return the depth codes (frames, rows, columns) of pixel words behind a reset."""
+        light = None if self.light is None else LightFilter(self.light.light)
+        each = [(frame, content, self.light_of(frame, content, light)) for frame in words]
+        return np.stack([self.frame(*frame, Monitor())[1] for frame in each])
 
     def frames(self, into: AxisMonitor, timeout: int) -> tuple[list[Frame], list[str]]:
         """Return the frames that the device has taken, and the faults."""
@@ -164,9 +161,9 @@ class Scoreboard:
                 if len(contents) > 1:
                     matching = []
                     for content in contents:
-                        gains = self.light_of(frame.pixels, content, copy(light))
-                        codes, _ = self.model([frame.pixels], content, [gains])
-                        matching += [content] if np.array_equal(codes[0], depth) else []
+                        lit = self.light_of(frame.pixels, content, copy(light))
+                        codes = self.frame(frame.pixels, content, lit, Monitor())[1]
+                        matching += [content] if np.array_equal(codes, depth) else []
                     contents = matching or contents
             self.light_of(frame.pixels, contents[0], light, frame.bad)
             chosen.append(contents[0])
@@ -181,17 +178,21 @@ class Scoreboard:
         it, and to the last depth of each frame of which no beat waited.
         """
         guarded = self.guarded(into, timeout)
-        frames, faults = guarded.frames, guarded.faults
+        frames, faults, hunting = guarded.frames, guarded.faults, self.hunting
         self.hunting = guarded.hunting if into.words else self.hunting
         for word in into.words:
             if word is not None:
                 self.size.take(word.last, word.user)
         each = [contents] * len(frames) if isinstance(contents, Content) else contents
-        lights = [self.light_of(f.pixels, content, self.light, f.bad) for f, content in zip(frames, each, strict=True)]
-        expected, clipped = self.model([frame.pixels for frame in frames], each, lights)
+        monitor, made = Monitor(), []
+        for number, (frame, content) in enumerate(zip(frames, each, strict=True)):
+            light = self.light_of(frame.pixels, content, self.light, frame.bad)
+            resumed = frame.resumed or (hunting and not number)
+            made.append(self.frame(frame.pixels, content, light, monitor, resumed))
+        clipped = monitor.saturations.total()
         good = [index for index, frame in enumerate(frames) if not frame.bad]
         codes = self.depth(out, len(good))
-        check_maps(codes, expected[good])
+        check_maps(codes, np.array([made[index][1] for index in good]).reshape(codes.shape))
         taken = [(into.taken[frame.first], into.taken[frame.last]) for frame in frames]
         first_depths, last_depths = out.offered[:: self.pixels], out.offered[self.pixels - 1 :: self.pixels]
         for place, (index, clock, end) in enumerate(zip(good, first_depths, last_depths, strict=True)):
@@ -203,13 +204,27 @@ class Scoreboard:
                 assert clock - last == last_pixel_to_first_depth(self.config), f"{clock - last} clocks from last pixel"
             if drained and not waited:
                 assert end - last == last_pixel_to_last_depth(self.config), f"{end - last} clocks to the last depth"
-        self.watch.check_events(codes, [taken[index][0] for index in good])
+        leaves = dict(zip(good, out.taken[self.pixels - 1 :: self.pixels], strict=True))
+        ends = [min((leaves[n] for n in good if n >= index), default=math.inf) for index in range(len(frames))]
+        flags = [made[index][2] for index in good]
+        beside = [
+            self.beside
+            or any(
+                made[n][2].depth_clipped and taken[n][0] <= leaves[index] and start <= ends[n] for n in range(len(made))
+            )
+            for index, start in ((index, taken[index][0]) for index in good)
+        ]
+        self.beside = False
+        self.watch.check_events(codes, [taken[index][0] for index in good], flags, beside)
         self.counters["FRAMES_IN"] += len(good)
         self.counters["FRAMES_OUT"] += len(good)
         self.counters["FRAMES_DROPPED"] += len(faults)
         self.counters["SATURATIONS"] += clipped
-        self.sticky |= {STICKY.get(fault, fault) for fault in faults} | ({"saturation"} if clipped else set())
-        return Checked(codes, faults, taken, first_depths)
+        dark = sum(own.dark for _, _, own in made)
+        self.counters["DARK_PIXELS"] += dark
+        self.sticky |= {STICKY.get(fault, fault) for fault in faults}
+        self.sticky |= {name for name, count in (("saturation", clipped), ("dark", dark)) if count}
+        return Checked(codes, flags, faults, taken, first_depths)
 
     async def check_registers(self, registers: RegisterClient, counters: bool = True) -> None:
         """Compare counters, status bits, settings and the latency that the hardware measured."""

@@ -62,7 +62,7 @@ STRUCTURES = (
         TRIDIAGONAL | {"rows": 21, "lanes": 2, "bits_per_channel": 2, "zero_offset": True},
         FORMATS,
     ),
-    built("tridiagonal-9x32-4-lanes-sensor", SENSOR | {"columns": 32}, FORMATS),
+    built("tridiagonal-9x32-8-lanes-cubic", SENSOR | {"columns": 32, "lanes": 8, "gradient_model": "cubic"}, FORMATS),
 )
 PROTOCOL = CLIENT | {
     "axis_source": {

@@ -8,6 +8,7 @@ import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.frame_marks import NO_LIMIT
 from tactile_depth.chip.registers.axil_port import Response, strobed_bits
 from tactile_depth.chip.registers.register_map import MAP, REGISTERS, TABLES
 from tb.axil import OFFSET, present, read, take, write
@@ -222,7 +223,8 @@ async def written_phase_by_phase(dut: Any) -> None:
         for name in WRITABLE:
             reached = pipeline.phases()
             assert phase in reached, f"the test is void: {name} is written in {reached}, not {phase}"
-            assert await pipeline.write(name, 0) == Response.OKAY, name
+            word = NO_LIMIT if name == "SLOPE_LIMIT" else 0
+            assert await pipeline.write(name, word) == Response.OKAY, name
         assert await pipeline.tables.write_entry("gradient", 0, *first) == Response.OKAY
 
     await write_all("idle")
@@ -260,6 +262,7 @@ async def written_in_every_phase(dut: Any, accepts: str) -> None:
         "OFF_THRESHOLD": lambda: REGISTERS["OFF_THRESHOLD"].reset,
         "MINIMUM_AREA": lambda: REGISTERS["MINIMUM_AREA"].reset,
         "DEBOUNCE": lambda: REGISTERS["DEBOUNCE"].reset,
+        "SLOPE_LIMIT": lambda: NO_LIMIT,
         "TIMEOUT": lambda: rng.randint(2, 300),  # no frame pauses
         "CONTROL": lambda: CONTROL.pack(hold_contact=rng.getrandbits(1)),
         "TABLE_SELECT": lambda: TABLES["gradient"],  # TABLE_LOW then writes an entry of the free bank

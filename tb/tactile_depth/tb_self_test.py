@@ -23,7 +23,7 @@ async def tested(pipeline: Pipeline) -> int:
     content, board, monitor = pipeline.tables.content, pipeline.scoreboard, Monitor()
     light = None if board.light is None else board.light.gains
     words = pack(picture(pipeline.rows, pipeline.columns)).ravel()
-    board.before_the_zero(words, content, monitor, None if light is None else light[None])
+    board.beside |= board.frame(words, content, (light, False), monitor)[2].depth_clipped
     assert signature == self_test(pipeline.config, content.slopes, content.zero, board.dark_level, light)
     clipped = monitor.saturations.total()
     board.counters["SATURATIONS"] += clipped

@@ -27,7 +27,6 @@ from tactile_depth.chip.common.td_frame_size import FrameSize
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.contact_events import ContactEvents, Settings
-from tactile_depth.chip.contact.frame_flags import FrameFlags
 from tactile_depth.chip.depth.zero_capture import captured_zero
 from tactile_depth.chip.gradient.flat_field import captured_gains, pixel_gains
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
@@ -35,7 +34,6 @@ from tactile_depth.chip.gradient.polynomial_gradient import coefficient_map
 from tactile_depth.chip.limits import CUBIC
 from tactile_depth.chip.link import device as link
 from tactile_depth.chip.link.device import LinkDevice
-from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.axil_port import Response
 from tactile_depth.chip.registers.axil_registers import RECORD, AxilRegisters, Build, Events, Live
 from tactile_depth.chip.registers.register_map import REGISTERS, TABLES
@@ -43,7 +41,7 @@ from tactile_depth.chip.registers.table_banks import CAPTURES
 from tactile_depth.chip.registers.table_signatures import REFERENCE, ZERO, TableSignatures, power_up_words
 from tactile_depth.chip.self_test import self_test
 from tactile_depth.chip.table_entries import one_word, reference_entries
-from tactile_depth.chip.tactile_depth import Tables, slopes_and_light, solve, top_parameters, zeroed
+from tactile_depth.chip.tactile_depth import Tables, depth_and_flags, top_parameters
 from tactile_depth.chip.video.frame_guard import FrameGuard, Word
 
 SETTINGS = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
@@ -121,6 +119,7 @@ class ModelDevice:
         self.captures: dict[str, list[np.ndarray]] = {}  # frames that are taken, by table
         self.wanted: dict[str, int] = {}  # frames of each capture
         self._frame: list[int] = []
+        self._resumed = False
         self.tested = 0  # signature of the last self-test
         self._size, self._guard = FrameSize(), FrameGuard(self.config.rows, self.config.columns)
 
@@ -201,11 +200,12 @@ class ModelDevice:
         guard, fault = self._guard, "start_early"
         self._size.take(word.last, word.user)
         while fault == "start_early":
+            hunted = guard.hunting
             fault = guard.take(word)
             if fault:
                 self._fault(fault)
             if guard.out.get("out_frame_start"):
-                self._frame = []
+                self._frame, self._resumed = [], hunted
                 self.registers.clock(Events(frame_start=True))
             if guard.out:
                 self._frame.append(guard.out["out_data"])
@@ -231,34 +231,25 @@ class ModelDevice:
 
     def _picture(self, picture: np.ndarray) -> None:
         config, monitor, tables = self.config, Monitor(), self._tables()
+        registers = {"dark_level": self.registers.values["DARK_LEVEL"], "limit": self.registers.values["SLOPE_LIMIT"]}
+        marks: dict[str, Any] = registers | {"resumed": self._resumed}
         if self.light is not None:
+            assert tables.gains is not None
             light = self.registers.values["LIGHT"]
             self.light.follow, self.light.rate = bool(light & 1), light >> 4 & 7
-        slopes, gains = slopes_and_light(picture[None], config, tables, monitor, light=self.light)
-        colours = monitor.saturations.total()
-        depth = solve(divergence(slopes, config.neumann), config, monitor)
-        solved = monitor.saturations.total()
-        self._capture("reference", picture)
-        self._capture("zero", depth[0])
+            marks["light"] = self.light.take(tables.gains.ratios(picture, registers["dark_level"]))
+            marks["light_moves"] = self.light.moves
         zero = self._zero() if config.zero_offset else None
-        codes = zeroed(depth, config, monitor, zero)[0]
+        depth, codes, flags = depth_and_flags(picture, config, tables, monitor, zero=zero, **marks)
+        self._capture("reference", picture)
+        self._capture("zero", depth)
         settings = Settings(*(signed(self.registers.values[name]) for name in SETTINGS))
-        marks = colours > 0, solved > colours, monitor.saturations.total() > solved, self._light_moves(gains), False
-        used = (0, 0, 0) if gains is None else tuple(gains[0].tolist())
-        dark = 0 if tables.gains is None else int(tables.gains.dark(picture).sum())
-        flags = FrameFlags(*marks, used, dark)
         record = self.events.whole_frame(codes, settings, int(time.monotonic() * 1e6) % (1 << 32), flags)
         self.record = record.words
         events_of_frame = frozenset({"frame_in", "frame_out", "record_valid"})
         for events in (Events(events_of_frame, saturations=sum(monitor.saturations.values())), Events()):
             self.registers.clock(events)
         self.link.offer(codes.astype(np.int32), record)
-
-    def _light_moves(self, used: np.ndarray | None) -> bool:
-        """Return True if the frame of these gains has moved one by 1/32 or more."""
-        if self.light is None or used is None:
-            return False
-        return bool((np.abs(self.light.gains - used[0]) >= self.light.light.unity >> 5).any())
 
     def _capture(self, name: str, frame: np.ndarray) -> None:
         if name not in self.captures:

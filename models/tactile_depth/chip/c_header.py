@@ -13,6 +13,7 @@ import numpy as np
 from tactile_depth.chip import registers
 from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.frame_marks import slope_limit
 from tactile_depth.chip.registers.axil_registers import Build
 from tactile_depth.chip.registers.event_registers import SELF_TEST
 from tactile_depth.chip.registers.register_map import MAP, REGISTERS, TABLES, WORD
@@ -103,10 +104,11 @@ def _device(calibration: Calibration, config: Configuration) -> str:
     device = REGISTERS["DEVICE"]
     mask = device.mask() & ~device.field("lanes").mask
     words = {"ID": REGISTERS["ID"].reset or 0, **build.description, "PITCH": build.parameters["PitchNm"]}
+    words["SLOPE_LIMIT"] = slope_limit(calibration, config)
     words["DEVICE"] &= mask
     return (
-        "/* Words that a device that fits shows; the word that is written to PITCH. */\n"
-        + "".join(define(name, word(words[name])) for name in (*SHOWN, "PITCH"))
+        "/* Words that a device that fits shows; the words that are written to PITCH and SLOPE_LIMIT. */\n"
+        + "".join(define(name, word(words[name])) for name in (*SHOWN, "PITCH", "SLOPE_LIMIT"))
         + define("DEVICE_MASK", word(mask))
     )
 

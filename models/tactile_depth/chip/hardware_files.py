@@ -14,6 +14,7 @@ from tactile_depth.chip import c_header
 from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.gradient.frame_marks import slope_limit
 from tactile_depth.chip.rom_files import table_files
 from tactile_depth.chip.self_test import built_in
 from tactile_depth.chip.tactile_depth import config_value, top_parameters, write_roms
@@ -63,7 +64,7 @@ def write_files(
     description = {
         "parameters": {"Config": config_value(fields)},
         "fields": fields,
-        "registers": dict(thresholds),
+        "registers": {**thresholds, "SLOPE_LIMIT": slope_limit(sensor, config)},
         "self_test": built_in(sensor, config, zero, gains),
         "grid": [config.rows, config.columns],
         "depth_lsb_mm": config.depth_lsb_px * sensor.pixel_pitch_mm,

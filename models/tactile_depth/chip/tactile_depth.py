@@ -20,6 +20,7 @@ from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.common import td_node_map
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.contact.frame_flags import FrameFlags
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.depth.zero_offset import no_zero, zero_offset
 from tactile_depth.chip.gradient.flat_field import (
@@ -31,6 +32,7 @@ from tactile_depth.chip.gradient.flat_field import (
     pixel_gains,
     reference_gains,
 )
+from tactile_depth.chip.gradient.frame_marks import MOST, NO_LIMIT, steep
 from tactile_depth.chip.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
 from tactile_depth.chip.gradient.polynomial_gradient import (
@@ -205,6 +207,40 @@ def slopes_and_light(
         light = (light or LightFilter(rule)).take_all(frames)
     deviation = rule.deviations(frames, light[..., None, None, :], monitor)
     return polynomial_gradient(deviation, tables.slopes, config, monitor, tables.corrections), light
+
+
+def depth_and_flags(
+    frame: np.ndarray,
+    config: Configuration,
+    tables: Tables,
+    monitor: Monitor,
+    *,
+    dark_level: int = 0,
+    zero: np.ndarray | None = None,
+    light: np.ndarray | None = None,
+    limit: int = NO_LIMIT,
+    light_moves: bool = False,
+    resumed: bool = False,
+) -> tuple[np.ndarray, np.ndarray, FrameFlags]:
+    """Return depth codes (rows, columns) of a frame, before and after the zero offset, and flags as if it were alone.
+
+    For `dark_level` and `zero` see `tactile_depth`; `light` are the light gains (3,) of the frame, `limit` is the value
+    of SLOPE_LIMIT.
+    """
+    own = Monitor()
+    lights = None if light is None else light[None]
+    slopes, _ = slopes_and_light(frame[None], config, tables, own, dark_level, lights)
+    colours_clipped = own.saturations.total()
+    depth = solve(divergence(slopes, config.neumann), config, own)
+    depth_clipped = own.saturations.total()
+    codes = zeroed(depth, config, own, zero)
+    clipped = own.saturations.total()
+    monitor.saturations += own.saturations
+    dark = 0 if tables.gains is None else int(np.count_nonzero(tables.gains.dark(frame, dark_level)))
+    red, green, blue = (0, 0, 0) if light is None else light.tolist()
+    above = int(np.count_nonzero(steep(slopes, limit, config)))
+    marks = colours_clipped > 0, depth_clipped > colours_clipped, clipped > depth_clipped, light_moves, resumed
+    return depth[0], codes[0], FrameFlags(*marks, (red, green, blue), min(dark, MOST), min(above, MOST))
 
 
 def light_of(

@@ -12,6 +12,7 @@ from tactile_depth.base.errors import Argument, InputError, InputWarning, is_num
 from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.chip.gradient.flat_field import require_light, untouched_of
+from tactile_depth.chip.gradient.frame_marks import slope_limit
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.chip.registers.register_map import REGISTERS
@@ -454,8 +455,9 @@ class Device(AbstractContextManager["Device"]):
 
     @property
     def _words(self) -> dict[str, int]:
-        """Words of the registers that depth and contact depend on."""
-        return {**thresholds_of(self._settings), "DARK_LEVEL": 0}
+        """Words of the registers that depth, contact and flags depend on."""
+        steepest = slope_limit(self.pipeline.sensor, self.pipeline.config)
+        return {**thresholds_of(self._settings), "SLOPE_LIMIT": steepest, "DARK_LEVEL": 0}
 
     def _check_window(self, line: Channel) -> None:
         """Warn once if what the device takes of its camera's pictures is not what the calibration is for."""

@@ -39,6 +39,8 @@ RATES = 8
 """Number of rates of the filter: a frame moves a gain by the mean over 2**rate."""
 ROUNDS = 40
 """Largest number of rounds of `settled`, four times as many as light between 1/2 and 2 of the reference needs."""
+QUIET_LOG2 = 5
+"""-log2 of the move of a gain from which the gains do not fit the light."""
 SETTLED = 2.0**-18
 """Change of a gain at which `settled` stops: an eighth of the last bit of a gain."""
 
@@ -96,13 +98,13 @@ class Light:
         drop = self.ratio_fraction + self.gain_width - 1 - self.deviation.fraction
         return round_saturate(difference, drop, self.deviation.width, monitor, "light_gains")
 
-    def followed(self, deviations: np.ndarray, gains: np.ndarray, used: np.ndarray, rate: int = 0) -> np.ndarray:
-        """Return the gains, int64 (3,), that a frame of deviations (rows, columns, 3) moves `gains` to.
+    def move(self, deviations: np.ndarray, used: np.ndarray, rate: int = 0) -> np.ndarray:
+        """Return what a frame takes off the gains, int64 (3,), from the deviations of all rows but its last.
 
         The frame has the gains `used`. Where they are below 7/8 they move half as far: in more light a gain that moved
         by the mean deviation would go beyond, and swing.
         """
-        counted = deviations[:-1].reshape(-1, 3)
+        counted = deviations.reshape(-1, 3)
         above, below = counted >= self.near, counted <= -self.near
         net = np.count_nonzero(above, axis=0) - np.count_nonzero(below, axis=0)
         near = ~np.any(above | below, axis=-1)
@@ -113,7 +115,11 @@ class Light:
             slow = rate + (used < self.unity - (self.unity >> NEAR_LOG2))
             fine = round_half_even(counted[near].sum(axis=0) >> slow, drop)
         coarse = np.sign(net) << (self.gain_width - 1 - NEAR_LOG2)
-        return self.limited(gains - np.where(np.abs(net) >= STEP_SHARE * self.pixels, coarse, fine))
+        return np.where(np.abs(net) >= STEP_SHARE * self.pixels, coarse, fine)
+
+    def is_far(self, move: np.ndarray) -> bool:
+        """Return True if a gain moves so far that the gains do not fit the light."""
+        return bool((move >> max(0, self.gain_width - 1 - QUIET_LOG2) != move >> self.gain_width).any())
 
 
 def settled(ratios: np.ndarray, light: Light) -> np.ndarray:
@@ -171,17 +177,21 @@ class LightFilter:
         The gains move; else they stay as they are.
     rate : int
         A frame moves a gain by the mean over 2**rate.
+    moves : bool
+        The gains did not fit the light of the last frame.
     """
 
     def __init__(self, light: Light, gains: np.ndarray | None = None, follow: bool = True, rate: int = 0) -> None:
-        self.light, self.follow, self.rate = light, follow, rate
+        self.light, self.follow, self.rate, self.moves = light, follow, rate, False
         self.gains = np.full(3, light.unity, np.int64) if gains is None else gains
 
     def take(self, ratios: np.ndarray, bad: bool = False) -> np.ndarray:
         """Return the gains of a frame of ratios (rows, columns, 3), and move them for the next unless it is bad."""
         used = self.gains
+        move = self.light.move(self.light.deviations(ratios[:-1], used), used, self.rate)
+        self.moves = self.light.is_far(move)
         if self.follow and not bad:
-            self.gains = self.light.followed(self.light.deviations(ratios, used), used, used, self.rate)
+            self.gains = self.light.limited(used - move)
         return used
 
     def take_all(self, ratios: np.ndarray) -> np.ndarray:
@@ -224,7 +234,12 @@ class LightGains:
         """Advance by one clock edge; return the outputs before it, None where one does not count."""
         (_, _, _, clips), (valid, position, deviations, _) = self._pixels
         out: dict[str, int | None] = {"out_valid": valid, "saturations": self._clipped}
-        out["gains"] = joined(self._gains.tolist(), self.light.gain_width)
+        for name, gains in (("gains", self._gains), ("used", self.used)):
+            out[name] = joined(gains.tolist(), self.light.gain_width)
+        last = pins["in_valid"] and len(self.frame) == self.light.rows * self.light.columns - 1
+        if last:
+            move = self.light.move(np.array(self.frame[: self.light.pixels]), self.used, self._rates[1])
+            out["moves"] = self.light.is_far(move)
         if valid:
             out |= zip(("out_position", "out_red", "out_green", "out_blue"), (position, *deviations), strict=True)
         self._clipped = en and clips
@@ -234,10 +249,9 @@ class LightGains:
             if pins["in_valid"]:
                 pixel = self._take(pins["in_position"], [pins[f"in_{colour}"] for colour in ("red", "green", "blue")])
             self._pixels = [pixel, *self._pixels[:-1]]
-            if len(self.frame) == self.light.rows * self.light.columns:
+            if last:
                 if follow and not self._bad:
-                    frame = np.array(self.frame).reshape(self.light.rows, self.light.columns, 3)
-                    self._gains = self.light.followed(frame, self._gains, self.used, self._rates[1])
+                    self._gains = self.light.limited(self._gains - move)
                 self.frame, self._bad = [], 0
         written = self.light.limited(np.array(write_gain))
         self._gains = np.where([write >> c & 1 for c in range(3)], written, self._gains)

@@ -98,6 +98,7 @@ static inline int tactile_depth_load(
       result = tactile_depth_write_table(write, read, context, &tactile_depth_tables[place]);
   if (result == TACTILE_DEPTH_LOADED) {
     write(context, TACTILE_DEPTH_PITCH_ADDRESS, TACTILE_DEPTH_PITCH);
+    write(context, TACTILE_DEPTH_SLOPE_LIMIT_ADDRESS, TACTILE_DEPTH_SLOPE_LIMIT);
     write(context, TACTILE_DEPTH_TABLE_COMMIT_ADDRESS, commit & TACTILE_DEPTH_ALL_TABLES);
   }
   return result;

@@ -32,12 +32,15 @@ class Frame:
         True if the frame was broken; the pixels after the fault are filler.
     first, last : int
         Positions in the stream of the words of the first and of the last pixel.
+    resumed : bool
+        Words were dropped before it, or the frame before it was broken.
     """
 
     pixels: tuple[int, ...]
     bad: bool
     first: int
     last: int
+    resumed: bool = False
 
 
 @dataclass
@@ -161,20 +164,22 @@ def frame_guard(stream: Iterable[Word | None], rows: int, columns: int, timeout:
     timeout : int
         Cycles of silence allowed inside a frame; the frame is given up in the next one. 0: no limit.
     """
-    seen, core, first, last = Guarded(), FrameGuard(rows, columns), 0, 0
+    seen, core, first, last, resumed = Guarded(), FrameGuard(rows, columns), 0, 0, False
     for position, word in enumerate(stream):
         fault = "start_early"
         while fault == "start_early":
+            hunted = core.hunting
             fault = core.take(word, timeout)
             seen.faults += [fault] if fault else []
             if core.out:
-                first, last = position if core.out["out_frame_start"] else first, position
+                first, resumed = (position, hunted) if core.out["out_frame_start"] else (first, resumed)
+                last = position
                 seen.open.append(core.out["out_data"])
             while core.filling:
                 core.fill()
                 seen.open.append(core.out["out_data"])
             if "out_bad" in core.out:
-                seen.frames.append(Frame(tuple(seen.open), bool(core.out["out_bad"]), first, last))
+                seen.frames.append(Frame(tuple(seen.open), bool(core.out["out_bad"]), first, last, resumed))
                 seen.open = []
     seen.hunting = core.hunting
     return seen
