@@ -54,7 +54,7 @@ module device_bench
   );
 
   tactile_depth_device u_depth (
-    .clk, .rst, .cold_rst,
+    .clk, .rst, .cold_rst(1'b0),
     .s_axis_tdata(picture_tdata), .s_axis_tvalid(picture_tvalid), .s_axis_tready(picture_tready),
     .s_axis_tlast(picture_tlast), .s_axis_tuser(picture_tuser),
     .m_axis_tdata(depth_tdata), .m_axis_tvalid(depth_tvalid), .m_axis_tready(1'b1), .m_axis_tlast(depth_tlast),

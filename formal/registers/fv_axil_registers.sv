@@ -3,7 +3,8 @@
 // use.
 //
 // Nothing is assumed of the master, the pipeline, the tables or reset; the registers of the camera answer at their
-// offsets alone. The registers of the specification change by what was seen on the ports alone.
+// offsets alone. The registers of the specification change by what was seen on the ports alone; what table_signatures
+// answers is proven of itself.
 
 parameter int Polynomial = 0, Corrections = 0, Camera = 0, DepthMantissa = 24'hABCDEF, DepthExponent = -41,
     SlopeMantissa = 24'h812345, SlopeExponent = 3, PitchNm = 63400;
@@ -191,10 +192,12 @@ always_comb begin
   else if (read_offset == ReferenceCaptureOffset) begin
     word = averaged;
     word[ReferenceCaptureBusyBit] = reference_status.busy;
+    word[ReferenceCaptureHeldBit] = dut.signature_data[ReferenceCaptureHeldBit];
   end
   else if (read_offset == ZeroCaptureOffset) begin
     word = zero_averaged;
     word[ZeroCaptureBusyBit] = zero_status.busy;
+    word[ZeroCaptureHeldBit] = dut.signature_data[ZeroCaptureHeldBit];
   end
   else if (read_offset == DarkPixelsOffset) word = dark;
   else if (read_offset == DepthDroppedOffset) word = given_up;
@@ -208,6 +211,8 @@ always_comb begin
   else if (read_offset == InterruptStatusOffset) word = interrupts;
   else if (read_offset == InterruptMaskOffset) word = unmasked;
   else if (read_offset == DeviceOffset) word = 32'h0100011b | 32'(Polynomial * 36) | (value(DefaultConfig, GainWidthField) << DeviceGainWidthLsb);
+  else if (read_offset == TableSignatureOffset) word = dut.signature_data;
+  else if (read_offset == ArithmeticOffset) word = arithmetic(Config);
   else if (read_offset == DepthUnitOffset) word = {8'(DepthExponent), 24'(DepthMantissa)};
   else if (read_offset == SlopeUnitOffset) word = {8'(SlopeExponent), 24'(SlopeMantissa)};
   else if (read_offset == PitchOffset) word = width_nm;

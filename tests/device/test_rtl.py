@@ -4,6 +4,9 @@
 from __future__ import annotations
 
 import functools
+import os
+import signal
+import time
 
 import numpy as np
 import pytest
@@ -19,9 +22,12 @@ from tactile_depth.chip.link.depth_formats import (
     to_bytes,
     value_bytes,
 )
+from tactile_depth.chip.registers.register_map import TABLES
 from tactile_depth.chip.table_entries import reference_entries
 from tactile_depth.device import captures
 from tactile_depth.device.status import DeviceStatus
+from tactile_depth.device.tables import wait_in_use
+from tests.device.test_simulator import process_of
 from tests.real_data import FOLDER, needs_real_data
 
 GRID = (16, 32)
@@ -93,6 +99,36 @@ def test_the_table_of_a_capture_is_read_back() -> None:
         (frame,) = device.depth(sample.image)
     np.testing.assert_array_equal(words, reference_entries(gains)[:, 0])
     np.testing.assert_array_equal(frame.codes, captured(sample.image).codes)
+
+
+def test_a_device_knows_what_it_holds() -> None:
+    """It needs no load of what it is built for; an entry of another program, and a reset, are refused."""
+    sample = td.sample("ball")
+    pipeline, first = small(sample), r"call load\(\) first"
+
+    def require_refused(message: str) -> None:
+        for pictures in (sample.image, None):
+            with pytest.raises(td.DeviceError, match=f"{message}.*: {first}"):
+                next(device.depth(pictures))
+
+    with td.Device("sim", pipeline) as device:
+        (frame,) = device.depth(sample.image)
+        for name, word in (("TABLE_SELECT", TABLES["reference"]), ("TABLE_INDEX", 5), ("TABLE_LOW", 1 << 20)):
+            device.registers[name] = word
+        device.registers["TABLE_COMMIT.reference"] = 1
+        require_refused("about to change")
+        with device._open_line() as line:
+            wait_in_use(line, functools.partial(line.send, device._untouched))
+        require_refused(r"not those of this program \(reference\)")
+        device.load()
+        (loaded,) = device.depth(sample.image)
+        os.kill(process_of(device), signal.SIGUSR1)
+        time.sleep(0.3)
+        with pytest.raises(td.DeviceError, match="was reset"):
+            device.status()
+        require_refused("settings of the device are not those")
+    for each in (frame, loaded):
+        np.testing.assert_array_equal(each.codes, pipeline(sample.image).codes)
 
 
 @pytest.mark.parametrize("name", FORMATS)

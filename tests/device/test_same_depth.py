@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import itertools
 import re
-import time
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
@@ -25,13 +24,11 @@ from tactile_depth.depth.twin import Twin
 from tests.device.cable import Cable
 from tests.device.conftest import Plug
 from tests.device.test_device import require_equal, singles
-from tests.device.test_serial_line import until
 
 GRID = (24, 32)
 NAMES: tuple[DepthFormatName, ...] = get_args(DepthFormatName)
 LIGHTS = (0.9, 1.0, 1.05, 1.1, 1.2)
 FIRST = r"call load\(\) first"
-FOREIGN = r"tables of the device are not those of this program \("
 
 
 @pytest.fixture(scope="module")
@@ -247,98 +244,17 @@ def test_codes_that_are_received_are_those_of_words_in_each_format(name: DepthFo
     np.testing.assert_array_equal(got, np.rint(values / 256).clip(-32768, 32767) * 256)
 
 
-# Devices that do not hold what the pipeline has.
-
-
-@pytest.fixture(params=["single", "stream"])
-def depth(request: pytest.FixtureRequest, sample: td.Sample) -> Callable[[td.Device], list[td.DeviceFrame]]:
-    """Return a function that sends a press."""
-    pictures = [sample.image]
-    return lambda device: list(device.depth(pictures, stream=request.param == "stream"))
-
-
-Depth = Callable[[td.Device], list[td.DeviceFrame]]
-
-
-def test_a_device_that_was_never_loaded(cable: Cable, pipeline: td.Pipeline, depth: Depth) -> None:
-    with td.Device(cable.address, pipeline) as device:
-        for _ in range(2):
-            with pytest.raises(td.DeviceError, match=FIRST):
-                depth(device)
-        device.load()
-        assert len(depth(device)) == 1
-
-
-@pytest.mark.parametrize("loss", ["reset", "power_up"])
-def test_a_device_that_was_reset(loss: str, cable: Cable, device: td.Device, depth: Depth) -> None:
-    cable.serving.wanted.add(loss)
-    until(lambda: not cable.serving.wanted)
-    time.sleep(0.1)
-    with pytest.raises(td.DeviceError, match="was reset or lost its power"):
-        depth(device)
-    with pytest.raises(td.DeviceError, match=FIRST):
-        depth(device)
-    with pytest.raises(td.DeviceError, match=FIRST):
-        next(device.depth())
-    device.load()
-    assert len(depth(device)) == 1
-
-
-def test_a_device_that_lost_its_power_between_two_programs(cable: Cable, device: td.Device, depth: Depth) -> None:
-    device.close()
-    cable.serving.wanted.add("power_up")
-    until(lambda: not cable.serving.wanted)
-    with td.Device(cable.address, device.pipeline) as opened:
-        opened.set_thresholds()
-        with pytest.raises(td.DeviceError, match=f"{FOREIGN}coefficients, reference, zero.*{FIRST}"):
-            depth(opened)
-
-
-def test_a_device_that_is_opened_again_needs_no_load(cable: Cable, device: td.Device, depth: Depth) -> None:
-    device.close()
-    with td.Device(cable.address, device.pipeline) as opened:
-        assert len(depth(opened)) == 1
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_the_reference_of_another_program(
-    name: DepthFormatName, cable: Cable, pipeline: td.Pipeline, sample: td.Sample, depth: Depth
-) -> None:
-    other = td.Pipeline(sample.sensor, in_light(sample.reference, 0.8), grid=GRID, model="quadratic")
-    with td.Device(cable.address, other) as device:
-        device.load()
-    with td.Device(cable.address, pipeline, depth_format=name) as device:
-        with pytest.raises(td.DeviceError, match=rf"{FOREIGN}reference\): {FIRST}"):
-            depth(device)
-        device.load()
-        assert len(depth(device)) == 1
-
-
-def test_a_cable_that_is_pulled_during_a_load(device: td.Device, depth: Depth, monkeypatch: pytest.MonkeyPatch) -> None:
-    def pulled(*_: object, **__: object) -> None:
-        raise td.DeviceError("the port is gone")
-
-    with monkeypatch.context() as patch:
-        patch.setattr("tactile_depth.device.device.wait_in_use", pulled)
-        with pytest.raises(td.DeviceError, match="the port is gone"):
-            device.load()
-    for call in (depth, lambda device: next(device.depth())):
-        with pytest.raises(td.DeviceError, match=rf"about to change \(coefficients, reference, zero\): {FIRST}"):
-            call(device)
-    device.load()
-    assert len(depth(device)) == 1
-
-
-def test_a_capture_of_the_camera_is_not_known(steady: td.Pipeline, sample: td.Sample, plug: Plug, depth: Depth) -> None:
+def test_a_capture_of_the_camera_is_not_known(steady: td.Pipeline, sample: td.Sample, plug: Plug) -> None:
     ((_, camera),) = steady.reader.pictures(in_light(sample.reference, 0.9), "picture")[0]
     cable = plug(steady, camera=camera[None], camera_s=0.002)
     with td.Device(cable.address, steady) as device:
         device.load()
         device.capture_reference(frames=1)
         with pytest.raises(td.DeviceError, match=rf"the reference of the device is not known .*: {FIRST}"):
-            depth(device)
+            list(device.depth([sample.image]))
         with pytest.raises(td.DeviceError, match=FIRST):
             device.capture_zero(sample.reference)
+        assert next(device.depth()).codes.shape == steady.grid
 
 
 @pytest.fixture(scope="module")
@@ -393,14 +309,6 @@ def test_a_reference_of_the_camera_is_checked(
             next(device.depth())
         device.load()
         assert next(device.depth()).codes.shape == pipeline.grid
-
-
-def test_a_dark_level_that_a_program_left(device: td.Device, depth: Depth) -> None:
-    device.registers["DARK_LEVEL"] = 40
-    with pytest.raises(td.DeviceError, match=rf"\(DARK_LEVEL\): {FIRST}"):
-        depth(device)
-    device.load()
-    assert len(depth(device)) == 1
 
 
 def test_the_message_names_the_picture(cable: Cable, device: td.Device, sample: td.Sample) -> None:
