@@ -373,6 +373,6 @@ def test_an_evaluation_refuses_what_is_not_of_the_sensor(sensor: Any, folder: Pa
     with pytest.raises(InputError, match=r"presses has 0\.05 mm/pixel, which contradicts presses"):
         td.evaluate(replace(sensor, pixel_pitch_mm=PITCH / 2), folder)
     with pytest.raises(InputError, match="presses: none of 1 can be used: press 1: the edge of the picture cuts"):
-        td.evaluate(sensor, [td.BallPress(background, 6.0, (10, 50, 17))], background)
+        td.evaluate(sensor, [td.BallPress(pictures()["00.png"], 6.0, (10, 50, 17))], background)
     with pytest.warns(InputWarning, match="does not look like the sensor of presses"):
         td.evaluate(sensor, [td.BallPress(background, 6.0, (80, 50, 17))], background // np.array((1, 1, 3), np.uint8))

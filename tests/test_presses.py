@@ -251,6 +251,15 @@ def test_a_press_that_cannot_be_used_is_left_out(folder: Path, picture: Any, cha
     assert used(folder) == (23, [message])
 
 
+@pytest.mark.parametrize(("other", "named"), [("00.png", "00.png"), ("background.png", "the background")])
+def test_a_press_that_shows_what_another_picture_shows_is_left_out(folder: Path, other: str, named: str) -> None:
+    """The error of a fit is that of presses that it has not seen."""
+    pixels = np.array(Image.open(folder / other))
+    noise = np.random.default_rng(1).normal(0, 2, pixels.shape)
+    Image.fromarray(np.clip(pixels + noise, 0, 255).astype(np.uint8)).save(folder / "03.png")
+    assert used(folder) == (23, [f"03.png: it shows what {named} shows: left out"])
+
+
 def test_a_frame_that_is_missing_or_damaged_is_left_out(folder: Path) -> None:
     (folder / "03.png").unlink()
     (folder / "04.png").write_bytes((folder / "04.png").read_bytes()[:500])

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import importlib.util
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +35,8 @@ LEAST_LINEAR = 0.39
 SHARPEST_SOFT, EDGE_WIDTH, LEAST_WIDTH_PX = 0.4, 0.3, 4
 # Edge over soft radius, and distance of their centres over the soft radius. 45 presses of a Mini: 0.72 to 0.95, 0.27.
 EDGE_RADII, EDGE_CENTRE = (0.45, 1.6), 0.5
+# Width over height of found contacts, less 1. Real presses: 0.04, by the light; pixels 8 % narrower than high: 0.08.
+STRETCHED, FEWEST_STRETCHES = 0.06, 4
 SHORTEST_ARC = 0.3  # fraction of the circle that must be visible
 RAYS = 180
 
@@ -221,3 +224,14 @@ def _rough_circle(magnitude: np.ndarray, soft: Circle) -> Circle:
     best = (votes.max(axis=(1, 2)) / np.sqrt(radii)).argmax()
     row, column = np.unravel_index(votes[best].argmax(), votes[best].shape)
     return Circle(float(columns[column]), float(rows[row]), float(radii[best]))
+
+
+def stretched(stretches: Sequence[float]) -> list[str]:
+    """Return a line if contacts of balls are ellipses."""
+    if len(stretches) < FEWEST_STRETCHES or abs(stretch := float(np.median(stretches)) - 1) < STRETCHED:
+        return []
+    wider = "wider" if stretch > 0 else "narrower"
+    return [
+        f"contacts are {100 * abs(stretch):.0f} % {wider} than high, and those of balls are circles: if pixels are not "
+        "square, give pitch_mm=(height, width) of a pixel"
+    ]

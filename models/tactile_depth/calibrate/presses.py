@@ -15,7 +15,7 @@ from scipy.ndimage import map_coordinates
 
 from tactile_depth.base.errors import Argument, InputError, Part
 from tactile_depth.calibrate.ball_press import BallPress, Circle
-from tactile_depth.calibrate.circles import find_circle, require_circle_finder
+from tactile_depth.calibrate.circles import find_circle, require_circle_finder, stretched
 from tactile_depth.calibrate.press_folder import background_path, read_presses
 from tactile_depth.chip.camera_configuration import FORMATS, CameraChoice
 from tactile_depth.chip.configuration import COLOURS, Configuration
@@ -37,8 +37,9 @@ TOP_PX = 2  # radius of the top of a cap, in grid pixels
 # Standard deviation of the colours in the contacts, second over first principal axis. Colour pictures of 45 real
 # presses: 0.58; the same pictures in grey: 0.
 ALIKE = 0.1
-# Width over height of found contacts, less 1. Real presses: 0.04, by the light; pixels 8 % narrower than high: 0.08.
-STRETCHED, FEWEST_STRETCHES = 0.06, 4
+# Largest difference of two frames of one press, in grey levels. Noise of 4 levels in pixels of the camera: 10; the
+# nearest two of 45 real presses: 26.
+SAME_PRESS = 12
 
 
 @dataclass(frozen=True)
@@ -403,7 +404,7 @@ def to_grid(
     notes, agreement, stretches = list(pictures.notes), [], []
     geometry: list[tuple[GridPress, float]] = []
     circles: dict[str, Circle] = {}
-    frames: list[np.ndarray] = []
+    frames: dict[str, np.ndarray] = {}
     for press in pictures.presses:
         try:
             image = pictures.image(press)
@@ -422,6 +423,7 @@ def to_grid(
                 ball_px = f"radius {ball:.1f} pixels ({press.diameter_mm / 2:.2f} mm)"
                 raise InputError(f"{contact} does not lie on a ball of {ball_px}: diameter or pitch is wrong")
             at = _grid_press(press.name, circle, ball, sampler, grid, aspect)
+            frame = _new_frame(press.name, sampler.frame(image), {"the background": rest} | frames)
         except InputError as error:
             notes.append(str(InputError(f"{error}: left out")))
             continue
@@ -429,14 +431,14 @@ def to_grid(
             agreement.append(np.subtract(seen, given))
         geometry.append((at, press.diameter_mm))
         circles[press.name] = circle
-        frames.append(sampler.frame(image))
-    stack = np.array(frames, np.uint8).reshape(-1, *grid, 3)
+        frames[press.name] = frame
+    stack = np.array([*frames.values()], np.uint8).reshape(-1, *grid, 3)
     field, light = pixel_gains(gains, config), Light.of(config)
     codes, relative = field.codes(stack), field.ratios(stack)
     colours = light.deviations(relative, settled(relative, light)[:, None, None])
     views = tuple(View(*at, *parts) for at, *parts in zip(geometry, stack, codes, colours, strict=True))
     _require_colours(views, pictures.name)
-    notes += _stretched(stretches)
+    notes += stretched(stretches)
     differences = np.array(agreement).reshape(-1, 3)
     presses = GridPresses(pictures.name, views, background, rest, pitch_mm, sampler.scale, tuple(notes), differences)
     form = presses.pixel_format if choice is None else choice.pixel_format
@@ -451,6 +453,14 @@ def to_grid(
     )
 
 
+def _new_frame(name: str, frame: np.ndarray, seen: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return a frame; raise InputError if it shows what one of `seen` shows: a fit without it measures a press."""
+    same = (other for other, by in seen.items() if np.abs(frame.astype(np.int16) - by).max() <= SAME_PRESS)
+    if (other := next(same, None)) is not None:
+        raise InputError(f"{name}: it shows what {other} shows")
+    return frame
+
+
 def _require_colours(views: Sequence[View], name: str) -> None:
     """Raise InputError if all colours change alike in all contacts, as in grey pictures: they show no direction."""
     if not views:
@@ -460,17 +470,6 @@ def _require_colours(views: Sequence[View], name: str) -> None:
     if second < ALIKE * first:
         remedy = "give colour pictures of a gel that is lit in several colours"
         raise InputError(f"{name}: the colours of all presses change alike, as in grey pictures", remedy=remedy)
-
-
-def _stretched(stretches: Sequence[float]) -> list[str]:
-    """Return a line if contacts of balls are ellipses."""
-    if len(stretches) < FEWEST_STRETCHES or abs(stretch := float(np.median(stretches)) - 1) < STRETCHED:
-        return []
-    wider = "wider" if stretch > 0 else "narrower"
-    return [
-        f"contacts are {100 * abs(stretch):.0f} % {wider} than high, and those of balls are circles: if pixels are not "
-        "square, give pitch_mm=(height, width) of a pixel"
-    ]
 
 
 def _grid_press(
