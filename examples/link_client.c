@@ -24,11 +24,6 @@ enum { TRIES = 5 };
 enum { GAIN_OF_1 = 0x8000, LEAST_GAIN = 0x4000, LARGEST_GAIN = 0xFFFF }; /* of the light */
 enum { STILL = 4, MOST_PICTURES = 20 };  /* gains that move by less than 2^-13 have settled */
 
-/* What registers say: before a picture its light gains, behind it those that it moved them to. */
-struct seen {
-  uint32_t gains[3], saturations, dark, status;
-};
-
 static void open_line(struct link *l, const char *port)
 {
   struct termios line;
@@ -107,54 +102,54 @@ static void load(struct link *l, const uint8_t *picture)
   link_flush(l);
 }
 
-static struct seen look(struct link *l)
+/* Say how far the heights of the last frame hold: by its flags, and by STATUS. */
+static void say(const struct link *l, uint32_t pictures, const uint32_t *gains, int moved, uint32_t status)
 {
-  struct seen s;
-  uint32_t colour;
+  uint32_t flags = l->flags[0], dark = l->flags[2] & TACTILE_DEPTH_RECORD_PIXELS_DARK, steep = l->flags[2] >> 16, colour;
+  int is_clipped = (flags & (TACTILE_DEPTH_RECORD_FLAGS_COLOURS_CLIPPED | TACTILE_DEPTH_RECORD_FLAGS_DEPTH_CLIPPED |
+                             TACTILE_DEPTH_RECORD_FLAGS_ZERO_CLIPPED)) != 0;
+  int has_resumed = (flags & TACTILE_DEPTH_RECORD_FLAGS_RESUMED) != 0, is_limited = 0;
+  int has_faults = (status & (TACTILE_DEPTH_STATUS_OUT_OF_STEP | TACTILE_DEPTH_STATUS_DEPTH_DROPPED)) != 0;
 
+  fprintf(stderr, "picture sent %u times", pictures);
+  if (gains[0])
+    fprintf(stderr, ", light gains %.4f %.4f %.4f", gains[0] / (double)GAIN_OF_1, gains[1] / (double)GAIN_OF_1,
+            gains[2] / (double)GAIN_OF_1);
+  fprintf(stderr, "\n");
   for (colour = 0; colour < 3; colour++)
-    s.gains[colour] = link_read(l, TACTILE_DEPTH_LIGHT_GAIN_RED_ADDRESS + 4 * colour);
-  s.saturations = link_read(l, TACTILE_DEPTH_SATURATIONS_ADDRESS);
-  s.dark = link_read(l, TACTILE_DEPTH_DARK_PIXELS_ADDRESS);
-  s.status = link_read(l, TACTILE_DEPTH_STATUS_ADDRESS);
-  return s;
+    is_limited |= gains[colour] && (gains[colour] <= LEAST_GAIN || gains[colour] >= LARGEST_GAIN);
+  if (moved || is_limited || is_clipped || has_resumed || has_faults || dark || steep)
+    fprintf(stderr, "heights are uncertain:%s%s%s%s%s %u dark pixels, %u steeper than the calibration's\n",
+            moved ? " the light gains have not settled," : "", is_limited ? " the light is beyond the light gains," : "",
+            is_clipped ? " values were clipped," : "", has_resumed ? " pixels before it were dropped," : "",
+            has_faults ? " STATUS has faults," : "", dark, steep);
 }
 
-/* Send a picture until its light gains, which begin at 1, have settled; say what is uncertain of the last depth. */
+/* Send a picture until its light gains, which begin at 1, have settled: the frame has those that it moves on. */
 static void settle(struct link *l, const uint8_t *picture)
 {
-  struct seen before, after;
-  uint32_t pictures = 0, colour, moved, is_limited, faults;
+  uint32_t pictures = 0, gains[3] = {0}, colour, status;
+  int moved;
 
   for (colour = 0; colour < 3; colour++)
     link_write(l, TACTILE_DEPTH_LIGHT_GAIN_RED_ADDRESS + 4 * colour, GAIN_OF_1);
   link_write(l, TACTILE_DEPTH_LIGHT_ADDRESS, TACTILE_DEPTH_LIGHT_FOLLOW); /* with a rate of 0, at once */
-  after = look(l);
   do {
-    before = after;
-    link_write(l, TACTILE_DEPTH_STATUS_ADDRESS, before.status); /* what is 1 is cleared */
+    link_write(l, TACTILE_DEPTH_STATUS_ADDRESS, 0xFFFFFFFFu); /* what is 1 is cleared */
     link_flush(l);
     send_picture(l, picture);
-    after = look(l);
-    for (colour = moved = is_limited = 0; colour < 3; colour++) {
-      uint32_t one = before.gains[colour], next = after.gains[colour];
+    gains[0] = l->flags[0] >> 16; /* 0: a build without light gains */
+    gains[1] = l->flags[1] & TACTILE_DEPTH_RECORD_LIGHT_LIGHT_GAIN_GREEN;
+    gains[2] = l->flags[1] >> 16;
+    for (colour = 0, moved = 0; colour < 3; colour++) {
+      uint32_t next = link_read(l, TACTILE_DEPTH_LIGHT_GAIN_RED_ADDRESS + 4 * colour);
 
-      moved |= (one < next ? next - one : one - next) > STILL;
-      is_limited |= one && (one <= LEAST_GAIN || one >= LARGEST_GAIN); /* 0: a build without light gains */
+      moved |= (gains[colour] < next ? next - gains[colour] : gains[colour] - next) > STILL;
     }
+    status = link_read(l, TACTILE_DEPTH_STATUS_ADDRESS);
   } while (++pictures < MOST_PICTURES && moved && !l->failure);
-  if (l->failure)
-    return;
-  fprintf(stderr, "picture sent %u times", pictures);
-  if (before.gains[0])
-    fprintf(stderr, ", light gains %.4f %.4f %.4f", before.gains[0] / (double)GAIN_OF_1,
-            before.gains[1] / (double)GAIN_OF_1, before.gains[2] / (double)GAIN_OF_1);
-  fprintf(stderr, "\n");
-  faults = after.status & (TACTILE_DEPTH_STATUS_OUT_OF_STEP | TACTILE_DEPTH_STATUS_DEPTH_DROPPED);
-  if (moved || is_limited || faults || after.saturations != before.saturations || after.dark != before.dark)
-    fprintf(stderr, "heights are uncertain:%s%s%s %u values clipped, %u dark pixels\n",
-            moved ? " the light gains have not settled," : "", is_limited ? " the light is beyond the light gains," : "",
-            faults ? " STATUS has faults," : "", after.saturations - before.saturations, after.dark - before.dark);
+  if (!l->failure)
+    say(l, pictures, gains, moved, status);
 }
 
 /* Convert depth codes to heights in mm above the untouched surface: the mean depth that is not above the threshold. */

@@ -19,7 +19,7 @@ enum { LINK_ROWS = TACTILE_DEPTH_ROWS, LINK_COLUMNS = TACTILE_DEPTH_COLUMNS, LIN
 enum { LINK_ASK = 0x01, LINK_SELECT, LINK_READ, LINK_WRITE, LINK_PICTURE }; /* kinds of packets */
 enum { LINK_STATUS = 0x81, LINK_READ_REPLY = 0x83, LINK_WRITE_REPLY, LINK_DEPTH = 0x90, LINK_TRAILER = 0x98 };
 enum { LINK_VERSION = 2, LINK_WORDS = 1, LINK_HEADER = 9, LINK_MOST_ACCESSES = 128, LINK_MOST_PIXELS = 256 };
-enum { LINK_LONGEST_PIECE = 1398, LINK_LONGEST_BODY = 1388 };
+enum { LINK_LONGEST_PIECE = 1398, LINK_LONGEST_BODY = 1388, LINK_FLAGS = 66, LINK_TRAILER_BYTES = 78 };
 
 struct link {
   int in, out;                                /* file descriptors of the line */
@@ -35,7 +35,8 @@ struct link {
   uint32_t number, frames;                    /* number of the depth frame that comes; frames that came whole */
   uint8_t values[4 * LINK_PIXELS];            /* bytes of the frame that comes, */
   size_t count;                               /* and their number */
-  int32_t codes[LINK_PIXELS];                 /* of the last whole frame, rows from the top */
+  int32_t codes[LINK_PIXELS];                 /* of the last whole frame, rows from the top, */
+  uint32_t flags[3];                          /* and its RECORD_FLAGS, RECORD_LIGHT and RECORD_PIXELS */
 };
 
 static inline int64_t link_now_ms(void)
@@ -139,7 +140,7 @@ static inline void link_take_depth(struct link *l, size_t length)
     memcpy(l->values + first, body + LINK_HEADER, length - LINK_HEADER);
     l->count += length - LINK_HEADER;
   }
-  if (body[0] != LINK_TRAILER || body[7] != LINK_WORDS || (body[13] & 1) != l->bottom_first || l->count != size ||
+  if (body[0] != LINK_TRAILER || length != LINK_TRAILER_BYTES || body[7] != LINK_WORDS || (body[13] & 1) != l->bottom_first || l->count != size ||
       link_get(body + 9, 2) != LINK_ROWS || link_get(body + 11, 2) != LINK_COLUMNS ||
       link_get(body + 14, 4) != link_crc32(l->values, size))
     return;
@@ -149,6 +150,8 @@ static inline void link_take_depth(struct link *l, size_t length)
     row = l->bottom_first ? LINK_ROWS - 1 - row : row;
     l->codes[row * LINK_COLUMNS + place % LINK_COLUMNS] = (int32_t)((int64_t)value - sign);
   }
+  for (place = 0; place < 3; place++)
+    l->flags[place] = link_get(body + LINK_FLAGS + 4 * place, 4);
   l->frames++;
   l->count = 0;
 }

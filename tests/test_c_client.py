@@ -178,8 +178,8 @@ def test_each_run_gives_the_height_of_a_pipeline_in_other_light(tmp_path: Path, 
 @pytest.mark.parametrize(
     ("light", "choices", "text"),
     [
-        ((0.4, 0.4, 0.4), {}, "the light is beyond the light gains, 0 values clipped, 0 dark pixels"),
-        ((1.0, 1.0, 1.0), {"depth_range_mm": 0.5}, r"[1-9]\d* values clipped, 0 dark pixels"),
+        ((0.4, 0.4, 0.4), {}, "the light is beyond the light gains, 0 dark pixels, "),
+        ((1.0, 1.0, 1.0), {"depth_range_mm": 0.5}, "values were clipped, 0 dark pixels, "),
     ],
     ids=["dim", "deep"],
 )
@@ -189,7 +189,7 @@ def test_what_is_uncertain_is_printed(
     client = client_of(tmp_path, model="quadratic", **choices)
     client.show(np.rint(td.sample("ball").image * light).astype(np.uint8))
     ran = client.run(str(plug(client.pipeline).path))
-    assert re.search(f"\nheights are uncertain: .*{text}\n", ran.stderr), ran.stderr
+    assert re.search(f"\nheights are uncertain: .*{text}", ran.stderr), ran.stderr
 
 
 def test_heights_of_a_process_on_standard_input_and_output(client: Client, tmp_path: Path) -> None:
