@@ -32,7 +32,7 @@ module record_packets #(
   assign leaves = m_event_tvalid & m_event_tready;
   assign packet_ends = leaves & m_event_tlast;
   assign begins = waiting & (~m_event_tvalid | packet_ends);
-  assign m_event_tdata = 32'(packet >> {word, 5'd0});
+  assign m_event_tdata = packet[{word, 5'd0}+:32];
   assign m_event_tlast = word == WordWidth'(Words - 1);
   assign record_lost = new_valid & waiting & ~begins;
 

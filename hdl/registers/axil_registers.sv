@@ -212,6 +212,21 @@ module axil_registers
 
   localparam logic [31:0] ArithmeticWord = arithmetic(Config);
 
+  // Words of the record: the offsets of its registers differ modulo 128.
+
+  logic is_record;
+  logic [31:0] record_word;
+  logic [31:0][31:0] record_at;
+  assign record_word = is_record ? record_at[read_offset[6:2]] : '0;
+  always_comb begin
+    is_record = 1'b0;
+    record_at = '0;
+    for (int n = 0; n < RecordWords; n++) begin
+      is_record = is_record | (read_offset == RecordOffsets[32*n+:32]);
+      record_at[RecordOffsets[32*n+2+:5]] = record[32*n+:32];
+    end
+  end
+
   logic [31:0] word;  // that no core above holds, and signatures
   always_comb begin
     case (read_offset)
@@ -224,9 +239,7 @@ module axil_registers
       ArithmeticOffset: word = ArithmeticWord;
       default: word = signature_data;
     endcase
-    for (int n = 0; n < RecordWords; n++) begin
-      if (read_offset == RecordOffsets[32*n+:32]) word = word | record[32*n+:32];
-    end
+    word = word | record_word;
   end
   assign read_data = {word, 32'(gain_read), setting_data, event_data, bank_data, entry_data, camera_answer.data};
   assign read_refused = !(is_register(read_offset) || camera_answer.readable);
