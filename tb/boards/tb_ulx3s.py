@@ -13,6 +13,7 @@ import numpy as np
 from cocotb.triggers import ClockCycles, FallingEdge, ReadOnly, RisingEdge, Timer, ValueChange
 
 from commands.common.run_request import threshold_code
+from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.contact.contact_events import ContactEvents, Settings
 from tactile_depth.chip.link.depth_frames import DepthFrames
 from tactile_depth.chip.link.device import Build, LinkDevice
@@ -20,7 +21,7 @@ from tactile_depth.chip.link.framing import to_line
 from tactile_depth.chip.link.packets import MOST_PIXELS, Packet, PacketReader, Picture, RecordPacket, Status, Write
 from tactile_depth.chip.link.uart import BITS, transmit
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.chip.tactile_depth import tactile_depth
+from tactile_depth.chip.tactile_depth import depth_and_flags, slope_tables, tactile_depth
 from tactile_depth.chip.video.frame_guard import frame_guard
 from tactile_depth.sensor.scenes import render
 from tactile_depth.sensor.synthetic import synthetic
@@ -177,19 +178,22 @@ class Board:
         times = iter(self.starts)
         time_of = {index: next(times) for index, word in enumerate(words) if word.user}
         thresholds = [[self.setting(name, writes, frame.last) for name in THRESHOLDS] for frame in good]
-        return self.frames_of(pixels, thresholds, [time_of[frame.first] for frame in good])
+        resumed = [frame.resumed for frame in good]
+        return self.frames_of(pixels, thresholds, [time_of[frame.first] for frame in good], resumed)
 
-    def frames_of(self, pixels: np.ndarray, thresholds: Any, times: Any) -> list[tuple[np.ndarray, Any, bool]]:
-        """Return codes and record of each frame, and whether its light is on, from its thresholds and its time."""
-        depth = tactile_depth(pixels, synthetic(self.config.bits_per_channel), self.config)
+    def frames_of(
+        self, pixels: np.ndarray, thresholds: Any, times: Any, resumed: Any
+    ) -> list[tuple[np.ndarray, Any, bool]]:
+        """Return codes and record of each frame, and whether its light is on.
+
+        Thresholds, times and `resumed`, that pixels before it were dropped, are those of each frame.
+        """
+        tables = slope_tables(synthetic(self.config.bits_per_channel), self.config)
         events = ContactEvents(self.rows, self.columns, self.config.data_width, self.config.solver == "tridiagonal")
         expected = []
-        for codes, (on, off), time in zip(depth, thresholds, times, strict=True):
-            settings = Settings(on, off, 0, 1, 1)
-            for place, code in enumerate(codes.flat):
-                row_end = place % self.columns == self.columns - 1
-                record = events.beat(int(code), place == 0, row_end, place == codes.size - 1, settings, time)
-            assert record is not None
+        for frame, (on, off), time, late in zip(pixels, thresholds, times, resumed, strict=True):
+            _, codes, flags = depth_and_flags(frame, self.config, tables, Monitor(), resumed=late)
+            record = events.whole_frame(codes, Settings(on, off, 0, 1, 1), time, flags)
             expected.append((codes, record, bool((codes > on).any())))
         return expected
 

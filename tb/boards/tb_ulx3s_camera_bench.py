@@ -112,8 +112,10 @@ class CameraBoard(Board):
 
     def frames(self) -> Any:
         """Return what the models expect of each good picture so far."""
-        times = [time for index, time in enumerate(self.starts) if index not in self.dropped]
-        return self.frames_of(np.stack(self.pictures), self.thresholds, times)
+        whole = [index for index in range(len(self.starts)) if index not in self.dropped]
+        times = [self.starts[index] for index in whole]
+        resumed = [index - 1 in self.dropped for index in whole]
+        return self.frames_of(np.stack(self.pictures), self.thresholds, times, resumed)
 
     dropped: tuple[int, ...] = ()  # frames that begin and are not whole, by their number
 

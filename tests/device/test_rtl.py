@@ -7,6 +7,7 @@ import functools
 import os
 import signal
 import time
+import warnings
 
 import numpy as np
 import pytest
@@ -27,6 +28,7 @@ from tactile_depth.chip.table_entries import reference_entries
 from tactile_depth.device import captures
 from tactile_depth.device.status import DeviceStatus
 from tactile_depth.device.tables import wait_in_use
+from tests.device.test_device import require_flags
 from tests.device.test_simulator import process_of
 from tests.real_data import FOLDER, needs_real_data
 
@@ -149,6 +151,27 @@ def test_each_format_of_depth(name: DepthFormatName) -> None:
         assert frame.contact.record[3:-1] == result.contact.record[3:-1]
 
 
+def test_flags_of_frames() -> None:
+    """Send pictures in a light that changes, some of them too deep, with a dark corner."""
+    sample = td.sample("ball")
+    reference, brighter = sample.reference.copy(), np.rint(sample.image * 1.1).clip(0, 255).astype(np.uint8)
+    reference[:60, :80] = 1
+    pictures = [reference, sample.image, brighter, brighter]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        pipeline = td.Pipeline(sample.sensor, reference, grid=GRID, model="quadratic", depth_range_mm=0.5)
+        with td.Device("sim", pipeline) as device:
+            device.load()
+            frames = list(device.depth(iter(pictures)))
+        results = list(pipeline.stream(pictures))
+    for frame, result in zip(frames, results, strict=True):
+        require_flags(frame.flags, result)
+    assert [frame.flags.light_moves for frame in frames] == [False, False, True, False]
+    assert not frames[0].flags.depth_clipped
+    assert frames[1].flags[:3] == (True, True, True)
+    assert frames[0].flags.dark
+
+
 @needs_real_data
 def test_real_presses() -> None:
     """Load, capture reference and zero offset, send presses of a real sensor: each frame is that of the package."""
@@ -169,3 +192,4 @@ def test_real_presses() -> None:
     assert [frame.lost for frame in frames] == [0] * PRESSES
     for frame, result in zip(frames, captured.stream(presses), strict=True):
         assert seen(frame) == seen(result)
+        require_flags(frame.flags, result)
