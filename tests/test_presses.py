@@ -299,6 +299,13 @@ def test_unknown_columns_are_named_and_not_used(folder: Path) -> None:
     assert f"{folder}/presses.csv: unknown columns force_N: not used" in note
 
 
+def test_diameters_in_another_unit_are_doubted(folder: Path) -> None:
+    rows = table_rows()
+    write_table(folder, [row | {"diameter_mm": row["diameter_mm"] / 10} for row in rows])
+    note = "balls of 0.6 to 0.8 mm: diameter_mm is the diameter in millimetres"
+    assert used(folder) == (24, [f"{folder}/presses.csv: {note}"])
+
+
 def test_too_few_presses_are_said(folder: Path) -> None:
     write_table(folder, table_rows()[:5])
     assert "at least 8 and 2 are needed" in refused(lambda: fit_presses(read(folder)))

@@ -22,6 +22,7 @@ LARGEST_TABLE = 1 << 20  # bytes
 CIRCLE = ("centre_x_px", "centre_y_px", "contact_radius_px")
 DIAMETERS = ("diameter_mm", "ball_diameter_mm")
 BALL_RADIUS = "ball_radius_px"
+BALLS_MM = (1.0, 50.0)  # diameters that are likely; 6 mm in centimetres is less, in micrometres more
 HEAD = ("frame", DIAMETERS[0], *CIRCLE, BALL_RADIUS)
 KNOWN = ("frame", *DIAMETERS, *CIRCLE, BALL_RADIUS)
 
@@ -71,6 +72,9 @@ def read_presses(folder: Path, table: Path | None = None) -> tuple[list[BallPres
             notes.append(f"{path}: line {number} left out: {error}")
             continue
         presses[press.name] = press
+    balls = sorted(press.diameter_mm for press in presses.values())
+    if balls and not (BALLS_MM[0] <= balls[0] and balls[-1] <= BALLS_MM[1]):
+        notes.append(f"{path}: balls of {balls[0]:g} to {balls[-1]:g} mm: {diameter} is the diameter in millimetres")
     return [presses[name] for name in sorted(presses)], [str(InputError(note)) for note in notes]
 
 
