@@ -54,13 +54,14 @@ def dimmer(sample: td.Sample) -> np.ndarray:
 
 
 def program(address: str, sample: td.Sample, pictures: list[np.ndarray]) -> list[object]:
-    """Return all that a program reads of a device: heights, contacts, registers, status."""
+    """Return all that a program reads of a device: heights, contacts, flags, registers, status."""
     pipeline = small(sample)
     read: list[object] = []
     untouched = dimmer(sample)
     with td.Device(address, pipeline) as device:
         device.load()
-        read += [seen(frame) for frame in device.depth(pictures)]
+        frames = list(device.depth(pictures))
+        read += [*map(seen, frames), *(frame.flags for frame in frames)]
         device.capture_reference(untouched)
         device.capture_zero([untouched, untouched])
         device.set_thresholds(touch_mm=0.2, area_mm=0.4)
