@@ -231,9 +231,13 @@ always_comb begin
     word = camera_reads ? register_answer.data : '0;
   end
 end
+logic [31:0] held;
+assign held = 32'(read_offset == ReferenceCaptureOffset) << ReferenceCaptureHeldBit
+  | 32'(read_offset == ZeroCaptureOffset) << ZeroCaptureHeldBit;
 assign camera_writes = Camera != 0 && register_answer.writable;
 assign camera_reads = Camera != 0 && register_answer.readable;
 always_comb begin
+  if (read_offset != TableSignatureOffset) assume ((dut.signature_data & ~held) == '0);
   if (register_answer.writable) assume (register_command.write_offset >> 6 == 32'd4);
   if (register_answer.readable) assume (register_command.read_offset >> 6 == 32'd4);
   else assume (register_answer.data == '0);
