@@ -11,7 +11,7 @@ from formal.entries import Proof
 from tactile_depth.chip.common.signature import Captured
 from tactile_depth.chip.registers.register_map import WORD_BITS
 from tactile_depth.chip.registers.table_banks import CAPTURES
-from tactile_depth.chip.registers.table_signatures import REFERENCE, ZERO, TableSignatures
+from tactile_depth.chip.registers.table_signatures import GRADIENT, REFERENCE, ZERO, TableSignatures
 from tactile_depth.chip.rom_files import write_words
 from tb import structs
 from tb.lockstep import Pins, play
@@ -80,41 +80,62 @@ class Signatures:
         return {"read_data": shown.get(pins["read_offset"], 0)}
 
 
+class Writers:
+    """What writes tables for a while: the host, from the first entry of a table to the last, or a capture; or anything.
+
+    Attributes
+    ----------
+    kind : str
+        `host`, `reference`, `zero` or `any`.
+    """
+
+    def __init__(self, chance: random.Random) -> None:
+        self.chance, self.kind, self.left, self.in_use, self.table = chance, "any", 0, 0, 0
+        self.words = captured_words(chance)
+
+    def drive(self, signatures: Signatures, pins: Pins) -> None:
+        """Turn pins that may be anything into those of whatever writes, but for a few."""
+        chance = self.chance
+        if not self.left:
+            self.kind = chance.choice(("host", "host", "reference", "zero", "any"))
+            self.left, self.table = chance.randrange(20, 80), chance.choice((0, 0, 1, 2, 3))
+        self.left -= 1
+        stray = self.kind == "any" or chance.random() < 0.03
+        if stray or chance.random() < 0.05:
+            self.in_use = pins["table_in_use"]
+        pins["table_in_use"] = self.in_use
+        table = chance.randrange(4) if stray else self.table
+        upper = table == GRADIENT and not signatures.model._has_upper
+        if not stray:
+            pins["write"] = int(self.kind == "host" and chance.random() < 0.7)
+            pins["write_offset"], pins["write_mask"] = OFFSET["TABLE_HIGH" if upper else "TABLE_LOW"], STROBES[0]
+            for name in CAPTURES:
+                pins[f"{name}_captured"] = chance.choice(self.words) if name == self.kind else 0
+        writes = pins["write"] and pins["write_offset"] == OFFSET["TABLE_LOW"] and not pins["rst"]
+        index = chance.randrange(4) if stray and chance.random() < 0.3 else signatures.index
+        command = {"write": int(writes), "read": int(stray and chance.random() < 0.3), "select": table}
+        command |= {"index": index, "low": chance.getrandbits(32)}
+        pins["table_command"] = structs.pack("table_command_t", command)
+        if chance.random() < 0.7:
+            pins["read_offset"] = OFFSET["TABLE_SIGNATURE"] ^ (chance.random() < 0.2) << chance.randrange(2, 32)
+
+
 @cocotb.test()
 async def signatures(dut: Any) -> None:
-    has_file = bool(dut.File.value)
-    model = TableSignatures(WORDS if has_file else [0] * 8, int(dut.Side.value))
-    chance = random.Random(cocotb.RANDOM_SEED)
-    own = [OFFSET[name] for name in NAMES]
+    chance, own = random.Random(cocotb.RANDOM_SEED), [OFFSET[name] for name in NAMES]
+    writers = Writers(chance)
     pins = {
-        "write": 1.0,
-        "write_offset": own,
-        "write_mask": STROBES,
-        "read_offset": own,
-        "table": [0, 0, 1, 2, 3],
-        "astray": 0.05,
-        "lower": 1.0,
-        "reads": 0.05,
-        "cold_rst": 0.01,
+        **{
+            "write": 1.0,
+            "write_offset": own,
+            "write_mask": STROBES,
+            "read_offset": own,
+            "rst": 0.002,
+            "cold_rst": 0.002,
+        },
         "table_in_use": range(16),
-        "reference_captured": captured_words(chance),
-        "zero_captured": captured_words(chance),
+        "table_command": [0],
+        **{f"{name}_captured": writers.words for name in CAPTURES},
     }
-    far = [OFFSET["TABLE_SIGNATURE"] ^ 1 << bit for bit in range(2, 32)]
-
-    pins |= {"table_command": [0]}
-
-    def legal(signatures: Signatures, pins: Pins) -> None:
-        """Write TABLE_HIGH and TABLE_LOW of one entry after another, seldom anything else."""
-        astray, table, lower = pins.pop("astray"), pins.pop("table"), pins.pop("lower")
-        reads, data = pins.pop("reads"), chance.getrandbits(32)
-        if not astray:
-            pins["write_offset"] = OFFSET["TABLE_LOW" if lower else "TABLE_HIGH"]
-            pins["write_mask"] = STROBES[0]
-        pins["read_offset"] = chance.choice((OFFSET["TABLE_SIGNATURE"], pins["read_offset"], chance.choice(far)))
-        writes = pins["write"] and pins["write_offset"] == OFFSET["TABLE_LOW"] and not pins["rst"]
-        index = signatures.index ^ (astray and chance.randrange(4))
-        command = {"write": int(writes), "read": int(reads), "select": table, "index": index, "low": data}
-        pins["table_command"] = structs.pack("table_command_t", command)
-
-    await play(dut, Signatures(model), pins, legal)
+    model = TableSignatures(WORDS if dut.File.value else [0] * 8, int(dut.Side.value))
+    await play(dut, Signatures(model), pins, writers.drive)
