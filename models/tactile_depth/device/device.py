@@ -48,8 +48,8 @@ class Device(AbstractContextManager["Device"]):
     """Device with the pipeline, on a serial line, in a simulator or in a Zynq. Several may be open at once.
 
     After a DeviceError the next call works if its cause is gone. A device that was unplugged is opened anew. After a
-    reset of the device, or a loss of its power, call `load` again: its settings are those of power-up. Depth of other
-    tables or settings than the pipeline's is refused: that of pictures by the depth that the host computes of them.
+    reset of the device, or a loss of its power, call `load` again: its settings are those of power-up. Other tables and
+    settings than those of the pipeline, or of the device's own captures, are refused.
 
     Parameters
     ----------
@@ -83,6 +83,11 @@ class Device(AbstractContextManager["Device"]):
         configuration, or speaks another version of the link.
     DeviceError
         The port is in use or cannot be opened, the device does not answer, or pyserial or the simulator is missing.
+
+    Warns
+    -----
+    InputWarning
+        The reference or the zero offset in use comes from a capture before this program: it holds for the camera alone.
     """
 
     def __init__(self, address: str, pipeline: Pipeline, *, depth_format: DepthFormatName = "words") -> None:
@@ -266,7 +271,8 @@ class Device(AbstractContextManager["Device"]):
         InputError
             A picture is not accepted. A stream leaves out and counts one that gives no right depth.
         DeviceError
-            The device computes another depth than the pipeline: it needs `load`; or it does not answer.
+            The device has other tables or settings than the pipeline, or computes another depth: it needs `load`; or it
+        does not answer.
 
         Warns
         -----

@@ -124,7 +124,8 @@ class TableSignatures:
         steps = {each: (word.word, word.ends) for each, word in captured.items() if word.steps}
         if self._host is not None:
             table, word, lower = self._host
-            steps[table] = word | steps.get(table, (0, 0))[0], lower and first
+            other, ends = steps.get(table, (0, 0))
+            steps[table] = word | other, ends or (lower and first)
         if not steps:
             self._run = None if disturbed or self._run is None or self._lost(in_use) else self._run
             return None
@@ -134,12 +135,12 @@ class TableSignatures:
         for word, _ in steps.values():
             words |= word
         self._signature = signature_step(self._signature, words)
-        run, ends = self._run, any(end for _, end in steps.values())
+        run, ended = self._run, any(end for _, end in steps.values())
         if run is None or disturbed or self._lost(in_use) or {run[0]} != steps.keys():
             self._run = None
             return None
-        self._run = None if ends else run
-        return 2 * run[0] + run[1] if ends and stays else None
+        self._run = None if ended else run
+        return 2 * run[0] + run[1] if ended and stays else None
 
     def _lost(self, in_use: int) -> bool:
         """Return True if frames use the bank of the run."""
