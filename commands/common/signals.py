@@ -48,7 +48,8 @@ def end_children(known: Iterable[psutil.Process] = ()) -> None:
         for process in processes:
             with contextlib.suppress(psutil.Error):
                 process.send_signal(number)
-        while (processes := living(processes)) and time.monotonic() < deadline:
+        # The second search finds what a process has started and left during the first.
+        while (processes := living(processes) or living()) and time.monotonic() < deadline:
             time.sleep(0.02)  # psutil's own waiting would take the exit status from subprocess
 
 
@@ -85,7 +86,7 @@ def _guard(command: psutil.Process, run: str) -> None:
     with contextlib.suppress(psutil.Error):  # the command has ended
         while command.status() != psutil.STATUS_ZOMBIE and make in (0, command.ppid()):
             time.sleep(POLL_S)
-    while processes := living(of_run(run)):
+    while processes := living(of_run(run)) or living(of_run(run)):
         end_children(processes)
 
 

@@ -195,7 +195,7 @@ def test_grandchildren_end_and_those_that_ignore_sigterm_too() -> None:
 def test_a_child_of_a_child_that_ends_first_ends_too(monkeypatch: pytest.MonkeyPatch) -> None:
     """A shell that starts a program while it is ended leaves it without a parent, as iverilog may leave ivl."""
     monkeypatch.setenv(signals.RUN, f"{os.environ.get(signals.RUN, '')}/0-{os.getpid()}")
-    shell = "trap 'sleep 99 & exit' TERM; echo up; while :; do sleep 0.01; done"
+    shell = "trap 'sleep 99 & exit 0' TERM; echo up; while :; do sleep 0.01; done"
     with subprocess.Popen(["sh", "-c", shell], stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout.readline() == "up\n"  # type: ignore[union-attr]
         signals.end_children()
