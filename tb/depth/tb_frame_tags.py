@@ -38,5 +38,5 @@ async def tags(dut: Any) -> None:
         """Push no sooner than a frame behind the last push."""
         pins["push"] &= model.pushed is None or model.now >= model.pushed.due + pixels - latency
 
-    choices = {"en": 1.0, "push": 1.0, "tag": WORD, "marked": 0.3, "late": 0.5, "late_part": WORD, "mark": 0.1}
+    choices = {"en": 1.0, "push": 1.0, "tag": WORD, "marked": 0.3, "late": 0.5, "late_part": WORD, "mark": 0.03}
     await play(dut, FrameTags(latency, keep), choices, legal)
