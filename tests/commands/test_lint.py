@@ -187,7 +187,8 @@ def test_a_time_scale_of_the_user_gives_no_warning(tmp_path: Path, first: bool) 
 def test_waivers_fit_old_versions_and_paths_from_the_root() -> None:
     """Lint with paths that begin with hdl/, and keep what Verilator 5.006 does not know in a file of its own."""
     rules = {path.stem: set(re.findall(r"-rule (\w+)", path.read_text())) for path in repository.WAIVERS}
-    assert rules["verilator"] <= {"PINCONNECTEMPTY", "TIMESCALEMOD", "UNUSEDPARAM", "UNUSEDSIGNAL"}  # known to 5.006
+    known = {"PINCONNECTEMPTY", "TIMESCALEMOD", "UNOPTFLAT", "UNUSEDPARAM", "UNUSEDSIGNAL"}  # to 5.006
+    assert rules["verilator"] <= known
     assert not rules["verilator"] & rules["verilator_5038"]
     files = [path.relative_to(repository.ROOT) for path in (*repository.WAIVERS, *repository.sources())]
     command = [simulator.VERILATOR, "--lint-only", "-Wall", "--top-module", lint.TOP, *map(str, files)]
