@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import cocotb
+from cocotb_tools.runner import as_sv_literal
 
 from formal.entries import Proof
 from tactile_depth.chip.common.signature import Captured
@@ -35,7 +36,7 @@ def write_file(folder: Path) -> None:
 
 STRUCTURES = (
     Structure({"Side": 1}, on=VERILATOR, mutants=ICARUS),
-    Structure({"File": FILE, "Side": 4}, roms=write_file, on=ICARUS, mutants=ICARUS),
+    Structure({"File": as_sv_literal(FILE), "Side": 4}, roms=write_file, on=ICARUS, mutants=ICARUS),
 )
 PROTOCOL = {"counts": "live"}
 PROOFS = (Proof("any bank of any table, at the widths in use"),)
