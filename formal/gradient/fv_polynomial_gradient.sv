@@ -184,13 +184,13 @@ always_comb begin
   end
 end
 
-// The core's words of this polynomial and its differences. Those of rows are ahead of the polynomial above: the core
-// changes them from 2 enabled clocks behind a row's first pixel on, and loads them up to 8 behind a frame's, later by
-// the number of the colour.
+// The core's words of this polynomial and its differences. Those of rows move in the core's ring in the 6 enabled clocks
+// from the third behind a row's first pixel on, later by the number of the colour; the polynomial above takes them at
+// once, in the third of these clocks.
 logic core_named, core_bank, last_named;
 logic [WordWidth-1:0] core_word;
 logic [Total-1:0] core_value, core_step, core_second, core_third;
-logic [Total-1:0] core_row_value, core_row_step, core_row_second, core_value_rise, core_value_bend, core_step_rise;
+logic [5:0][Total-1:0] core_ring;
 assign core_named = dut.g_axis[Axis].g_colour[Colour].u_words.named;
 assign last_named = dut.g_axis[1].g_colour[2].u_words.named;
 assign core_bank = dut.g_axis[Axis].g_colour[Colour].u_words.bank;
@@ -199,18 +199,32 @@ assign core_value = dut.g_axis[Axis].g_colour[Colour].value;
 assign core_step = dut.g_axis[Axis].g_colour[Colour].step;
 assign core_second = dut.g_axis[Axis].g_colour[Colour].second;
 assign core_third = dut.g_axis[Axis].g_colour[Colour].third;
-assign core_row_value = dut.g_axis[Axis].g_colour[Colour].row_value;
-assign core_row_step = dut.g_axis[Axis].g_colour[Colour].row_step;
-assign core_row_second = dut.g_axis[Axis].g_colour[Colour].row_second;
-assign core_value_rise = dut.g_axis[Axis].g_colour[Colour].value_rise;
-assign core_value_bend = dut.g_axis[Axis].g_colour[Colour].value_bend;
-assign core_step_rise = dut.g_axis[Axis].g_colour[Colour].step_rise;
+assign core_ring = dut.g_axis[Axis].g_colour[Colour].ring;
 
-logic [4:2] new_frame, new_row;  // a first pixel is so many stages and those of its colour on, before its coefficient
-always_comb begin
-  for (int k = 2; k <= 4; k++) begin
-    new_frame[k] = |(first[ToValue-1:0] >> (k + Colour));
-    new_row[k] = |(other[ToValue-1:0] >> (k + Colour));
+// In the order D, A, B, E, H, F: differences of a frame's first row, of this row, of the next and of the last.
+logic [5:0][Total-1:0] of_frame, of_row, coming, gone;
+logic rising;  // the differences of this row are of use: no frame begins
+assign rising = known && first[ToValue-1:0] == '0;
+logic [4:2] new_frame;  // a frame's first pixel is so many stages and those of its colour on, before its coefficient
+assign of_frame = {wide[5], wide[6], wide[4], wide[1], wide[0], wide[2]};
+assign of_row = {value_bend, step_rise, value_rise, row_step, row_value, row_second};
+assign coming = {value_bend + wide[7], step_rise + wide[8], value_rise + value_bend, row_step + step_rise,
+    row_value + value_rise, row_second + wide[9]};
+assign gone = {value_bend - wide[7], step_rise - wide[8], value_rise - value_bend + wide[7], {3 * Total{1'b0}}};
+for (genvar k = 2; k <= 4; k++) assign new_frame[k] = |(first[ToValue-1:0] >> (k + Colour));
+for (genvar i = 0; i < 6; i++) begin : g_difference
+  always_comb begin
+    if (started && rising && line[7+Colour:3+Colour] == '0) stands: assert (core_ring[i] == of_row[i]);
+  end
+  for (genvar k = 3; k < 8; k++) begin : g_moved  // so many stages on, k - 2 of them have moved
+    localparam int Place = (i + k - 2) % 6;
+    localparam logic Moved = i + k - 2 >= 6, Taken = k > 4;
+    always_comb begin
+      if (started && rising && other[k+Colour]) begin
+        rises: assert (core_ring[i] == (Moved == Taken ? of_row[Place] : Moved ? coming[Place] : gone[Place]));
+      end
+      if (started && Moved && first[k+Colour]) loads: assert (core_ring[i] == of_frame[Place]);
+    end
   end
 end
 always_comb begin
@@ -227,30 +241,22 @@ always_comb begin
     if (asked || read_known) asked_then: assert ({dut.u_port.read_q, u_port.read_q} == {2{asked}});
     if (read_known) word_answered: assert (dut.u_port.answer == u_port.answer);
     frames_marked: assert (dut.first_q == first[9:0]);
-    rows_marked: assert (dut.row_q == other[5:0]);
+    rows_marked: assert (dut.row_q == line[9:0]);
     pixels_marked: assert (dut.valid_q == valid[Latency-2:0]);
 
-    if (known || new_frame[2]) begin
-      ahead_value: assert (core_row_value == (new_frame[2] ? wide[0] : row_value + (new_row[2] ? value_rise : '0)));
-    end
-    if (known || new_frame[3]) begin
-      ahead_step: assert (core_row_step == (new_frame[3] ? wide[1] : row_step + (new_row[3] ? step_rise : '0)));
-    end
-    if (known || new_frame[4]) begin
-      ahead_second: assert (core_row_second == (new_frame[4] ? wide[2] : row_second + (new_row[4] ? wide[9] : '0)));
-    end
+    // The words of a frame come early: T, by which the pixels before them no longer change.
+    if (new_frame[2]) third_comes: assert (core_third == wide[3]);
+    if (known && !new_frame[2]) third_stands: assert (core_third == third);
     if (known) begin
-      of_pixel: assert ({core_value, core_step, core_second, core_third} == {value, step, second, third});
-      if (first[ToValue]) loads_rise: assert (value_rise == wide[4]);
-      else rises: assert (core_value_rise == value_rise + (new_row[2] ? value_bend : '0));
-      if (first[ToValue+1:ToValue] != '0) loads_bend: assert (value_bend == wide[5]);
-      else bends: assert (core_value_bend == value_bend + (new_row[2] ? wide[7] : '0));
-      if (first[ToValue+2:ToValue] != '0) loads_step_rise: assert (step_rise == wide[6]);
-      else step_rises: assert (core_step_rise == step_rise + (new_row[3] ? wide[8] : '0));
+      value_of_pixel: assert (core_value == value);
+      if (!new_frame[4]) step_of_pixel: assert (core_step == step);
+      if (!new_frame[3]) second_of_pixel: assert (core_second == second);
+      if (first[7+Colour:ToValue] != '0) taken: assert (of_row == of_frame);
     end
   end
 end
 for (genvar t = 0; t < Terms; t++) begin : g_word
+  localparam int Read = 32'(40'h1_5_6_5_6_4_0_1_3_2 >> 4 * t) & 15;  // stages on, a line reads the word
   logic [WordWidth-1:0] core_word_0, core_word_1;  // of both banks
   assign core_word_0 = dut.g_axis[Axis].g_colour[Colour].u_words.g_bank[0].u_ram.g_distributed.words[t];
   assign core_word_1 = dut.g_axis[Axis].g_colour[Colour].u_words.g_bank[1].u_ram.g_distributed.words[t];
@@ -258,8 +264,8 @@ for (genvar t = 0; t < Terms; t++) begin : g_word
     banks_are_those: assert ({core_word_1, core_word_0} == {words_1[t], words_0[t]});
     if (started) begin
       if (in_frame) words_stay: assert (words[t] == (in_use ? words_1[t] : words_0[t]));
-      if (t < 7 && first[t+1+Colour]) word_of_frame: assert (core_word == words[t]);
-      if (t >= 7 && other[t-6+Colour]) word_of_row: assert (core_word == words[t]);
+      if (t < 7 && first[Read+1+Colour]) word_of_frame: assert (core_word == words[t]);
+      if (t >= 7 && rising && other[Read+1+Colour]) word_of_row: assert (core_word == words[t]);
     end
   end
 end

@@ -61,12 +61,15 @@ module polynomial_gradient
 
   localparam int Colours = 3;
   localparam int TermWidth = $clog2(Terms);
-  localparam int FrameTerms = 7;     // of a frame's first pixel: the others are of rows
   localparam int ToCoefficient = 6;  // cycles, of red; a cycle later that of green, then of blue
-  localparam int LastLoad = FrameTerms + 1 + Colours - 1;            // to the last word of a frame's first row
-  localparam int LastUpdate = Terms - FrameTerms + 1 + Colours - 1;  // of another row
-  localparam int ToSum = ToCoefficient + 3 + Colours - 1;            // operands, product, sum
-  localparam int CorrectionDelay = ToCoefficient + 1 - 4;            // to its product with the unit
+  localparam int Reads = 7;          // of words, from a row's first pixel on
+  localparam logic [Reads*TermWidth-1:0] FrameTerms = {4'd5, 4'd6, 4'd4, 4'd1, 4'd0, 4'd2, 4'd3};  // F to T
+  localparam logic [Reads*TermWidth-1:0] RowTerms = {4'd7, 4'd8, 4'd0, 4'd0, 4'd0, 4'd9, 4'd0};    // U, G, W
+  localparam int Differences = 6;    // of a row
+  localparam int ToFirst = 2;        // cycles to the first of them
+  localparam int ToLast = ToFirst + Differences + Colours - 1;
+  localparam int ToSum = ToCoefficient + 3 + Colours - 1;  // operands, product, sum
+  localparam int CorrectionDelay = ToCoefficient + 1 - 4;  // to its product with the unit
   localparam int TotalWidth = WordWidth + FineBits;
   localparam int ProductWidth = DeviationWidth + CoeffWidth;
   localparam int SumWidth = ProductWidth + 2;
@@ -76,12 +79,11 @@ module polynomial_gradient
   logic frame_start;
   logic [ToSum-1:0] valid_q;
   position_t [ToSum-1:0] position_q;
-  logic [LastLoad-1:0] first_q;  // it is the first of a frame
-  logic [LastUpdate-1:0] row_q;  // it is the first of another row
+  logic [ToLast-1:0] first_q, row_q;  // it is the first of a frame, of a row
   always_ff @(posedge clk) begin
     if (en) begin
-      first_q <= {first_q[LastLoad-2:0], frame_start};
-      row_q <= {row_q[LastUpdate-2:0], in_valid & ~in_position.first_row & in_position.first_column};
+      first_q <= {first_q[ToLast-2:0], frame_start};
+      row_q <= {row_q[ToLast-2:0], in_valid & in_position.first_column};
     end
     if (rst) {first_q, row_q} <= '0;
   end
@@ -131,19 +133,22 @@ module polynomial_gradient
       localparam int Polynomial = Colours * axis + colour;
       localparam int Before = colour == 0 ? Polynomial : Polynomial - 1;
 
-      // The words of this polynomial, one a cycle: at a frame's first pixel A to H; at other rows' U, G, W.
+      // The words of this polynomial, one a cycle: at a frame's first pixel T to F, at that of another row W, G and U.
+      // Of first pixels close together, where a frame was cut short, the last counts.
       logic [TermWidth-1:0] offset;  // of the entry on the bus
       logic own_entry, fetched;
       logic [WordWidth-1:0] word, free_word;
       logic [TermWidth-1:0] term;
       assign offset = TermWidth'(table_index - IndexWidth'(Terms * Polynomial));
       always_ff @(posedge clk) begin  // beside table_index
-        own_entry <= 32'(table_command.index) - $unsigned(Terms * Polynomial) < $unsigned(Terms);
+        own_entry <= IndexWidth'(table_command.index) - IndexWidth'($unsigned(Terms * Polynomial))
+            < IndexWidth'($unsigned(Terms));
       end
       always_comb begin
         term = '0;
-        for (int t = Terms - 1; t >= FrameTerms; t--) if (row_q[t-FrameTerms+colour]) term = TermWidth'(t);
-        for (int t = FrameTerms - 1; t >= 0; t--) if (first_q[t+colour]) term = TermWidth'(t);
+        for (int k = Reads - 1; k >= 0; k--) begin
+          if (row_q[k+colour]) term = TermWidth'((first_q[k+colour] ? FrameTerms : RowTerms) >> k * TermWidth);
+        end
       end
       td_banked_table #(
         .Width(WordWidth), .Depth(Terms), .Style(0), .File({TableFolder, "polynomial_", "0" + 8'(Polynomial), ".hex"})
@@ -151,43 +156,34 @@ module polynomial_gradient
         .clk, .rst, .en, .table_bank, .table_in_use(in_use[Polynomial]), .frame_start, .change(first_q[colour]),
         .read(1'b1), .read_address(term), .read_word(word),
         .free_write(table_write & own_entry), .free_write_address(offset), .free_write_word(table_word),
-        .free_read(table_read), .free_read_address(offset), .free_word
+        .free_read(table_read & own_entry), .free_read_address(offset), .free_word
       );
       always_ff @(posedge clk) fetched <= table_read & own_entry;
       assign fetched_words[Polynomial] = fetched ? free_word : '0;
 
-      // Along the raster, by differences: of a row's first pixel (row_), which are ready when it comes, and of the
-      // pixel; from row to row they rise by differences of their own.
-      logic begins_row;
-      assign begins_row = position_q[ToCoefficient-2+colour].first_column;
+      // Along the raster, by differences. Those of a row's first pixel are in a ring, in the order D, A, B, E, H, F.
+      // From row to row one a cycle rises by the one two behind it or by a word; a frame's first row takes words. A
+      // row's first pixel takes D, A and B while B is on its way into the ring.
       logic [TotalWidth-1:0] coarse, fine;  // the word, with all fraction bits
-      logic [TotalWidth-1:0] row_value, row_step, row_second, third, value, step, second;
-      logic [TotalWidth-1:0] value_rise, value_bend, step_rise;
+      logic [Differences-1:0][TotalWidth-1:0] ring;
+      logic [TotalWidth-1:0] rise, next, third, value, step, second;
+      logic loads, moves, by_word, begins_row;
+      assign begins_row = row_q[ToCoefficient-2+colour];
       assign coarse = TotalWidth'(word) << FineBits;
       assign fine = TotalWidth'($signed(word));
+      assign loads = |first_q[ToFirst+colour+:Differences];
+      assign moves = |row_q[ToFirst+colour+:Differences];
+      assign by_word = row_q[ToFirst+colour] | row_q[ToFirst+4+colour] | row_q[ToFirst+5+colour];
+      assign rise = by_word ? fine : ring[2];
+      assign next = loads ? coarse : ring[0] + rise;
       always_ff @(posedge clk) begin
         if (en) begin
-          if (first_q[1+colour]) row_value <= coarse;
-          if (first_q[2+colour]) row_step <= coarse;
-          if (first_q[3+colour]) row_second <= coarse;
-          if (first_q[4+colour]) third <= fine;
-          if (first_q[5+colour]) value_rise <= coarse;
-          if (first_q[6+colour]) value_bend <= coarse;
-          if (first_q[7+colour]) step_rise <= coarse;
-          if (row_q[1+colour]) begin
-            row_value <= row_value + value_rise;
-            value_rise <= value_rise + value_bend;
-            value_bend <= value_bend + fine;
-          end
-          if (row_q[2+colour]) begin
-            row_step <= row_step + step_rise;
-            step_rise <= step_rise + fine;
-          end
-          if (row_q[3+colour]) row_second <= row_second + fine;
+          if (moves) ring <= {next, ring[Differences-1:1]};
+          if (first_q[1+colour]) third <= fine;
           if (valid_q[ToCoefficient-2+colour]) begin
-            value <= begins_row ? row_value : value + step;
-            step <= begins_row ? row_step : step + second;
-            second <= begins_row ? row_second : second + third;
+            value <= begins_row ? ring[Differences-1] : value + step;
+            step <= begins_row ? next : step + second;
+            second <= begins_row ? ring[Differences-2] : second + third;
           end
         end
       end
