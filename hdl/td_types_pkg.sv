@@ -7,9 +7,6 @@
 
 package td_types_pkg;
 
-  // Memories of up to so many bits are distributed: LUTs are then cheaper than a block memory.
-  localparam int DistributedBits = 4096;
-
   // The position of a pixel, or of its slopes, in the frame.
   typedef struct packed {
     logic last_column;

@@ -2,6 +2,7 @@
 """Cost of a configuration against the RTL, elaborated and counted by Yosys, and against formulas of docs/results.md."""
 
 import json
+import re
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from commands.hardware import yosys
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.transform.sdf_fft import twiddle_stages
+from tactile_depth.chip.resources import LATE_BITS
 from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
 from tactile_depth.sensor.synthetic import synthetic
 
@@ -189,8 +191,15 @@ def test_blocks_of_an_ecp5(words: int, width: int, rom: bool, blocks: int) -> No
     assert ECP5.blocks(words, width, rom) == blocks
 
 
+@pytest.mark.parametrize(("device", "folder"), [(XCZU7EV, "hdl"), (ECP5, "boards/ecp5")], ids=str)
+def test_a_device_builds_memories_of_luts_up_to_the_size_in_its_package(device: Device, folder: str) -> None:
+    text = (repository.ROOT / folder / "td_memory_pkg.sv").read_text()
+    numbers = {name: int(value) for name, value in re.findall(r"localparam int (\w+) = (\d+);", text)}
+    assert numbers == {"DistributedBits": device.distributed_bits, "LateBits": LATE_BITS}
+
+
 @pytest.mark.parametrize(
-    ("device", "luts"), [(XCZU7EV, 340), (ECP5, 716)], ids=lambda value: getattr(value, "name", "")
+    ("device", "luts"), [(XCZU7EV, 340), (ECP5, 524)], ids=lambda value: getattr(value, "name", "")
 )
 def test_small_memories_are_as_many_luts_as_the_tools_give_them(device: Device, luts: int) -> None:
     """The figures are "memory" in the report of `make synth PRESET=published N=32 SOLVER=tridiagonal`."""

@@ -27,7 +27,7 @@ module td_ram #(
   localparam int Block = 16384;
   localparam int SliceWidth = Block >> AddressWidth;
 
-  if (Style == 0 || (Style == 3 && Width * Depth <= td_types_pkg::DistributedBits)) begin : g_distributed
+  if (Style == 0 || (Style == 3 && Width * Depth <= td_memory_pkg::DistributedBits)) begin : g_distributed
     (* ram_style = "distributed", no_rw_check *) logic [Width-1:0] words[Depth];
     if (File != "") begin : g_file
       initial $readmemh(File, words);

@@ -28,6 +28,8 @@ class Device:
     lut_inputs : int
     lut_rams : tuple of (int, int, int)
         Words, bits and LUTs of a memory built of LUTs, the smallest first.
+    distributed_bits : int
+        Of the largest memory that is built of LUTs by its size: `DistributedBits` of td_memory_pkg.sv.
     halves : bool
         Half of a block memory can be used by itself.
     """
@@ -41,6 +43,7 @@ class Device:
     ultra_shape: tuple[int, int] | None
     lut_inputs: int
     lut_rams: tuple[tuple[int, int, int], ...]
+    distributed_bits: int = DISTRIBUTED_BITS
     halves: bool = True
 
     def multipliers(self, a: int, b: int) -> int:
@@ -57,7 +60,7 @@ class Device:
         if array.style == ULTRA and self.ultra_shape:
             deep, wide = self.ultra_shape
             return {"ultra": math.ceil(array.words / deep) * math.ceil(array.width / wide), "block": 0.0}
-        built = array.style != DISTRIBUTED and (array.style != BY_SIZE or array.bits > DISTRIBUTED_BITS)
+        built = array.style != DISTRIBUTED and (array.style != BY_SIZE or array.bits > self.distributed_bits)
         return {"ultra": 0.0, "block": self.blocks(array.words, array.width, array.rom) if built else 0.0}
 
     def blocks(self, words: int, width: int, rom: bool = False) -> float:
@@ -92,5 +95,6 @@ ECP5 = Device(
     None,
     4,
     ((16, 4, 4),),
+    distributed_bits=1024,
     halves=False,
 )

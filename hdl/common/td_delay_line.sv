@@ -8,7 +8,8 @@
 
 module td_delay_line #(
   parameter int Width = 54,
-  parameter int Delay = 64
+  parameter int Delay = 64,
+  parameter int Style = 3  // of a memory, 0, 1 or 3: see td_ram.sv
 ) (
   input  wire              clk,
   input  wire              rst,
@@ -28,20 +29,29 @@ module td_delay_line #(
     end
     assign out = taps[Delay-1];
   end else begin : g_memory
-    // The word read now leaves the read register one cycle later: it is the one written Delay - 1 cycles ago.
-    localparam int AddressWidth = $clog2(Delay);
+    // The word read now leaves the read register one cycle later: it is the one written Depth - 1 cycles ago. A block
+    // memory is slow, so a register is behind it.
+    localparam bit Block = Style == 1 || (Style == 3 && Width * Delay > td_memory_pkg::DistributedBits);
+    localparam int Depth = Block ? Delay - 1 : Delay;
+    localparam int AddressWidth = $clog2(Depth);
     logic [AddressWidth-1:0] pointer;
     logic [AddressWidth-1:0] pointer_next;
-    assign pointer_next = (pointer == AddressWidth'(Delay - 1)) ? '0 : pointer + AddressWidth'(1);
-    td_ram #(.Width(Width), .Depth(Delay)) u_ram (
+    logic [Width-1:0] word;
+    assign pointer_next = (pointer == AddressWidth'(Depth - 1)) ? '0 : pointer + AddressWidth'(1);
+    td_ram #(.Width(Width), .Depth(Depth), .Style(Block ? 1 : 0)) u_ram (
       .clk          (clk),
       .write_en     (en),
       .write_address(pointer),
       .write_data   (in),
       .read_en      (en),
       .read_address (pointer_next),
-      .read_data    (out)
+      .read_data    (word)
     );
+    if (Block) begin : g_register
+      always_ff @(posedge clk) if (en) out <= word;
+    end else begin : g_straight
+      assign out = word;
+    end
     always_ff @(posedge clk) begin
       if (en) pointer <= pointer_next;
       if (rst) pointer <= '0;

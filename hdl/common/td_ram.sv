@@ -23,7 +23,7 @@ module td_ram #(
   output logic [Width-1:0]        read_data
 );
 
-  localparam int Built = Style != 3 ? Style : Width * Depth > td_types_pkg::DistributedBits ? 1 : 0;
+  localparam int Built = Style != 3 ? Style : Width * Depth > td_memory_pkg::DistributedBits ? 1 : 0;
 
   case (Built)  // not else if: Yosys' own front end would count that as a scope
     0: begin : g_distributed

@@ -19,7 +19,7 @@ module td_rom #(
   output logic [Width-1:0]        data
 );
 
-  if (Style == 0 || (Style == 3 && Width * Depth <= td_types_pkg::DistributedBits)) begin : g_distributed
+  if (Style == 0 || (Style == 3 && Width * Depth <= td_memory_pkg::DistributedBits)) begin : g_distributed
     (* rom_style = "distributed" *) logic [Width-1:0] words[Depth];
     initial $readmemh(File, words);
     always_ff @(posedge clk) if (en) data <= words[address];

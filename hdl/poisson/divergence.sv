@@ -30,6 +30,7 @@ module divergence
 );
 
   localparam int ColumnWidth = $clog2(Columns);
+  localparam int LineStyle = Width * Columns > td_memory_pkg::LateBits ? 1 : 0;
 
   logic [ColumnWidth-1:0] column, column_next, column_q;
   assign column = in_position.first_column ? '0 : column_next;
@@ -38,7 +39,7 @@ module divergence
   logic signed [Width-1:0] gx_q, gy_q, gx_left, gy_above, gx_stored, gy_stored;
 
   // Read while the pixel is taken, written one cycle later, so never the same word at once.
-  td_ram #(.Width(Width), .Depth(Columns)) u_line (
+  td_ram #(.Width(Width), .Depth(Columns), .Style(LineStyle)) u_line (
     .clk,
     .write_en     (en & valid_q),
     .write_address(column_q),

@@ -33,13 +33,17 @@ module thomas_table #(
   output logic [LastShiftWidth-1:0]    shift
 );
 
+  localparam int IndexWidth = AddressWidth + SettledWidth;
   localparam int CompareWidth = RowWidth > SettledWidth ? RowWidth : SettledWidth;
 
   logic [RowWidth-1:0] row_q;
   logic [AddressWidth-1:0] base, address;
   logic [SettledWidth-1:0] settled;
   logic signed [CoeffWidth-1:0] inner, inner_q;  // the memory is slow and may be far from the multiplier
-  td_rom #(.Width(AddressWidth + SettledWidth), .Depth(Columns), .File({TableFolder, Table, "_index.hex"})) u_index (
+  td_rom #(
+    .Width(IndexWidth), .Depth(Columns), .Style(IndexWidth * Columns > td_memory_pkg::LateBits ? 1 : 0),
+    .File({TableFolder, Table, "_index.hex"})
+  ) u_index (
     .clk, .en, .address(position), .data({base, settled})
   );
 

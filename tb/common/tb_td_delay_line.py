@@ -11,25 +11,27 @@ from tactile_depth.chip.common.td_delay_line import delay_line
 from tb.stream import drive, parameters, parametrize
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
-built = of_parameters("Width Delay")
+built = of_parameters("Width Delay Style")
 STRUCTURES = (
-    built(54, 65, on=VERILATOR),
-    built(1, 1, on=ICARUS),
-    built(9, 2, on=ICARUS),
-    built(8, 4, on=ICARUS, mutants=ICARUS),
-    built(8, 5, on=ICARUS, mutants=ICARUS),
-    built(70, 8),
-    built(12, 33),
-    built(70, 128),
+    built(54, 65, 3, on=VERILATOR),
+    built(1, 1, 3, on=ICARUS),
+    built(9, 2, 3, on=ICARUS),
+    built(8, 4, 3, on=ICARUS, mutants=ICARUS),
+    built(8, 5, 3, on=ICARUS, mutants=ICARUS),
+    built(8, 6, 1, on=ICARUS, mutants=ICARUS),
+    built(70, 8, 0),
+    built(12, 33, 3),
+    built(70, 128, 3),
 )
 REFUSED = {"Delay_must_be_at_least_1": "Delay=0"}
 PROOFS = tuple(
-    Proof(why, {"Delay": delay})
-    for delay, why in (
-        (1, "the smallest"),
-        (4, f"the longest of registers; {WORD_FREE}"),
-        (5, f"the shortest in memory; {WORD_FREE}"),
-        (8, f"in memory, the pointer runs over at a power of two; {WORD_FREE}"),
+    Proof(why, {"Delay": delay, "Style": style})
+    for delay, style, why in (
+        (1, 3, "the smallest"),
+        (4, 3, f"the longest of registers; {WORD_FREE}"),
+        (5, 3, f"the shortest in memory; {WORD_FREE}"),
+        (8, 3, f"in memory, the pointer runs over at a power of two; {WORD_FREE}"),
+        (6, 1, f"in a block memory with a register behind it; {WORD_FREE}"),
     )
 )
 

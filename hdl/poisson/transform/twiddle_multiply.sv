@@ -52,7 +52,7 @@ module twiddle_multiply #(
   td_rom #(.Width(3 * CoeffWidth), .Depth(Block), .File(File)) u_rom (.clk, .en, .address, .data(factor));
 
   // A block memory takes long to give a word, a distributed one has the longer way to its words.
-  if (3 * CoeffWidth * Block > td_types_pkg::DistributedBits) begin : g_register_behind
+  if (3 * CoeffWidth * Block > td_memory_pkg::DistributedBits) begin : g_register_behind
     assign address = position[BlockWidth-1:0];
     always_ff @(posedge clk) if (en) {w_minus_im, w_im, w_re} <= factor;
   end else begin : g_register_in_front

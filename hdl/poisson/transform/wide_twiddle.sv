@@ -51,7 +51,7 @@ module wide_twiddle #(
   logic [Paths*FactorWidth-1:0] factors;
   td_rom #(
     .Width(Paths * FactorWidth), .Depth(Beats), .File(File),
-    .Style(FactorWidth * Beats > td_types_pkg::DistributedBits ? 1 : 0)
+    .Style(FactorWidth * Beats > td_memory_pkg::LateBits ? 1 : 0)
   ) u_rom (
     .clk, .en, .address(beat), .data(factors)
   );

@@ -14,7 +14,7 @@ from tactile_depth.chip.fixed_point import Format
 
 # Styles of td_ram.sv and td_rom.sv.
 DISTRIBUTED, BLOCK, ULTRA, BY_SIZE = 0, 1, 2, 3
-DISTRIBUTED_BITS = 4096  # a memory of more bits is a block memory by its size, hdl/td_types_pkg.sv
+DISTRIBUTED_BITS = LATE_BITS = 4096  # of memories, and of those that may not be late: hdl/td_memory_pkg.sv
 LONGEST_SHIFT = 4  # delays up to this are registers, hdl/common/td_delay_line.sv
 DEPTH_MARKS = 3  # the position: it travels with a depth
 
@@ -82,6 +82,17 @@ Parts = list[Words | Multiplier | Memory]
 
 def rom(width: int, words: int, style: int = BY_SIZE) -> Memory:
     return Memory("tables", width, words, style, rom=True)
+
+
+def late_style(bits: int) -> int:
+    """Return the style of a memory whose word is needed early, by its bits or by those of one of its tables."""
+    return BLOCK if bits > LATE_BITS else DISTRIBUTED
+
+
+def delay_line(width: int, delay: int) -> list[Memory]:
+    """Return the memory of a td_delay_line.sv: none where it is registers; a block memory has a register behind it."""
+    in_block = width * delay > DISTRIBUTED_BITS
+    return [Memory("delay lines", width, delay - in_block)] if delay > LONGEST_SHIFT else []
 
 
 def banks(width: int, words: int, style: int = BLOCK) -> list[Memory]:

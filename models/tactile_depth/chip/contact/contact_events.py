@@ -18,7 +18,7 @@ from tactile_depth.chip.contact.contact_sums import ContactSums, Sums, cycles_to
 from tactile_depth.chip.contact.frame_flags import FLAG_WORDS, NO_FLAGS, FrameFlags
 from tactile_depth.chip.contact.record_packets import RecordPackets
 from tactile_depth.chip.fixed_point import joined, split
-from tactile_depth.chip.resources import DEPTH_MARKS, Memory, Parts, Words
+from tactile_depth.chip.resources import DEPTH_MARKS, Parts, Words, delay_line
 
 WORD_BITS = 32
 CYCLES_TO_TOUCHING = 3  # from the last depth of a frame to `touching`
@@ -281,4 +281,4 @@ class EventsByClock:
 
 def parts(config: Configuration) -> Parts:
     bits = config.lanes * config.depth.width
-    return [Words(bits), Memory("delay lines", bits + DEPTH_MARKS, config.lanes.bit_length() + 5)]
+    return [Words(bits), *delay_line(bits + DEPTH_MARKS, config.lanes.bit_length() + 5)]

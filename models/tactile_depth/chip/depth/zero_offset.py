@@ -20,7 +20,7 @@ from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import joined, split
 from tactile_depth.chip.registers.register_map import TABLES
-from tactile_depth.chip.resources import DEPTH_MARKS, Memory, Multiplier, Parts, Words, banks
+from tactile_depth.chip.resources import DEPTH_MARKS, Multiplier, Parts, Words, banks, delay_line
 
 
 def no_zero(config: Configuration) -> np.ndarray:
@@ -103,6 +103,6 @@ def parts(config: Configuration) -> Parts:
     return [
         Words(lanes * data),
         *banks(data, rows * columns // side) * (side * td_node_map.tables(lanes, log2)),
-        Memory("delay lines", lanes * data + DEPTH_MARKS, td_node_map.latency(lanes, log2)),
+        *delay_line(lanes * data + DEPTH_MARKS, td_node_map.latency(lanes, log2)),
         *[Multiplier(data + 1, log2 + 2)] * side,
     ]

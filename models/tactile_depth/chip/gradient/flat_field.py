@@ -33,7 +33,7 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import Format, split
 from tactile_depth.chip.limits import DARKEST_LOG2, DEVIATION, RATIO
 from tactile_depth.chip.registers.register_map import TABLES
-from tactile_depth.chip.resources import Memory, Multiplier, Parts, Words, banks
+from tactile_depth.chip.resources import Multiplier, Parts, Words, banks, delay_line
 
 LATENCY = td_node_map.latency(1, 1) + 3
 
@@ -259,5 +259,5 @@ def parts(config: Configuration) -> Parts:
         Words(gain),
         *[Multiplier(gain + 1, log2 + 2), Multiplier(gain + 1, 9)] * 3,
         *banks(gain, rows * columns) * 3,
-        Memory("delay lines", 3 * 8 + PIXEL_MARKS, td_node_map.latency(1, log2)),
+        *delay_line(3 * 8 + PIXEL_MARKS, td_node_map.latency(1, log2)),
     ]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.resources import Memory, Parts, Words
+from tactile_depth.chip.resources import Memory, Parts, Words, late_style
 
 LATENCY = 2
 
@@ -40,4 +40,4 @@ def divergence(gradient: np.ndarray, neumann: bool = False) -> np.ndarray:
 def parts(config: Configuration) -> Parts:
     """Return the buffer of the row above."""
     slope = config.gradient.width
-    return [Words(slope), Memory("row buffers", slope, config.columns)]
+    return [Words(slope), Memory("row buffers", slope, config.columns, late_style(slope * config.columns))]

@@ -15,7 +15,7 @@ import numpy as np
 
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.transform.orders import eigenvalues
-from tactile_depth.chip.resources import Memory, rom
+from tactile_depth.chip.resources import Memory, late_style, rom
 
 LATENCY = 5
 
@@ -138,4 +138,5 @@ def wide_table(codes: np.ndarray, positions: np.ndarray) -> WideTable:
 
 def table_parts(table: WideTable, width: int) -> list[Memory]:
     """Return the two ROMs of a table of words of `width` bits, without that of the last row."""
-    return [rom(width, len(table.words)), rom(table.index_width, len(table.base))]
+    index = rom(table.index_width, len(table.base), late_style(table.index_width * len(table.base)))
+    return [rom(width, len(table.words)), index]

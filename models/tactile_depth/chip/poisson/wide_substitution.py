@@ -9,7 +9,7 @@ from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.thomas_table import WideTable, ahead_rows, table_parts, wide_table
 from tactile_depth.chip.poisson.transform.wide_row_pairs import up_positions
-from tactile_depth.chip.resources import LONGEST_SHIFT, Memory, Parts, Words, products
+from tactile_depth.chip.resources import Parts, Words, delay_line, products
 
 LATENCY = 2
 LOOP = 4  # clocks from a word to the product with it and back
@@ -50,6 +50,6 @@ def parts(config: Configuration) -> Parts:
     return [
         Words(lanes * config.depth.width),
         *products(config, lanes),
-        *[Memory("delay lines", config.arithmetic_width, wait)] * (lanes if wait > LONGEST_SHIFT else 0),
+        *delay_line(config.arithmetic_width, wait) * lanes,
         *table_parts(table(config), lanes * config.coefficient.width),
     ]

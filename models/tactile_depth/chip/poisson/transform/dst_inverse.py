@@ -15,7 +15,7 @@ from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle_multiply import LATENCY as TWIDDLE_MULTIPLY
 from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_multiply
-from tactile_depth.chip.resources import DISTRIBUTED, Memory, Multiplier, Parts, Sizes, Words, rom
+from tactile_depth.chip.resources import DISTRIBUTED, Memory, Multiplier, Parts, Sizes, Words, delay_line, rom
 
 
 def dst_inverse(
@@ -54,7 +54,7 @@ def parts(config: Sizes) -> Parts:
         found += [
             Words(config.depth.width),
             *[Multiplier(width, coefficient)] * 4,
-            Memory("delay lines", width, size // 2 + 1),
+            *delay_line(width, size // 2 + 1),
             Memory("row buffers", width, size, DISTRIBUTED),
             rom(3 * coefficient, size),
             *fft_parts(config, True),

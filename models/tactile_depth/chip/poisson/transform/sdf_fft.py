@@ -15,7 +15,7 @@ from tactile_depth.chip.poisson.transform.sdf_butterfly import LATENCY as BUTTER
 from tactile_depth.chip.poisson.transform.sdf_butterfly import Stage, sdf_butterfly
 from tactile_depth.chip.poisson.transform.twiddle_multiply import LATENCY as TWIDDLE_MULTIPLY
 from tactile_depth.chip.poisson.transform.twiddle_multiply import twiddle_factors, twiddle_multiply
-from tactile_depth.chip.resources import LONGEST_SHIFT, Memory, Parts, Sizes, products, rom
+from tactile_depth.chip.resources import Parts, Sizes, delay_line, products, rom
 
 
 @cache
@@ -101,8 +101,8 @@ def parts(config: Sizes, inverse: bool) -> Parts:
     """Return complex words in delays, {-Im, Im, Re} in tables, and the products of the twiddle factors."""
     found: Parts = []
     for stage in stages(config.columns, inverse):
-        if stage.delay > LONGEST_SHIFT:
-            found.append(Memory("delay lines", 2 * (config.arithmetic_width + 1), stage.delay))
-        elif not stage.delay:
+        if stage.delay:
+            found += delay_line(2 * (config.arithmetic_width + 1), stage.delay)
+        else:
             found += [*products(config, 4), rom(3 * config.coefficient.width, stage.block)]
     return found

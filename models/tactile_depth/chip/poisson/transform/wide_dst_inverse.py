@@ -18,7 +18,7 @@ from tactile_depth.chip.poisson.transform.wide_row_pairs import latency as wide_
 from tactile_depth.chip.poisson.transform.wide_row_pairs import wide_row_pairs
 from tactile_depth.chip.poisson.transform.wide_twiddle import LATENCY as WIDE_TWIDDLE
 from tactile_depth.chip.poisson.transform.wide_twiddle import factors_rom
-from tactile_depth.chip.resources import LONGEST_SHIFT, Memory, Parts, Words, products
+from tactile_depth.chip.resources import Memory, Parts, Words, delay_line, products
 
 
 def wide_dst_inverse(
@@ -70,11 +70,11 @@ def parts(config: Configuration) -> Parts:
     turn = latency(size, config.lanes) - wide_corner_turn_latency(size, paths)
     return [
         Words(paths * data),
-        *[Memory("delay lines", width, half)] * (2 * paths if half > LONGEST_SHIFT else 0),
+        *delay_line(width, half) * (2 * paths),
         *[Memory("row buffers", 2 * width, half)] * (2 * paths),
         *products(config, 4 * paths),
         factors_rom(config, paths),
         *fft_parts(config, paths, True),
-        Memory("delay lines", 1, turn),
+        *delay_line(1, turn),
         *[turned] * (4 if paths == 1 else 2 * paths),
     ]

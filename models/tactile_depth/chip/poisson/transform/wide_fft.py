@@ -15,7 +15,7 @@ from tactile_depth.chip.poisson.transform.wide_butterfly import LATENCY as BUTTE
 from tactile_depth.chip.poisson.transform.wide_commutator import LEAD, from_beats, positions, to_beats
 from tactile_depth.chip.poisson.transform.wide_twiddle import LATENCY as WIDE_TWIDDLE
 from tactile_depth.chip.poisson.transform.wide_twiddle import factors_rom
-from tactile_depth.chip.resources import LONGEST_SHIFT, Memory, Parts, products
+from tactile_depth.chip.resources import Parts, delay_line, products
 
 
 def wide_fft(
@@ -73,7 +73,7 @@ def parts(config: Configuration, paths: int, inverse: bool) -> Parts:
         return sdf_fft_parts(config, inverse)
     size = config.columns
     delays = [1 << bit for bit in range((size // paths).bit_length() - 1)]
-    lines = [Memory("delay lines", 2 * config.arithmetic_width, delay) for delay in delays if delay > LONGEST_SHIFT]
+    lines = [line for delay in delays for line in delay_line(2 * config.arithmetic_width, delay)]
     found: Parts = [*lines * paths]
     for stage in stages(size, inverse):
         if not stage.delay:

@@ -8,7 +8,7 @@ import numpy as np
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.transform.twiddle_multiply import twiddle_multiply
-from tactile_depth.chip.resources import BLOCK, DISTRIBUTED, DISTRIBUTED_BITS, Memory, rom
+from tactile_depth.chip.resources import Memory, late_style, rom
 
 LATENCY = 5
 
@@ -39,4 +39,4 @@ def ones(factors: np.ndarray, factor_width: int) -> int:
 def factors_rom(config: Configuration, paths: int) -> Memory:
     """Return the table of factors, a block memory where the factors of one path fill one."""
     width, beats = 3 * config.coefficient.width, config.columns // paths
-    return rom(width * paths, beats, BLOCK if width * beats > DISTRIBUTED_BITS else DISTRIBUTED)
+    return rom(width * paths, beats, late_style(width * beats))
