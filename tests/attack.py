@@ -223,6 +223,7 @@ def compare(device: Attack, played: bench.Played, guarded: Guarded, threshold: i
     assert touched == set(np.flatnonzero(want.max(axis=(1, 2)) > threshold)), "frames that raised contact"
 
     registers = dict(played.registers)
+    assert not registers.pop("self_test")
     status = REGISTERS["STATUS"].unpack(registers.pop("status"))
     assert registers.pop("first_depth_latency") == depths[-1] - taken[-2]
     counters = {"frames_in": len(good), "frames_out": len(good), "frames_dropped": len(guarded.faults)}

@@ -16,7 +16,7 @@ from tb.selection import Level, case
 from tb.tactile_depth.bench import CONTROL, Pipeline, started
 
 
-async def tested(pipeline: Pipeline) -> int:
+async def signature_of_test(pipeline: Pipeline) -> int:
     """Return the signature of the self-test that was asked for, and expect what the clips of its picture leave."""
     while not (signature := await pipeline.read("SELF_TEST")):
         pass
@@ -37,13 +37,13 @@ async def the_signature_is_that_of_the_models(dut: Any) -> None:
     pipeline = await started(dut)
     assert not await pipeline.read("SELF_TEST")
     await pipeline.write("CONTROL", CONTROL.pack(self_test=1))
-    first = await tested(pipeline)
+    first = await signature_of_test(pipeline)
     await pipeline.check()
     name, entries = next(iter(pipeline.tables.content.entries.items()))
     await pipeline.tables.write(name, entries[::-1])
     await pipeline.tables.commit(name, entries[::-1])
     await pipeline.write("CONTROL", CONTROL.pack(self_test=1))
-    assert await tested(pipeline) != first
+    assert await signature_of_test(pipeline) != first
     await pipeline.send(pipeline.frame())
     await pipeline.check()
 
@@ -60,7 +60,7 @@ async def between_two_frames(dut: Any) -> None:
         await pipeline.write("CONTROL", CONTROL.pack(self_test=1))
         assert not await pipeline.read("SELF_TEST")
         await sending
-        await tested(pipeline)
+        await signature_of_test(pipeline)
         await pipeline.check()
 
 
@@ -76,7 +76,7 @@ async def a_stalled_sink_and_an_open_frame_keep_it_waiting(dut: Any) -> None:
         await RisingEdge(dut.clk)
     assert not await pipeline.read("SELF_TEST")
     await pipeline.send(frame[-1:])
-    await tested(pipeline)
+    await signature_of_test(pipeline)
     pipeline.sink.stall(repeat(False))
     await pipeline.send(pipeline.frame())
     await pipeline.until(lambda: int(dut.m_axis_tvalid.value))
@@ -85,6 +85,6 @@ async def a_stalled_sink_and_an_open_frame_keep_it_waiting(dut: Any) -> None:
         await RisingEdge(dut.clk)
     assert not await pipeline.read("SELF_TEST")
     pipeline.disturb(*pipeline.profiles)
-    await tested(pipeline)
+    await signature_of_test(pipeline)
     pipeline.stalled = True
     await pipeline.check()

@@ -34,7 +34,9 @@ def test_memories_and_cores_are_those_of_the_rtl(tmp_path: Path, lanes: int, sol
     tiny = replace(TINY, lanes=lanes)
     _, modules = synth.elaborate(tiny, synthetic(tiny.bits_per_channel), tmp_path, XCZU7EV)
     arrays = memories(tmp_path / "design.json")
-    behind_wrapper = Counter((memory.width, memory.depth) for memory in arrays if memory.style)
+    behind_wrapper = Counter(
+        (memory.width, memory.depth) for memory in arrays if memory.style and not memory.path.startswith("u_registers.")
+    )
     assert behind_wrapper == Counter((memory.width, memory.words) for memory in cost(tiny).memories)
     assert len({memory.path for memory in arrays}) == len(arrays)
     cores = {path_of(module) for module in synth.kept(modules)}
