@@ -29,10 +29,12 @@ module record_packets #(
   logic waiting, begins, leaves, packet_ends;
   logic [32*Words-1:0] packet;
   logic [WordWidth-1:0] word;
+  logic [(1<<WordWidth)-1:0][31:0] words;  // one for each number
+  assign words = (32 << WordWidth)'(packet);
   assign leaves = m_event_tvalid & m_event_tready;
   assign packet_ends = leaves & m_event_tlast;
   assign begins = waiting & (~m_event_tvalid | packet_ends);
-  assign m_event_tdata = packet[{word, 5'd0}+:32];
+  assign m_event_tdata = words[word];
   assign m_event_tlast = word == WordWidth'(Words - 1);
   assign record_lost = new_valid & waiting & ~begins;
 
