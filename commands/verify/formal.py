@@ -110,8 +110,8 @@ def cone_script(cone: Cone, config: Configuration) -> str:
         f"read_slang --threads 1 --top {cone.core} {parameters} {' '.join(file.name for file in sources())}",
         f"prep -flatten -top {cone.core}",
         "memory_collect",
-        # td_node_map delays colours and position in one memory: as registers, each bit is separate.
-        "memory_map t:$mem_v2 */*u_map.u_delay.*words %i",
+        # td_node_map and contact_events delay values and position in one memory: as registers, each bit is separate.
+        "memory_map t:$mem_v2 */*u_map.u_delay.*words */*u_events.u_delay.*words %u %i",
         "opt_clean",
         "simplemap",
         "opt_clean",
