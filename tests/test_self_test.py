@@ -41,7 +41,7 @@ from tactile_depth.sensor.sensor import Sensor
 
 SEED, FLIPS = 61, 200
 SHARES = {"published": {"gradient": 0.97}, "sensor": {"corrections": 0.88}, "chip": {"corrections": 0.89}}
-"""Of the entries of tables of colours those that pixels read, and that no clipped slope hides."""
+"""Entries of tables of colours that pixels read, and that no clipped slope hides."""
 ROMS = ("twiddle", "phase", "reciprocal", "thomas", "index", "last")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What tb_fingertip.sv reads: pixels.hex, a picture of the grid, and deepest.hex, its deepest code in the model."""
+"""Files for tb_fingertip.sv: pixels.hex, a picture of the grid, and deepest.hex, its deepest code in the model."""
 
 from pathlib import Path
 

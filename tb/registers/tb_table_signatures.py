@@ -82,7 +82,7 @@ class Signatures:
 
 
 class Writers:
-    """What writes tables for a while: the host, from the first entry of a table to the last, or a capture; or anything.
+    """Writers of tables for a while: the host, from the first entry of a table to the last, or a capture; or anything.
 
     Attributes
     ----------

@@ -28,10 +28,11 @@ def signature_of(line: Channel) -> int:
     control = before.pop(CONTROL.name) | CONTROL.field("self_test").mask
     with held_light(line):
         write_gains(line, [1 << LIGHT_GAIN.fraction] * len(GAINS))
-        write_words(line, [(CONTROL.name, control)])
-        signature = _awaited(line)
-        write_gains(line, [*before.values()])
-    return signature
+        try:
+            write_words(line, [(CONTROL.name, control)])
+            return _awaited(line)
+        finally:
+            write_gains(line, [*before.values()])
 
 
 def _awaited(line: Channel) -> int:

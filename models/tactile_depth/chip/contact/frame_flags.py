@@ -14,7 +14,7 @@ FLAG_WORDS = 3
 
 
 class FrameFlags(NamedTuple):
-    """How far the depth of a frame holds.
+    """Flags of a frame: how far its depth holds.
 
     Attributes
     ----------
