@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from commands.common import repository
+from commands.common import python_code, repository
 from commands.common.repository import ROOT, git
 
 RESULTS = ROOT / "docs" / "figures.json"
@@ -37,10 +37,9 @@ def command_line(command: str, arguments: Sequence[str]) -> str:
 
 
 def digest(sources: Iterable[Path], values: object = None) -> str:
-    """Return a digest of files and of values; comments and white space of SystemVerilog do not count."""
-    texts = {
-        file.name: repository.code(file.read_text()) if file.suffix == ".sv" else file.read_text() for file in sources
-    }
+    """Return a digest of files and of values; comments and layout of SystemVerilog and of Python do not count."""
+    codes = {".sv": repository.code, ".py": python_code.code_of}
+    texts = {file.name: codes.get(file.suffix, str)(file.read_text()) for file in sources}
     return hashlib.sha256(repr((sorted(texts.items()), values)).encode()).hexdigest()[:16]
 
 

@@ -23,6 +23,7 @@ from typing import Any, BinaryIO, Generic, Protocol, Self, TypeVar, get_args, ge
 
 import joblib
 
+from commands.common import python_code
 from commands.common.progress import duration, progress_bar
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
@@ -33,7 +34,7 @@ INTERRUPTED = "every row measured is kept, run it again to go on"
 
 
 def _version() -> str:
-    """Return a digest of the sources of all models; rows with different digests are not comparable."""
+    """Return a digest of the code of all models; rows with different digests are not comparable."""
     digest = hashlib.sha256()
 
     def add(folder: Any) -> None:
@@ -41,7 +42,7 @@ def _version() -> str:
             if entry.is_dir():
                 add(entry)
             elif entry.name.endswith(".py"):
-                digest.update(entry.name.encode() + b"\0" + entry.read_bytes() + b"\0")
+                digest.update(f"{entry.name}\0{python_code.code_of(entry.read_text())}\0".encode())
 
     add(resources("tactile_depth"))
     return digest.hexdigest()[:12]

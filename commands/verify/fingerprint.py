@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from commands.common import repository
+from commands.common import python_code, repository
 from commands.common.repository import ROOT
 from commands.verify import protocol
 
@@ -43,29 +43,6 @@ class Source:
 
     defined: Mapping[str, list[Statement]]
     imported: Mapping[str, Place]
-
-
-def code(value: object) -> str:
-    """Return a tree of Python as text, the same in every version of Python."""
-    if isinstance(value, ast.AST):
-        fields = [f"{name}={code(each)}" for name, each in ast.iter_fields(value) if each is not None and each != []]
-        return f"{type(value).__name__}({','.join(fields)})"
-    return f"[{','.join(map(code, value))}]" if isinstance(value, list) else repr(value)
-
-
-def bare(tree: ast.Module) -> list[ast.AST]:
-    """Take the docstrings and the type hints out of a tree, and return its nodes."""
-    nodes = list(ast.walk(tree))
-    for node in nodes:
-        if isinstance(node, ast.arg | ast.AnnAssign):
-            node.annotation = ast.Constant(None)  # a field of a class stays one
-        elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
-            node.returns = None
-        if isinstance(body := getattr(node, "body", None), list):
-            body[:] = [
-                each for each in body if not (isinstance(each, ast.Expr) and isinstance(each.value, ast.Constant))
-            ]
-    return nodes
 
 
 def file_of(module: str) -> Path | None:
@@ -104,7 +81,7 @@ def defines(statement: ast.stmt) -> list[str]:
 @cache
 def read_python(file: Path, _: int) -> Source:
     tree = ast.parse(file.read_text())
-    imported = imports(bare(tree))
+    imported = imports(python_code.bare(tree))
     defined = defaultdict(list)
     for each in tree.body:
         if not isinstance(each, (ast.Import, ast.ImportFrom)):
@@ -114,7 +91,7 @@ def read_python(file: Path, _: int) -> Source:
             )
             texts = [node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)]
             for name in defines(each) or [REST]:
-                defined[name].append(Statement(code(each), names, frozenset(texts)))
+                defined[name].append(Statement(python_code.code(each), names, frozenset(texts)))
     return Source(defined, imported)
 
 

@@ -54,6 +54,19 @@ def test_a_run_of_other_sources_is_marked(monkeypatch: pytest.MonkeyPatch) -> No
     assert recorded.since(line, entry) == "changed"
 
 
+def test_comments_and_docstrings_are_no_sources(tmp_path: Path) -> None:
+    file = tmp_path / "model.py"
+    digests = []
+    for text in (
+        "def depth(x):\n    return x\n",
+        "def depth(x: int) -> int:\n    '''Words.'''\n    return x  # more\n",
+        "depth = 1",
+    ):
+        file.write_text(text)
+        digests.append(recorded.digest([file]))
+    assert digests[0] == digests[1] != digests[2]
+
+
 def test_other_tables_are_other_sources() -> None:
     assert len({recorded.sources(f"make synth N={size} PRESET=published") for size in (16, 32)}) == 2
 
