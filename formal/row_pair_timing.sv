@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// row_pair_timing: bursts of two rows come as protocol_bursts allows them. The first row of a burst leaves Latency
-// enabled clocks behind its start, the second one Beats / 2 later unless the first came alone; frame_start with the
+// row_pair_timing: bursts of two rows come as protocol_row_pairs allows them. The first row of a burst leaves Latency
+// enabled clocks behind its start, the second one OutBeats later unless the first came alone; frame_start with the
 // first row of a frame; no other row leaves. `active` and `beat` are those of the words, 2 enabled clocks behind it.
 
 `default_nettype none
 
 module row_pair_timing #(
-  parameter int Beats   = 4,
-  parameter int Latency = 8,
+  parameter int Beats    = 4,
+  parameter int OutBeats = 2,
+  parameter int Latency  = 8,
   localparam int BeatWidth = $clog2(Beats)
 ) (
   input  logic                 clk,
@@ -23,12 +24,12 @@ module row_pair_timing #(
   output logic [BeatWidth-1:0] beat
 );
 
-  localparam int Longest = Latency + Beats / 2;
+  localparam int Longest = Latency + OutBeats;
 
   logic allowed, coming;
   logic [BeatWidth-1:0] position;
-  protocol_bursts #(.Columns(Beats)) u_protocol (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active(coming), .position, .row(), .holds(allowed)
+  protocol_row_pairs #(.Beats(Beats), .OutBeats(OutBeats)) u_protocol (
+    .clk, .rst, .en, .in_start, .in_frame_start, .in_alone, .out_start, .active(coming), .position, .holds(allowed)
   );
   assumed u_assumed (.*);
 
@@ -58,7 +59,7 @@ module row_pair_timing #(
     if (started) begin
       row_when_due: assert (out_start == (start_q[Latency-1] | second_q[Longest-1]));
       frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
-      next_burst_behind: cover (second_q[Longest-1] && start_q[Longest-Beats-1] && en);
+      next_burst_behind: cover (second_q[Longest-1] && start_q[Longest-2*OutBeats-1] && en);
       row_alone: cover (out_frame_start && !second_q[Latency-1] && en);
     end
   end

@@ -52,35 +52,21 @@ def camera_list(folder: Path) -> None:
     write_list(folder, [Entry(kind, 0x35CA + 77 * place, 3 + 85 * place % 250) for place, kind in enumerate(kinds)])
 
 
-def transform_roms(folder: Path) -> None:
-    """Factors of 2 bits for a transform of 8: arbitrary ones, that of no word like the next."""
-    for direction in ("forward", "inverse"):
-        for file in (f"twiddle_{direction}_0.hex", f"phase_{direction}.hex"):
-            write_words(folder / file, [(5 * n + 9) % 64 for n in range(8)], 6)
-
-
-def factor_rom(block: int) -> Callable[[Path], None]:
-    """Factors {-Im, Im, Re} of 5 bits, every field of every word another."""
-    return lambda folder: write_words(
-        folder / "factors.hex", [(3 * n + 2) % 32 << 10 | (3 * n + 1) % 32 << 5 | 3 * n % 32 for n in range(block)], 15
-    )
-
-
-def wide_roms(paths: int, beats: int) -> Callable[[Path], None]:
-    """Factors of 3 bits for a wide transform of `paths` paths: arbitrary ones, no beat like the next."""
+def transform_roms(paths: int, beats: int) -> Callable[[Path], None]:
+    """Factors of 3 bits for a transform of 8 with `paths` paths: arbitrary ones, no beat like the next."""
 
     def write(folder: Path) -> None:
         words = [(37 * n + 9) % 512 for n in range(paths * beats)]
         packed = [sum(words[beat * paths + path] << 9 * path for path in range(paths)) for beat in range(beats)]
         for direction in ("forward", "inverse"):
             for kind in ("twiddle", "phase"):
-                name = f"wide_{kind}_{direction}{'_0' * (kind == 'twiddle')}.hex"
+                name = f"{kind}_{direction}{'_0' * (kind == 'twiddle')}.hex"
                 write_words(folder / name, packed, 9 * paths)
 
     return write
 
 
-def wide_factor_rom(paths: int, beats: int, ones: int) -> Callable[[Path], None]:
+def factor_rom(paths: int, beats: int, ones: int) -> Callable[[Path], None]:
     """Factors {-Im, Im, Re} of 3 bits, every field of every word another, but 1 in the paths of `ones`."""
 
     def factor(beat: int, path: int) -> int:
@@ -118,7 +104,7 @@ def thomas_roms(
     width: int,
     settled_width: int,
     shift_width: int,
-    table: str = "thomas",
+    table: str = "down",
     singular: bool = False,
 ) -> Callable[[Path], None]:
     """Tables of arbitrary contents for thomas_table.sv; square.hex: {shift, coefficient} for every row and position.
@@ -148,17 +134,20 @@ def thomas_roms(
     return write
 
 
-def wide_up_roms(rows: int, beats: int) -> Callable[[Path], None]:
-    """Tables of wide_substitution.sv, two words of 3 bits: none is 0, and none is like that of the next row or word."""
+def up_roms(pairs: int, beats: int) -> Callable[[Path], None]:
+    """Tables of substitution.sv, two words of 3 bits: none is 0, and none is like that of the next pair or word.
+
+    square.hex: the words for every pair, the first one with the first row of a frame, and beat.
+    """
 
     def write(folder: Path) -> None:
-        inner = [1 + (2 * n + 3) % 7 << 3 | 1 + 2 * n % 7 for n in range(16)]
-        settled = [rows - 2 - beat % 2 for beat in range(beats)]
+        inner = [1 + (2 * n + 3) % 7 << 3 | 1 + 2 * n % 7 for n in range(32)]
+        settled = [pairs - 1 - beat % 2 for beat in range(beats)]
         base = [sum(settled[:beat]) + beat for beat in range(beats)]
-        assert base[-1] + settled[-1] < 16
-        write_words(folder / "wide_up.hex", inner, 6)
-        write_words(folder / "wide_up_index.hex", [b << 3 | s for b, s in zip(base, settled, strict=True)], 7)
-        square = [inner[b + min(row, s)] for row in range(rows) for b, s in zip(base, settled, strict=True)]
+        assert base[-1] + settled[-1] < 32
+        write_words(folder / "up.hex", inner, 6)
+        write_words(folder / "up_index.hex", [b << 3 | s for b, s in zip(base, settled, strict=True)], 8)
+        square = [inner[b + min(pair, s)] for pair in range(pairs) for b, s in zip(base, settled, strict=True)]
         write_words(folder / "square.hex", square, 7)
 
     return write

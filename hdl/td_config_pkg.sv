@@ -23,7 +23,7 @@ package td_config_pkg;
   localparam int ZeroLog2 = 8;  // base-2 logarithm of the most frames in a capture of the zero offset
 
   // A configuration is one vector: 32 bits for each number, by its field.
-  localparam int ConfigBits = 1984;
+  localparam int ConfigBits = 1920;
   localparam int ColumnsField = 0;
   localparam int RowsField = 1;
   localparam int LanesField = 2;
@@ -60,32 +60,30 @@ package td_config_pkg;
   localparam int SlopeMantissaField = 33;
   localparam int SlopeExponentField = 34;
   localparam int PitchNmField = 35;
-  localparam int TableWordsField = 36;
-  localparam int SettledWidthField = 37;
-  localparam int LastShiftWidthField = 38;
-  localparam int MomentDropField = 39;
-  localparam int MeanReciprocalField = 40;
-  localparam int MeanDropField = 41;
-  localparam int WordsPerRowField = 42;
-  localparam int DownWordsField = 43;
-  localparam int DownTableWordsField = 44;
-  localparam int DownSettledWidthField = 45;
-  localparam int UpTableWordsField = 46;
-  localparam int UpSettledWidthField = 47;
-  localparam int CameraField = 48;
-  localparam int CameraNumeratorField = 49;
-  localparam int CameraDenominatorField = 50;
-  localparam int CameraFormatField = 51;
-  localparam int CameraPhaseField = 52;
-  localparam int CameraPictureColumnsField = 53;
-  localparam int CameraPictureRowsField = 54;
-  localparam int CameraWindowXField = 55;
-  localparam int CameraWindowYField = 56;
-  localparam int CameraBlackLevelField = 57;
-  localparam int CameraRedGainField = 58;
-  localparam int CameraGreenGainField = 59;
-  localparam int CameraBlueGainField = 60;
-  localparam int TablesCrcField = 61;
+  localparam int DownWordsField = 36;
+  localparam int DownTableWordsField = 37;
+  localparam int DownSettledWidthField = 38;
+  localparam int LastShiftWidthField = 39;
+  localparam int UpTableWordsField = 40;
+  localparam int UpSettledWidthField = 41;
+  localparam int MomentDropField = 42;
+  localparam int MeanReciprocalField = 43;
+  localparam int MeanDropField = 44;
+  localparam int WordsPerRowField = 45;
+  localparam int CameraField = 46;
+  localparam int CameraNumeratorField = 47;
+  localparam int CameraDenominatorField = 48;
+  localparam int CameraFormatField = 49;
+  localparam int CameraPhaseField = 50;
+  localparam int CameraPictureColumnsField = 51;
+  localparam int CameraPictureRowsField = 52;
+  localparam int CameraWindowXField = 53;
+  localparam int CameraWindowYField = 54;
+  localparam int CameraBlackLevelField = 55;
+  localparam int CameraRedGainField = 56;
+  localparam int CameraGreenGainField = 57;
+  localparam int CameraBlueGainField = 58;
+  localparam int TablesCrcField = 59;
 
   // The default configuration; options that it leaves out have the numbers of a configuration with the option.
   localparam logic [ConfigBits-1:0] DefaultConfig = {
@@ -103,18 +101,16 @@ package td_config_pkg;
     32'd4,  // CameraDenominator
     32'd15,  // CameraNumerator
     32'd0,  // Camera
-    32'd7,  // UpSettledWidth
-    32'd717,  // UpTableWords
-    32'd7,  // DownSettledWidth
-    32'd1102,  // DownTableWords
-    32'd2,  // DownWords
     32'd1,  // WordsPerRow
     32'd16,  // MeanDrop
     32'd65536,  // MeanReciprocal
     32'd7,  // MomentDrop
+    32'd6,  // UpSettledWidth
+    32'd777,  // UpTableWords
     32'd1,  // LastShiftWidth
-    32'd7,  // SettledWidth
-    32'd1379,  // TableWords
+    32'd7,  // DownSettledWidth
+    32'd1379,  // DownTableWords
+    32'd1,  // DownWords
     32'd0,  // PitchNm
     -32'sd43,  // SlopeExponent
     32'd8388608,  // SlopeMantissa
@@ -132,7 +128,7 @@ package td_config_pkg;
     32'd0,  // LightGains
     32'd0,  // Polynomial
     32'd0,  // FlatField
-    32'd17221,  // FrameLatency
+    32'd17188,  // FrameLatency
     32'd20,  // GradientFraction
     32'd21,  // GradientWidth
     32'd4,  // BitsPerChannel
@@ -154,7 +150,7 @@ package td_config_pkg;
   };
 
   // The fields that the register ARITHMETIC holds.
-  localparam logic [ConfigBits/32-1:0] ArithmeticFields = 62'b00000000000000000000111111011111111011111110111111000111111011;
+  localparam logic [ConfigBits/32-1:0] ArithmeticFields = 60'b000000000000000111001000011111111011111110111111000111111011;
 
   // Return the number in a field of a configuration.
   function automatic int value(input logic [ConfigBits-1:0] config_word, input int field);

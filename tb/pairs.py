@@ -1,28 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Monitors of pairs of rows, whose last one in a frame may be a row alone."""
+"""Monitors of pairs of rows side by side, of which the last one in a frame may be a row alone."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+import numpy as np
+
+from tb.beats import BeatsMonitor
 from tb.pins import Read
 from tb.stream import at_every_edge
-from tb.wide import WideMonitor
 
 
-class PairMonitor(WideMonitor):
-    """WideMonitor of pairs of rows of `beats` beats; what lies behind a row alone counts as 0."""
+class PairMonitor(BeatsMonitor):
+    """BeatsMonitor of pairs of rows, `paths` words of each in a beat; what lies beside a row alone counts as 0."""
 
-    def __init__(self, dut: Any, name: str, beats: int, words: int, rows: int, lead: int) -> None:
-        super().__init__(dut, name, ["data"], 2 * beats, words, lead)
+    def __init__(self, dut: Any, name: str, beats: int, paths: int, rows: int, lead: int) -> None:
+        super().__init__(dut, name, ["data"], beats, 2 * paths, lead)
         self.alone = (rows - 1) // 2 if rows % 2 else None  # the pair of a frame that is a row alone
         self.pair = 0
 
     def word(self, reads: Sequence[Read]) -> Any:
-        index = len(self.words) % self.length
-        if index == 0:
+        if len(self.words) % self.length == 0:
             self.pair = 0 if self.frame_starts[-1] else self.pair + 1
-        behind = self.pair == self.alone and index >= self.length // 2
-        return (0,) * self.paths if behind else super().word(reads)
+        lower = len(reads) // 2
+        return super().word(reads[:lower]) + (0,) * lower if self.pair == self.alone else super().word(reads)
 
 
 class AloneMonitor:
@@ -39,3 +40,15 @@ class AloneMonitor:
             yield
             if not self.dut.rst.value and self.dut.en.value and int(start.value):
                 self.marks.append(bool(int(alone.value)))
+
+
+def side_by_side(rows: Any, paths: int) -> Any:
+    """Return rows (frames, rows, columns), last row first, as beats (frames * pairs, beats, 2 paths).
+
+    Beside a row alone are zeros.
+    """
+    count, columns = rows.shape[1:]
+    if count % 2:
+        rows = np.concatenate((rows, np.zeros_like(rows[:, :1])), axis=1)
+    pairs = rows.reshape(-1, 2, columns // paths, paths)
+    return np.moveaxis(pairs, 1, 2).reshape(-1, columns // paths, 2 * paths)

@@ -92,7 +92,8 @@ def test_depths_are_the_norms_of_the_whole_map(choices: Any) -> None:
         if node.name.startswith("row_inverse"):  # not every word's norm over slopes is computed
             assert node.depths <= over_depths.max() * node.form.lsb * (1 + 1e-9), node.name
         elif not node.name.startswith(("row_forward", "column_forward")):  # before the solve: by the Laplacian
-            assert node.depths == pytest.approx(bound, rel=1e-9), node.name
+            # Products of two coefficients are rounded: the map up the rows is not quite the inverse of that down.
+            assert node.depths == pytest.approx(bound, rel=1e-5), node.name
 
 
 @pytest.mark.parametrize("neumann", [False, True])
@@ -108,7 +109,7 @@ def test_the_deepest_point_is_where_it_is_looked_for(rows: int, columns: int, ne
 def test_the_bound_of_a_difference_holds_and_is_close(rows: int, neumann: bool) -> None:
     """Check the shorter bound of the configuration, with ideal coefficients and the variation of weights taken as 2."""
     config = Configuration(columns=32, rows=rows, solver="tridiagonal", neumann=neumann, coefficient_width=24)
-    bound = {node.name: node for node in node_bounds(config)}["forward_elimination.difference"].slopes
+    bound = {node.name: node for node in node_bounds(config)}["elimination.difference"].slopes
     by_slopes = difference_bounds(rows, 32, neumann)[0].max() / config.depth_limit_px
     assert bound * (1 - 1e-4) <= by_slopes <= 1.3 * bound
 
@@ -224,7 +225,7 @@ def test_a_format_too_narrow_for_the_range_is_refused_with_its_node() -> None:
             return Format.holding(2 * self._bounds.depth_modes / DEPTH_HEADROOM, self.arithmetic_width)
 
     Shallow(columns=32, solver="tridiagonal")
-    with pytest.raises(InputError, match=r"forward_elimination\.difference"):
+    with pytest.raises(InputError, match=r"elimination\.difference"):
         Shallow(columns=32, solver="tridiagonal", depth_range_px=1.0)
 
 

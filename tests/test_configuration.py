@@ -24,7 +24,7 @@ from tactile_depth.chip.poisson.spectral_solver import spectral_solver
 from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
 from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse
 from tactile_depth.chip.poisson.transform.orders import makhoul
-from tactile_depth.chip.poisson.transform.row_reorder import row_reorder
+from tactile_depth.chip.poisson.transform.row_order import row_order
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.transpose import transpose
 
@@ -99,7 +99,7 @@ def ideal(frames: Any) -> Any:
     """Return the values at the nodes when the transforms work on floats, in both directions."""
     wide = Transform(0, 62, 50, 0, 62)
     nodes = Nodes()
-    rows = dst_forward(row_reorder(frames, True), wide, nodes, "row_forward")
+    rows = dst_forward(row_order(frames), wide, nodes, "row_forward")
     modes = dst_forward(transpose(rows, False, True), wide, nodes, "column_forward")
     columns = dst_inverse(modes, wide, nodes, "column_inverse")
     dst_inverse(transpose(columns, True, False), wide, nodes, "row_inverse")

@@ -16,7 +16,7 @@ from commands.cost.luts import RUNS, logic, memories
 from commands.hardware import yosys
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.poisson.transform.sdf_fft import twiddle_stages
+from tactile_depth.chip.poisson.transform.fft import twiddle_stages
 from tactile_depth.chip.resources import LATE_BITS
 from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
 from tactile_depth.sensor.synthetic import synthetic
@@ -53,31 +53,27 @@ INSTANCES = {  # in the units and solvers
     "u_lookup": "gradient_lookup",
     "u_polynomial": "polynomial_gradient",
     "u_divergence": "divergence",
-    "u_row_in": "row_reorder",
-    "u_row_out": "row_reorder",
+    "u_row_in": "row_order",
+    "u_rows": "row_order",
     "u_row_forward": "dst_forward",
     "u_column_forward": "dst_forward",
+    "u_forward": "dst_forward",
     "u_to_columns": "transpose",
     "u_to_rows": "transpose",
     "u_divide": "spectral_divide",
-    "u_down": "forward_elimination",
+    "u_down": "elimination",
     "u_stack": "frame_stack",
-    "u_up": "back_substitution",
+    "u_up": "substitution",
     "u_row_inverse": "dst_inverse",
     "u_column_inverse": "dst_inverse",
+    "u_inverse": "dst_inverse",
+    "u_row_out": "corner_turn",
+    "u_corner_turn": "corner_turn",
     "u_zero_offset": "zero_offset",
     "u_capture": "zero_capture",
     "u_events": "contact_events",
 }
 REGISTERS = "u_registers.", "$auto$proc_rom"  # a few words that nobody counts, and what proc makes of their map
-WIDE = {  # in wide_solver
-    "u_rows": "wide_rows",
-    "u_forward": "wide_dst_forward",
-    "u_down": "wide_elimination",
-    "u_stack": "wide_stack",
-    "u_up": "wide_substitution",
-    "u_inverse": "wide_dst_inverse",
-}
 
 
 def elaborated(config: Configuration, folder: Path) -> Any:
@@ -98,10 +94,9 @@ def elaborated(config: Configuration, folder: Path) -> Any:
     return module["cells"]
 
 
-def core_of(cell: str, lanes: int) -> str:
+def core_of(cell: str) -> str:
     """Return the core of a cell, among those that cost.py lists, by the instances in its name."""
-    instances = INSTANCES if lanes == 1 else INSTANCES | WIDE
-    return instances[next(part for part in cell.split(".") if part in instances)]
+    return INSTANCES[next(part for part in cell.split(".") if part in INSTANCES)]
 
 
 def operand_width(bits: Any) -> int:
@@ -132,7 +127,7 @@ def test_multipliers_and_memories_are_those_of_the_rtl(tmp_path: Path, choices: 
             behind_wrapper = name.split(".")[-2].startswith("g_")  # td_ram.sv, td_rom.sv name their array in a generate
             if behind_wrapper:
                 width, words = (int(cell["parameters"][size], 2) for size in ("WIDTH", "SIZE"))
-                memories[core_of(name, config.lanes), width, words] += 1
+                memories[core_of(name), width, words] += 1
             else:
                 others.add(name)
     counted = cost(config)
@@ -150,10 +145,10 @@ def test_formulas_of_the_readme(size: int) -> None:
         spectral = cost(Configuration(columns=size, neumann=neumann))
         tridiagonal = cost(Configuration(columns=size, neumann=neumann, solver="tridiagonal"))
         assert spectral.tiles == 16 * stages + 13
-        assert tridiagonal.tiles == 8 * stages + 8 + 2 * neumann
+        assert tridiagonal.tiles == 8 * stages + 10 + 2 * neumann
         assert spectral.bits_of("frame stores") == 2 * 24 * size**2
-        words = size if size <= 128 else 3 * -(-size // 3)  # a row's, in whole rows of an UltraRAM
-        assert tridiagonal.bits_of("frame stores") == 24 * words * size
+        words = size if size <= 128 else 3 * -(-size // 3)  # a row's, in whole rows of an UltraRAM; two go past it
+        assert tridiagonal.bits_of("frame stores") == 24 * words * (size - 2)
         for counted in (spectral, tridiagonal):
             assert counted.memory_bits == sum(counted.bits_of(kind) for kind in KINDS)
 

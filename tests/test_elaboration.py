@@ -46,15 +46,15 @@ CONFIG = {
         "StoreStyle_must_be_0_to_2": "StoreStyle=-1, StoreStyle=3",
         "DivideShiftWidth_and_LastShiftWidth_must_be_1_to_6": "DivideShiftWidth=0, DivideShiftWidth=7, "
         f"Tridiagonal=1 LastShiftWidth=0, {WIDE} LastShiftWidth=7",
-        "SettledWidth_DownSettledWidth_and_UpSettledWidth_must_be_1_to_16": "Tridiagonal=1 SettledWidth=0, "
-        f"Tridiagonal=1 SettledWidth=17, {WIDE} DownSettledWidth=0, {WIDE} UpSettledWidth=17",
+        "DownSettledWidth_and_UpSettledWidth_must_be_1_to_16": "Tridiagonal=1 DownSettledWidth=0, "
+        f"Tridiagonal=1 UpSettledWidth=17, {WIDE} DownSettledWidth=0, {WIDE} UpSettledWidth=17",
         "MeanReciprocal_must_fit_CoeffWidth": f"{NEUMANN} MeanReciprocal=0, {NEUMANN} MeanReciprocal=131073",
         "WordsPerRow_must_be_at_least_1": "Tridiagonal=1 WordsPerRow=-1",
-        "DownWords_must_be_a_power_of_two_2_to_Lanes_and_an_eighth_of_Columns": f"{WIDE} DownWords=1, "
-        f"{WIDE} DownWords=3, {WIDE} DownWords=16, Tridiagonal=1 Lanes=64 DownWords=32",
+        "DownWords_must_be_a_power_of_two_up_to_half_of_Lanes_and_an_eighth_of_Columns": f"{WIDE} DownWords=0, "
+        f"{WIDE} DownWords=3, {WIDE} DownWords=16, Tridiagonal=1 Lanes=64 DownWords=32, Tridiagonal=1 DownWords=2",
         "Drop_must_leave_a_bit_of_the_input": "DivideDrop=100, RowForwardOut=100, ColumnForwardIn=100, "
         f"ColumnInverseOut=100, RowInverseIn=100, RowInverseOut=100, {NEUMANN} MomentDrop=100, {NEUMANN} MeanDrop=100",
-        "Depth_must_be_at_least_2": f"Tridiagonal=1 TableWords=1, {WIDE} DownTableWords=1, {WIDE} UpTableWords=1",
+        "Depth_must_be_at_least_2": f"Tridiagonal=1 DownTableWords=1, {WIDE} UpTableWords=1",
     },
     "tactile_depth": {
         "FlatField_Polynomial_Corrections_LightGains_and_ZeroOffset_are_0_or_1": "FlatField=2, ZeroOffset=2, "

@@ -16,15 +16,14 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.threshold_comparator import ThresholdComparator
 from tactile_depth.chip.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.chip.limits import COLUMNS
-from tactile_depth.chip.poisson.back_substitution import back_substitution
-from tactile_depth.chip.poisson.forward_elimination import forward_elimination
+from tactile_depth.chip.poisson.elimination import elimination
 from tactile_depth.chip.poisson.frame_stack import frame_stack
+from tactile_depth.chip.poisson.substitution import substitution
 from tactile_depth.chip.poisson.thomas_table import thomas_table
-from tactile_depth.chip.poisson.transform.mode_pairs import mode_pairs
 from tactile_depth.chip.poisson.transform.orders import bit_reversed, eigenvalues, makhoul, mirror
-from tactile_depth.chip.poisson.transform.row_reorder import row_reorder
+from tactile_depth.chip.poisson.transform.row_pairs import mode_pairs
 from tactile_depth.chip.poisson.transform.transpose import transpose
-from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors
+from tactile_depth.chip.poisson.transform.twiddle import phase_factors, twiddle_factors
 from tactile_depth.chip.poisson.tridiagonal_solver import tridiagonal_solver
 from tactile_depth.chip.registers.axil_port import Response, strobed_bits
 from tactile_depth.chip.registers.axil_registers import AxilRegisters, Build, Events, Live
@@ -74,12 +73,6 @@ def test_eigenvalues_are_those_of_the_second_difference(size: int, neumann: bool
     np.testing.assert_allclose(np.sort(eigenvalues(size, neumann)), np.linalg.eigvalsh(middle), atol=1e-12)
 
 
-@given(SEED, SIZE, st.booleans())
-def test_a_reordered_row_comes_back(seed: int, size: int, to_burst: bool) -> None:
-    rows = noise(seed, 3, size)
-    np.testing.assert_array_equal(row_reorder(row_reorder(rows, to_burst), not to_burst), rows)
-
-
 @given(SEED, SIZE)
 def test_modes_are_mirrored_both_ways(seed: int, size: int) -> None:
     modes = noise(seed, size)
@@ -120,8 +113,8 @@ def test_a_stored_coefficient_is_that_of_the_recurrence(columns: int, rows: int,
 
 
 def down_and_up(f: np.ndarray, config: Configuration) -> Any:
-    d = forward_elimination(f, config)
-    return frame_stack(back_substitution(frame_stack(d), config))
+    d = elimination(f, config)
+    return frame_stack(substitution(frame_stack(d), config))
 
 
 @settings(max_examples=30)
@@ -162,8 +155,8 @@ def test_the_singular_mode_has_no_mean(seed: int) -> None:
 def test_negation_goes_through_elimination_and_substitution(seed: int, neumann: bool) -> None:
     config = SOLVED[neumann]
     f = noise(seed, config.rows, config.columns)
-    np.testing.assert_array_equal(forward_elimination(-f, config), -forward_elimination(f, config))
-    np.testing.assert_array_equal(back_substitution(-f, config), -back_substitution(f, config))
+    np.testing.assert_array_equal(elimination(-f, config), -elimination(f, config))
+    np.testing.assert_array_equal(substitution(-f, config), -substitution(f, config))
 
 
 # The solvers.

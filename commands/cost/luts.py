@@ -22,7 +22,7 @@ from scipy.optimize import nnls
 from commands.cost.devices import Device
 from commands.cost.parts import parts
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.poisson.transform.sdf_fft import stages
+from tactile_depth.chip.poisson.transform.fft import stages
 from tactile_depth.chip.resources import Memory, Multiplier, Words
 
 RUNS = Path(__file__).with_name("luts.json")
@@ -31,8 +31,7 @@ RIDGE = 0.1
 SMALLEST = 100  # LUTs: smaller cores have no more weight in the fit
 OPTIONS = ("flat_field", "light_gains", "polynomials", "zero_offset")  # each with registers
 TABLES = "bits of tables"  # one LUT each, which is not fitted
-PROPORTIONAL = ("flat", "reference", "spectral", "wide", "zero")  # beginnings of names: cores without a constant
-TRANSFORMS = ("dst", "wide_dst")  # with these the names of the transforms begin
+PROPORTIONAL = ("flat", "reference", "spectral", "zero")  # beginnings of names: cores without a constant
 
 Terms = dict[str, dict[str, float]]  # amount by core and term
 
@@ -96,7 +95,7 @@ def terms(config: Configuration, device: Device) -> Terms:
         name, core = part.core, counted[part.core]
         if isinstance(part, Multiplier):
             core["split"] += (device.multipliers(part.a, part.b) - 1) * (part.a + part.b)
-            if name.startswith(TRANSFORMS):
+            if name.startswith("dst"):
                 core["product"] += part.a + part.b
         elif isinstance(part, Memory):
             if part.rom and _of_luts(part, device):
@@ -108,14 +107,14 @@ def terms(config: Configuration, device: Device) -> Terms:
                 core[name] += 1
             if not name.endswith("dst_forward"):
                 core[f"{name}, bits"] += part.bits
-            if name.startswith(TRANSFORMS):
+            if name.startswith("dst"):
                 butterflies = sum(stage.delay > 0 for stage in stages(config.columns, "inverse" in name))
                 core[f"{name.rpartition('_')[0]}, butterflies"] += butterflies * part.bits
     for name in (REST, "contact_events"):
         counted[name][f"{name}, positions"] += (config.rows * config.columns).bit_length()
     counted[REST]["options"] += sum(getattr(config, option) for option in OPTIONS)
     if config.neumann and config.solver == "tridiagonal":
-        core = counted["forward_elimination" if config.lanes == 1 else "wide_elimination"]
+        core = counted["elimination"]
         core["column_mean"] += config.depth.width
     return {name: dict(amounts) for name, amounts in counted.items()}
 

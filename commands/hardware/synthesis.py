@@ -16,7 +16,7 @@ from tactile_depth.pictures.frames import REST_SCENE, Frames, flat_frames, load_
 from tactile_depth.sensor.sensor import Sensor
 from tactile_depth.sensor.view import shown
 
-SOLVERS = {"spectral_solver", "tridiagonal_solver", "wide_solver"}
+SOLVERS = {"spectral_solver", "tridiagonal_solver"}
 # Small ROMs are LUTs. For Yosys "distributed" is a RAM of LUTs, and it has none with a read port alone.
 SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
 
@@ -54,7 +54,7 @@ def sources(request: run_request.Request, extra: Iterable[Path] | None = None) -
     `extra` are sources of a board, which takes all of hdl/ beside them.
     """
     frames, calibration, config = design(request)
-    unused = SOLVERS - {"wide_solver" if config.lanes > 1 else f"{config.solver}_solver"}
+    unused = SOLVERS - {f"{config.solver}_solver"}
     tops = ["tactile_depth", *(["camera_unit"] if frames.camera else [])]
     needed = (
         [file for top in tops for file in repository.sources(top, unused)] if extra is None else repository.sources()

@@ -10,7 +10,7 @@ from commands.common.tabular import counts
 from commands.run import bench
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.spectral_divide import reciprocal_rom
-from tactile_depth.chip.poisson.thomas_table import thomas_table
+from tactile_depth.chip.poisson.tridiagonal_solver import tables
 
 ROWS_SHOWN = 16
 
@@ -60,7 +60,7 @@ def coefficient_words(config: Configuration) -> int:
     """Return the words of the table along the columns: reciprocals, or coefficients of Thomas's algorithm."""
     if config.solver == "spectral":
         return len(reciprocal_rom(config))
-    return len(thomas_table(config).words) + config.columns
+    return sum(table.words.size for table in tables(config)) + config.columns
 
 
 def table(report: dict, labels: tuple[str, ...]) -> str:

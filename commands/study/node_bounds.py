@@ -27,14 +27,12 @@ from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import Format
 from tactile_depth.chip.poisson import spectral_solver, tridiagonal_solver
-from tactile_depth.chip.poisson.back_substitution import back_substitution
-from tactile_depth.chip.poisson.forward_elimination import forward_elimination
+from tactile_depth.chip.poisson.elimination import elimination
 from tactile_depth.chip.poisson.frame_stack import frame_stack
 from tactile_depth.chip.poisson.spectral_divide import reciprocals
+from tactile_depth.chip.poisson.substitution import substitution
 from tactile_depth.chip.poisson.thomas_table import ahead_rows, thomas_table
 from tactile_depth.chip.poisson.transform.orders import makhoul
-from tactile_depth.chip.poisson.wide_elimination import wide_elimination
-from tactile_depth.chip.poisson.wide_substitution import wide_substitution
 
 BLOCK_BYTES = 1 << 26  # bytes of responses held at a time
 TRIED = 1 << 32  # most products computed for a node of the inverse row transform, whose words are tried one by one
@@ -155,13 +153,13 @@ class _Survey:
         self.slope = config.gradient_limit / config.gradient_lsb  # largest slope and depths, in codes
         self.depth_in = config.deepest_px / config.gradient_lsb  # depth field whose Laplacian enters
         self.depth_out = config.deepest_px / config.depth_lsb_px
-        self.wide = config.lanes > 1
+        self.in_pairs = config.solver == "tridiagonal"
         stages = spectral_solver if config.solver == "spectral" else tridiagonal_solver
         forward, inverse = Responses(), Responses()
         unit = np.eye(config.columns)
         self.modes = stages.row_forward(unit, config, forward)  # (column, mode's position)
         # (mode's position, column); a row alone in its pair
-        lone = unit[:, None] if self.wide else unit
+        lone = unit[:, None] if self.in_pairs else unit
         self.to_row = stages.row_inverse(lone, config, inverse).reshape(unit.shape)
         self.forward, self.inverse = forward.nodes, inverse.nodes
         self.from_row = np.linalg.inv(self.to_row)  # (column, mode's position): modes of a row of depth codes
@@ -200,7 +198,7 @@ class _Survey:
     def groups(self) -> list[tuple[int, ...]]:
         """Return the rows of `places`, or the pairs of rows that they are in: the row that leaves first, the next."""
         rows = places(self.config.rows)
-        if not self.wide:
+        if not self.in_pairs:
             return [(row,) for row in rows]
         last = self.config.rows - 1
         firsts = sorted({last - (last - row) // 2 * 2 for row in (*rows, self.config.rows // 2 + 1)})
@@ -243,7 +241,7 @@ class _Survey:
                 continue
             # A word is a sum over the depths of its rows, and a sum over the modes of its rows. Both give an upper
             # bound. The words with the largest bounds are tried first, until no other bound exceeds the value reached.
-            parts = (words, self.partner(name)) if self.wide else (words,)
+            parts = (words, self.partner(name)) if self.in_pairs else (words,)
             by_depth, by_mode = [np.abs(self.from_row @ part) for part in parts], [np.abs(part) for part in parts]
             groups = self.groups()
             atmost = np.stack(
@@ -322,11 +320,6 @@ class _Spectral(_Survey):
 
 
 class _Tridiagonal(_Survey):
-    @property
-    def up(self) -> str:
-        """Node of the way up of Thomas's algorithm."""
-        return "wide_substitution" if self.wide else "back_substitution"
-
     def columns(self) -> dict[int, np.ndarray]:
         rows, size = self.config.rows, self.config.columns
         block = max(1, BLOCK_BYTES // (8 * rows * size))
@@ -366,7 +359,7 @@ class _Tridiagonal(_Survey):
                 samples = slice(first, first + len(response))
                 if at == row:
                     columns[node][samples] = response[:, mode]
-                if node == self.up and row in sources:
+                if node == "substitution" and row in sources:
                     sources[row][:, samples] = response.T
 
             self.run(first, min(first + block, rows), collect)
@@ -380,7 +373,7 @@ class _Tridiagonal(_Survey):
 
         `hear` is called with node, row and response (samples, modes), for all modes or for position 0 only.
         """
-        rows, size, up = self.config.rows, self.config.columns, self.up
+        rows, size = self.config.rows, self.config.columns
         calls: dict[str, int] = {}
 
         class Told(Monitor):
@@ -389,17 +382,16 @@ class _Tridiagonal(_Survey):
                     for row in range(response.shape[1]):
                         hear(node, row, response[:, row])
                     return
-                if node.endswith(".store"):  # of wide_elimination: d of the last row
+                if node.endswith(".store"):  # d of the last row
                     hear(node, rows - 1, response)
                     return
                 call = calls[node] = calls.get(node, -1) + 1
-                row = rows - 1 - call if node == up else call
+                row = rows - 1 - call if node == "substitution" else call
                 hear(node, row, response if response.ndim == 2 else response[:, None])
 
         lone = np.zeros((stop - first, rows, size))
         lone[np.arange(stop - first), np.arange(first, stop)] = 1
-        down, back = (wide_elimination, wide_substitution) if self.wide else (forward_elimination, back_substitution)
-        back(frame_stack(down(lone, self.config, Told())), self.config, Told())
+        substitution(frame_stack(elimination(lone, self.config, Told())), self.config, Told())
 
     def in_depths(self, node: str, row: int) -> np.ndarray:
         """Return the largest words over all depths: d[i] is z[i] + c[i] z[i+1], and c[i] multiplies d[i] / c[i].

@@ -17,9 +17,9 @@ from commands.common.tabular import Column
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson import spectral_solver
+from tactile_depth.chip.poisson.transform.fft import halvings, twiddle_stages
 from tactile_depth.chip.poisson.transform.orders import bit_reversed, makhoul
-from tactile_depth.chip.poisson.transform.sdf_fft import halvings, twiddle_stages
-from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
+from tactile_depth.chip.poisson.transform.twiddle import coefficient_gain
 
 BIAS = 5.0  # allowed distance of a mean error from zero, in standard errors
 FEWEST = 32  # random blocks: fewer give no standard error

@@ -5,7 +5,7 @@
 //
 // Stream in: d of position 0, Rows of them a frame. The mean is there 4 cycles after d of the row before the last, and
 // the last row must not come before. Two multipliers. Bit-accurate model: zero_mean in
-// models/tactile_depth/chip/poisson/forward_elimination.py.
+// models/tactile_depth/chip/poisson/elimination.py.
 
 `default_nettype none
 

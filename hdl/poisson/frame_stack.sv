@@ -1,158 +1,238 @@
 // SPDX-License-Identifier: Apache-2.0
-// frame_stack: rows of a frame in, last row first out, through one memory that holds a frame.
+// frame_stack: rows of a frame in, a few words a clock; last row first out, two rows side by side.
 //
-// Stream in: bursts of Columns words, Rows of them a frame, gaps between bursts anywhere; rows count from a frame's
-// start. Stream out: the rows without a pause, the last row first. Latency: 3 cycles from the first word of the last
-// row to the first word out; nothing need follow, the reader runs by itself.
+// Stream in: bursts of Columns / InWords clocks, Rows of them a frame, any gaps between bursts. With each row come its
+// own words, which count in the last row, and those of the row above. Stream out: pairs of rows, the last row first,
+// bursts of Beats = Columns / Paths clocks, Paths words of the lower row and as many of the upper one a clock; a pair
+// begins 2 Columns / Lanes clocks after the one before. Starts of both come 6 clocks before the first words.
+// Latency: 1 clock from the first words of the last row in to its first words out, or Columns / InWords - Beats + 4 if
+// words come more slowly than they leave; nothing need follow. Rows come at least as slowly as they leave.
 //
-// The last row goes past the memory. In place: while a row is read, the row of the next frame that takes its place
-// cannot have begun. So the writer of a frame goes the way that the reader of the frame before goes: upwards and
-// downwards in turn.
+// With an odd number of rows the last pair is a row alone; what leaves beside it has no meaning.
 //
-// WordsPerRow words lie side by side in a row of the memory, collected before the write and taken apart after the read.
-// Where Columns is no multiple of it the first row of a burst has fewer, so that a burst ends with a full one.
+// In place: the reader is always ahead of the writer of the next frame, which goes the way that the reader goes, up and
+// down in turn. Lower rows of pairs have a memory, and upper ones. The last row and the one above it need none, or one
+// of a row each if words come more slowly than they leave. A row of a memory has the words of a clock, or WordsPerRow
+// words if those of a clock are one: the first row of a burst has fewer, so that a burst ends with a full one.
 // Bit-accurate model: models/tactile_depth/chip/poisson/frame_stack.py.
 
 `default_nettype none
 
 module frame_stack #(
   parameter int Width       = 24,
-  parameter int Rows        = 128,
+  parameter int Rows        = 128,  // at least 4
   parameter int Columns     = 128,
+  parameter int InWords     = 1,  // a power of two up to Paths and Columns / 8
+  parameter int Lanes       = 1,  // a power of two up to Columns / 2
   parameter int WordsPerRow = 1,
-  parameter int Style       = 1  // of the memory, hdl/common/td_ram.sv
+  parameter int Style       = 1,  // of the memory, hdl/common/td_ram.sv
+  localparam int Paths = Lanes > 1 ? Lanes / 2 : 1
 ) (
-  input  wire                    clk,
-  input  wire                    rst,
-  input  wire                    en,
-  input  wire                    in_start,
-  input  wire                    in_frame_start,   // with in_start: the first burst of a frame
-  input  wire  [Width-1:0]       in_data,          // a word of any format, unchanged in out_data
-  output logic                   out_start,
-  output logic                   out_frame_start,  // with out_start: the first burst of a frame
-  output logic [Width-1:0]       out_data
+  input  wire                       clk,
+  input  wire                       rst,
+  input  wire                       en,
+  input  wire                       in_start,         // 6 clocks before the first words
+  input  wire                       in_frame_start,   // with in_start: the first burst of a frame
+  input  wire  [InWords*Width-1:0]  in_last,          // words of any format; those of the last row count
+  input  wire  [InWords*Width-1:0]  in_ahead,         // of the row above
+  output logic                      out_start,        // 6 clocks before the first words of a pair
+  output logic                      out_frame_start,
+  output logic                      out_alone,        // with out_start: the pair is one row
+  output logic [2*Paths*Width-1:0]  out_data          // the lower row in the lower bits
 );
 
-  localparam int PositionWidth = $clog2(Columns);
-  localparam int Burst = (Columns + WordsPerRow - 1) / WordsPerRow;  // memory rows of a burst
-  localparam int Depth = Rows * Burst;
-  localparam int AddressWidth = $clog2(Depth);
-  localparam int Top = Depth - Burst;  // the first memory row of the uppermost burst
-  // The last memory row of the row before the last one, by the way of the writer.
-  localparam int BeforeLastUp = Top - 1;
-  localparam int BeforeLastDown = 2 * Burst - 1;
-  localparam int RemainingWidth = WordsPerRow > 1 ? $clog2(WordsPerRow) : 1;
-  localparam int Kept = WordsPerRow > 2 ? WordsPerRow - 1 : 1;
-  localparam logic [PositionWidth-1:0] LastPosition = PositionWidth'(Columns - 1);
-  // Words of a memory row that are still to come: of a burst's first, and of any other.
-  localparam logic [RemainingWidth-1:0] FirstRemaining = RemainingWidth'((Columns - 1) % WordsPerRow);
-  localparam logic [RemainingWidth-1:0] FullRemaining = RemainingWidth'(WordsPerRow - 1);
+  localparam int Clocks = Columns / InWords;
+  localparam int Beats = Columns / Paths;
+  localparam int Period = 2 * Columns / Lanes;
+  localparam int RowWords = Paths > 1 ? Paths : WordsPerRow;  // of a memory
+  localparam int Gather = RowWords / InWords;  // clocks in which they come
+  localparam int Serve = RowWords / Paths;  // and leave
+  localparam int Burst = (Columns + RowWords - 1) / RowWords;  // memory rows of a burst
+  localparam int Pairs = (Rows + 1) / 2;
+  localparam int ClockWidth = $clog2(Clocks);
+  localparam int BeatWidth = $clog2(Beats);
+  localparam int PeriodWidth = $clog2(Period);
+  localparam int GatherWidth = Gather > 1 ? $clog2(Gather) : 1;
+  localparam int ServeWidth = Serve > 1 ? $clog2(Serve) : 1;
+  localparam int RowWidth = $clog2(Rows + 2);
+  localparam int PairWidth = $clog2(Pairs + 1);
+  localparam int Lead = 6;
+  localparam int ToRead = Lead - 3;  // clocks from out_start to the read of the first words
+  localparam bit Past = InWords == Paths;  // the last two rows go past the memories
+  localparam int BeginsAt = Past ? 0 : Clocks - Beats + 3;
+  // Clocks of a memory row that are still to come: of a burst's first one.
+  localparam logic [GatherWidth-1:0] FirstGather = GatherWidth'((Clocks - 1) % Gather);
+  localparam logic [ServeWidth-1:0] FirstServe = ServeWidth'((Beats - 1) % Serve);
 
-  function automatic logic [RemainingWidth-1:0] remaining_after(input logic [RemainingWidth-1:0] remaining);
-    remaining_after = remaining == '0 ? FullRemaining : remaining - RemainingWidth'(1);
-  endfunction
-
-  function automatic logic [Width-1:0] word_of(
-    input logic [WordsPerRow*Width-1:0] words, input logic [RemainingWidth-1:0] remaining
+  // Rows of the frame that have begun; behind the last one no row counts until a frame begins.
+  logic [RowWidth-1:0] begun, begun_q;
+  logic [ClockWidth-1:0] position;
+  logic active, begins;  // begins: the reader
+  logic down;  // the way of the writer through the memories: up from row 0, or down
+  td_burst_counter #(.Words(Clocks)) u_clocks (
+    .clk, .rst, .en, .start(in_start), .position, .active
   );
-    word_of = words[Width-1:0];
-    for (int word = 1; word < WordsPerRow; word++) begin
-      if (remaining == RemainingWidth'(word)) word_of = words[word*Width+:Width];
-    end
-  endfunction
+  assign begun = !in_start ? begun_q : in_frame_start ? RowWidth'(1)
+      : begun_q == RowWidth'(Rows + 1) ? begun_q : begun_q + RowWidth'(1);
+  assign begins = active & (position == ClockWidth'(BeginsAt)) & (begun == RowWidth'(Rows));
 
-  // The way of the reader, and of the writer until its last row begins: from the uppermost burst down, or up from 0.
-  logic down;
-  function automatic logic [AddressWidth-1:0] address_after(
-    input logic [AddressWidth-1:0] address, input logic last_of_burst, input logic downwards
+  // Writer, as the words come.
+  logic [Lead-1:0] start_q;
+  logic [ClockWidth-1:0] write_position;
+  logic write_active, write_start, write_row, stores;
+  logic [RowWidth-1:0] written, written_q;  // begun, of the words present
+  logic [GatherWidth-1:0] gather, gather_q;
+  logic [RowWords*Width-1:0] ahead;
+  assign write_start = start_q[Lead-1];
+  td_burst_counter #(.Words(Clocks)) u_write (
+    .clk, .rst, .en, .start(write_start), .position(write_position), .active(write_active)
   );
-    address_after = address + (last_of_burst & downwards ? AddressWidth'(1 - 2 * Burst) : AddressWidth'(1));
-  endfunction
-
-  // Writer.
-  logic [PositionWidth-1:0] write_position;
-  logic [RemainingWidth-1:0] write_remaining, write_remaining_q;
-  logic [AddressWidth-1:0] write_address, write_address_q;
-  logic write_active, write_end, write_last_q, write_row;
-  logic [Kept*Width-1:0] kept;  // words before in_data, the latest in the lowest bits
-  logic [Width-1:0] kept_q;
-  td_burst_counter #(.Words(Columns)) u_write (
-    .clk, .rst, .en, .start(in_start), .position(write_position), .active(write_active)
-  );
-  assign write_remaining = in_start ? FirstRemaining : write_remaining_q;
-  assign write_row = write_active & (write_remaining == '0);
-  assign write_address = in_frame_start ? (down ? AddressWidth'(Top) : '0) : write_address_q;
-
-  wire read_begin;  // the last row begins
-  assign read_begin = in_start & ~in_frame_start & write_last_q;
-
+  assign gather = write_start ? FirstGather : gather_q;
+  assign write_row = write_active & (gather == '0);
+  assign written = write_start ? begun_q : written_q;
+  assign stores = (written != RowWidth'(1)) & (written != RowWidth'(Rows)) & (written != RowWidth'(Rows + 1));
   always_ff @(posedge clk) begin
     if (en) begin
-      kept <= (Kept * Width)'({kept, in_data});
-      kept_q <= kept[Width-1:0];
-      write_remaining_q <= remaining_after(write_remaining);
-      write_address_q <= write_row ? address_after(write_address, write_end, down) : write_address;
-      write_end <= write_active & (write_position == LastPosition - PositionWidth'(1));
-      if (write_end) begin  // of the row before the last
-        write_last_q <= write_address == (down ? AddressWidth'(BeforeLastDown) : AddressWidth'(BeforeLastUp));
-      end
-      down <= down ^ read_begin;
-    end
-    if (rst) {down, write_end} <= '0;
-  end
-
-  // Reader. The first burst is the last row, which needs no memory; as it begins, the second row is addressed.
-  logic [PositionWidth-1:0] read_position;
-  logic [RemainingWidth-1:0] read_remaining, read_remaining_q, word_remaining;  // word: of the word that is read
-  logic [AddressWidth-1:0] read_address;
-  logic read_more, read_start, read_active, read_end, read_past, read_first_q, read_last;
-  logic [1:0] read_past_q, start_q, frame_start_q;
-  logic [Width-1:0] word_q;  // the word that is read stands in a register before it goes on
-  logic [WordsPerRow*Width-1:0] read_data;
-  td_burst_counter #(.Words(Columns)) u_read (
-    .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
-  );
-  assign read_start = read_begin | read_more;
-  assign read_past = read_begin | read_first_q;
-  assign read_remaining = read_start ? FirstRemaining : read_remaining_q;
-  assign read_last = read_address == (down ? AddressWidth'(Burst - 1) : AddressWidth'(Depth - 1));
-
-  td_ram #(.Width(WordsPerRow * Width), .Depth(Depth), .Style(Style)) u_ram (
-    .clk,
-    .write_en     (en & write_row),
-    .write_address(write_address),
-    .write_data   ((WordsPerRow * Width)'({kept, in_data})),
-    .read_en      (en & read_active & ~read_past & (read_start | (read_remaining == FullRemaining))),
-    .read_address (read_address),
-    .read_data    (read_data)
-  );
-
-  always_ff @(posedge clk) begin
-    if (en) begin
-      read_end <= read_active & (read_position == LastPosition - PositionWidth'(1));
-      read_more <= read_end & (read_past | ~read_last);
-      read_first_q <= read_past & ~read_end;
-      read_remaining_q <= remaining_after(read_remaining);
-      if (read_begin) read_address <= down ? AddressWidth'(Burst) : AddressWidth'(Top - Burst);  // `down` turns now
-      else if (~read_first_q & read_active & read_remaining == '0) begin
-        read_address <= address_after(read_address, read_end, down);
-      end
-      start_q <= {start_q[0], read_start};
-      frame_start_q <= {frame_start_q[0], read_begin};
-      read_past_q <= {read_past_q[0], read_past};
-      word_remaining <= read_remaining;
-      word_q <= word_of(read_data, word_remaining);
-      out_start <= start_q[1];
-      out_frame_start <= frame_start_q[1];
-      out_data <= read_past_q[1] ? kept_q : word_q;
+      begun_q <= begun;
+      written_q <= written;
+      start_q <= {start_q[Lead-2:0], in_start};
+      gather_q <= gather == '0 ? GatherWidth'(Gather - 1) : gather - GatherWidth'(1);
+      down <= down ^ begins;
     end
     if (rst) begin
-      read_more <= 1'b0;
-      read_end <= 1'b0;
-      start_q <= '0;
-      frame_start_q <= '0;
-      out_start <= 1'b0;
-      out_frame_start <= 1'b0;
+      begun_q <= RowWidth'(Rows + 1);
+      {start_q, down} <= '0;
+    end
+  end
+  if (Gather > 1) begin : g_gather
+    localparam int Kept = RowWords - InWords;
+    logic [Kept*Width-1:0] kept;
+    assign ahead = {in_ahead, kept};
+    always_ff @(posedge clk) if (en) kept <= ahead[RowWords*Width-1:InWords*Width];
+  end else begin : g_at_once
+    assign ahead = in_ahead;
+  end
+
+  // Reader: starts of the pairs, and behind them the reads.
+  logic [PairWidth-1:0] pair;  // that are still to begin
+  logic starts_active, pair_end, read_start, read_active, read_row, read_last;
+  logic [PeriodWidth-1:0] start_time;
+  logic [BeatWidth-1:0] read_time;
+  logic [ToRead-1:0] read_start_q, frame_start_q;
+  logic [ServeWidth-1:0] serve, serve_q;
+  logic first_pair, first_pair_q, reads_down;
+  td_burst_counter #(.Words(Period)) u_starts (
+    .clk, .rst, .en, .start(out_start), .position(start_time), .active(starts_active)
+  );
+  assign pair_end = starts_active & (start_time == PeriodWidth'(Period - 1));
+  assign read_start = read_start_q[ToRead-1];
+  td_burst_counter #(.Words(Beats)) u_read (
+    .clk, .rst, .en, .start(read_start), .position(read_time), .active(read_active)
+  );
+  assign first_pair = read_start ? frame_start_q[ToRead-1] : first_pair_q;
+  assign serve = read_start ? FirstServe : serve_q;
+  assign read_row = read_active & ~first_pair & (read_start | (serve == ServeWidth'(Serve - 1)));
+  assign read_last = read_time == BeatWidth'(Beats - Serve);  // of the memory rows of a burst
+
+  always_ff @(posedge clk) begin
+    if (en) begin
+      out_start <= begins | (pair_end & (pair != '0));
+      out_frame_start <= begins;
+      out_alone <= Rows % 2 != 0 && !begins && pair == PairWidth'(1);
+      if (begins) pair <= PairWidth'(Pairs - 1);
+      else if (pair_end && pair != '0) pair <= pair - PairWidth'(1);
+      if (begins) reads_down <= ~down;
+      read_start_q <= {read_start_q[ToRead-2:0], out_start};
+      frame_start_q <= {frame_start_q[ToRead-2:0], out_frame_start};
+      first_pair_q <= first_pair;
+      serve_q <= serve == '0 ? ServeWidth'(Serve - 1) : serve - ServeWidth'(1);
+    end
+    if (rst) {pair, out_start, out_frame_start, out_alone, read_start_q, frame_start_q} <= '0;
+  end
+
+  logic [1:0] past_q;
+  logic [ServeWidth-1:0] word_serve;  // of the words that are read
+  always_ff @(posedge clk) begin
+    if (en) begin
+      past_q <= {past_q[0], first_pair};
+      word_serve <= serve;
+    end
+  end
+
+  for (genvar side = 0; side < 2; side++) begin : g_side  // lower row of a pair, upper row
+    localparam int Slots = (Rows - 1 - side) / 2;
+    localparam int Depth = Slots * Burst;
+    localparam int AddressWidth = $clog2(Depth);
+    localparam logic [AddressWidth-1:0] Top = AddressWidth'(Depth - Burst);
+
+    function automatic logic [AddressWidth-1:0] address_after(
+      input logic [AddressWidth-1:0] address, input logic last_of_burst, input logic downwards
+    );
+      address_after = address + (last_of_burst & downwards ? AddressWidth'(1 - 2 * Burst) : AddressWidth'(1));
+    endfunction
+
+    // The words of the row above, which comes with the row after it.
+    logic [AddressWidth-1:0] write_address, read_address;
+    logic write_now;
+    assign write_now = write_row & stores & (written[0] == 1'(Rows - 1 - side));
+    logic [RowWords*Width-1:0] words;
+    td_ram #(.Width(RowWords * Width), .Depth(Depth), .Style(Style)) u_ram (
+      .clk,
+      .write_en     (en & write_now),
+      .write_address(write_address),
+      .write_data   (ahead),
+      .read_en      (en & read_row),
+      .read_address (read_address),
+      .read_data    (words)
+    );
+    always_ff @(posedge clk) begin
+      if (en) begin
+        if (write_start && written == RowWidth'(1)) write_address <= down ? Top : '0;
+        else if (write_now) begin
+          write_address <= address_after(write_address, write_position == ClockWidth'(Clocks - 1), down);
+        end
+        // A frame that was written upwards is read from the top down.
+        if (read_start && first_pair) read_address <= reads_down ? Top : '0;
+        else if (read_row) read_address <= address_after(read_address, read_last, reads_down);
+      end
+    end
+
+    logic [InWords*Width-1:0] in_words;
+    logic [Paths*Width-1:0] past, word, word_q;
+    assign in_words = side == 0 ? in_last : in_ahead;
+    if (Past) begin : g_past
+      assign past = in_words;
+    end else begin : g_buffer
+      logic [RowWords*Width-1:0] buffered, row_words;
+      if (side == 0) begin : g_last
+        logic [(RowWords-InWords)*Width-1:0] kept;
+        assign row_words = {in_last, kept};
+        always_ff @(posedge clk) if (en) kept <= row_words[RowWords*Width-1:InWords*Width];
+      end else begin : g_above
+        assign row_words = ahead;
+      end
+      td_ram #(.Width(RowWords * Width), .Depth(Beats), .Style(0)) u_row (
+        .clk,
+        .write_en     (en & write_row & (written == RowWidth'(Rows))),
+        .write_address(write_position[ClockWidth-1-:BeatWidth]),
+        .write_data   (row_words),
+        .read_en      (en & read_active & first_pair),
+        .read_address (read_time),
+        .read_data    (buffered)
+      );
+      always_ff @(posedge clk) if (en) past <= buffered;
+    end
+    always_comb begin
+      word = words[Paths*Width-1:0];
+      for (int later = 1; later < Serve; later++) begin
+        if (word_serve == ServeWidth'(Serve - 1 - later)) word = words[later*Width+:Paths*Width];
+      end
+    end
+    always_ff @(posedge clk) begin
+      if (en) begin
+        word_q <= word;
+        out_data[side*Paths*Width+:Paths*Width] <= past_q[1] ? past : word_q;
+      end
     end
   end
 

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // poisson_unit: depth from slopes: the divergence, then one of the solvers of the Poisson equation.
 //
-//   slope -> divergence -> spectral_solver, tridiagonal_solver or wide_solver -> depth
+//   slope -> divergence -> spectral_solver or tridiagonal_solver -> depth
 //
-//   spectral_solver:     row_reorder -> dst_forward -> transpose -> dst_forward -> spectral_divide
-//                        -> dst_inverse -> transpose -> dst_inverse -> row_reorder
-//   tridiagonal_solver:  row_reorder -> dst_forward -> forward_elimination -> frame_stack
-//                        -> back_substitution -> dst_inverse -> row_reorder
-//   wide_solver:         the same with several words a clock: wide_rows -> wide_dst_forward -> wide_elimination
-//                        -> wide_stack -> wide_substitution -> wide_dst_inverse
+//   spectral_solver:     row_order -> dst_forward -> transpose -> dst_forward -> spectral_divide
+//                        -> dst_inverse -> transpose -> dst_inverse -> corner_turn
+//   tridiagonal_solver:  row_order -> dst_forward -> elimination -> frame_stack
+//                        -> substitution -> dst_inverse -> corner_turn
 //
 // Stream in: slopes in raster order. Stream out: a burst of Columns / Lanes beats for each row, Lanes depth codes in a
 // beat, the first in the lowest bits; `burst_start` with the first beat of a row and depth_frame_start with the first
@@ -54,13 +52,7 @@ module poisson_unit
     .out_valid(divergence_valid), .out_frame_start(divergence_frame_start), .out_data(divergence_data)
   );
 
-  if (Tridiagonal != 0 && Lanes > 1) begin : g_wide
-    wide_solver #(.TableFolder(TableFolder), .Config(Config)) u_solver (
-      .clk, .rst, .en,
-      .in_valid(divergence_valid), .in_frame_start(divergence_frame_start), .in_data(divergence_data),
-      .out_start(burst_start), .out_frame_start(depth_frame_start), .out_data(depth_data), .saturations
-    );
-  end else if (Tridiagonal != 0) begin : g_tridiagonal
+  if (Tridiagonal != 0) begin : g_tridiagonal
     tridiagonal_solver #(.TableFolder(TableFolder), .Config(Config)) u_solver (
       .clk, .rst, .en,
       .in_valid(divergence_valid), .in_frame_start(divergence_frame_start), .in_data(divergence_data),
@@ -81,8 +73,8 @@ module poisson_unit
   localparam int StoreStyle     = value(Config, StoreStyleField);
   localparam int ShiftWidth     = value(Config, Tridiagonal != 0 ? LastShiftWidthField : DivideShiftWidthField);
   localparam int DownWords      = value(Config, DownWordsField);
-  localparam int DownSettled    = value(Config, Lanes > 1 ? DownSettledWidthField : SettledWidthField);
-  localparam int UpSettled      = value(Config, Lanes > 1 ? UpSettledWidthField : SettledWidthField);
+  localparam int DownSettled    = value(Config, DownSettledWidthField);
+  localparam int UpSettled      = value(Config, UpSettledWidthField);
   localparam int MeanReciprocal = value(Config, MeanReciprocalField);
   if ((Tridiagonal | Neumann) > 1 || (Tridiagonal | Neumann) < 0) begin : g_refused_0
     Tridiagonal_and_Neumann_are_0_or_1 u_refused ();
@@ -112,19 +104,19 @@ module poisson_unit
     DivideShiftWidth_and_LastShiftWidth_must_be_1_to_6 u_refused ();
   end
   if (Tridiagonal != 0 && (DownSettled < 1 || DownSettled > 16 || UpSettled < 1 || UpSettled > 16)) begin : g_refused_9
-    SettledWidth_DownSettledWidth_and_UpSettledWidth_must_be_1_to_16 u_refused ();
+    DownSettledWidth_and_UpSettledWidth_must_be_1_to_16 u_refused ();
   end
   if (Tridiagonal != 0 && Neumann != 0 && (MeanReciprocal < 1 || MeanReciprocal > 1 << (CoeffWidth - 1)))
   begin : g_refused_10
     MeanReciprocal_must_fit_CoeffWidth u_refused ();
   end
-  if (Tridiagonal != 0 && Lanes == 1 && value(Config, WordsPerRowField) < 1) begin : g_refused_11
+  if (Tridiagonal != 0 && value(Config, WordsPerRowField) < 1) begin : g_refused_11
     WordsPerRow_must_be_at_least_1 u_refused ();
   end
-  if (Tridiagonal != 0 && Lanes > 1
-      && (DownWords < 2 || DownWords > Lanes || 8 * DownWords > Columns || DownWords != 1 << $clog2(DownWords)))
+  if (Tridiagonal != 0 && (DownWords < 1 || DownWords > (Lanes > 1 ? Lanes / 2 : 1) || 8 * DownWords > Columns
+      || DownWords != 1 << $clog2(DownWords)))
   begin : g_refused_12
-    DownWords_must_be_a_power_of_two_2_to_Lanes_and_an_eighth_of_Columns u_refused ();
+    DownWords_must_be_a_power_of_two_up_to_half_of_Lanes_and_an_eighth_of_Columns u_refused ();
   end
 
 endmodule

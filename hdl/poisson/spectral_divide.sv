@@ -5,8 +5,9 @@
 //   c takes back the gain of all transforms and turns pixels into full scales of the depth code
 //
 // Stream in: bursts of Columns modes, Columns of them a frame, both directions in bit-reversed order. Stream out: the
-// same. Latency: 6 cycles; en low: nothing moves. The table is symmetric: the ROM holds the lower triangle, p (p + 1) /
-// 2 + t for t <= p, and its address is kept by adding. Mantissa M has CoeffWidth bits at every size of the reciprocal.
+// same. Starts of both come 2 cycles before the first mode. Latency: 4 cycles; en low: nothing moves.
+// The table is symmetric: the ROM holds the lower triangle, p (p + 1) / 2 + t for t <= p, and its address is kept by
+// adding. Mantissa M has CoeffWidth bits at every size of the reciprocal.
 // Bit-accurate model: models/tactile_depth/chip/poisson/spectral_divide.py, which also writes the ROM.
 
 `default_nettype none
@@ -36,7 +37,8 @@ module spectral_divide #(
   localparam int AddressWidth = $clog2(Words);
   localparam int ProductWidth = Width + CoeffWidth;
   localparam int ShiftedWidth = ProductWidth + (1 << ShiftWidth) - 1;
-  localparam int ToShifted = 5;  // cycles to the shifted product: address, ROM, operands, product, shift
+  localparam int ToShifted = 5;  // cycles from a start to the shifted product: address, ROM, operands, product, shift
+  localparam int ToStart = ToShifted - 2;
 
   // p: burst in the frame, t: word in the burst; tri_p = p (p + 1) / 2, tri_t likewise.
   logic [PositionWidth-1:0] p_q, p, t;
@@ -68,14 +70,15 @@ module spectral_divide #(
     .clk, .en, .address, .data({shift, mantissa})
   );
 
-  logic [2:0][Width-1:0] data_q;
+  logic signed [Width-1:0] data_q;
   logic signed [ProductWidth-1:0] product;
   logic signed [ShiftedWidth-1:0] shifted;
-  logic [ToShifted-1:0] start_q, frame_start_q, active_q;
+  logic [ToStart-1:0] start_q, frame_start_q;
+  logic [ToShifted-1:0] active_q;
   logic signed [Width-1:0] rounded;
   logic clipped;
   td_multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
-    .clk, .en, .a(data_q[2]), .b(mantissa_q), .product
+    .clk, .en, .a(data_q), .b(mantissa_q), .product
   );
   td_round_saturate #(.InWidth(ShiftedWidth), .Drop(Drop), .OutWidth(Width)) u_round (
     .in(shifted), .out(rounded), .clipped
@@ -83,16 +86,16 @@ module spectral_divide #(
 
   always_ff @(posedge clk) begin
     if (en) begin
-      data_q <= {data_q[1:0], in_data};
+      data_q <= in_data;
       mantissa_q <= mantissa;
       shift_q <= {shift_q[0], shift};
       shifted <= ShiftedWidth'(product) <<< shift_q[1];
       out_data <= rounded;
-      start_q <= {start_q[ToShifted-2:0], in_start};
-      frame_start_q <= {frame_start_q[ToShifted-2:0], in_frame_start};
+      start_q <= {start_q[ToStart-2:0], in_start};
+      frame_start_q <= {frame_start_q[ToStart-2:0], in_frame_start};
       active_q <= {active_q[ToShifted-2:0], active};
-      out_start <= start_q[ToShifted-1];
-      out_frame_start <= frame_start_q[ToShifted-1];
+      out_start <= start_q[ToStart-1];
+      out_frame_start <= frame_start_q[ToStart-1];
     end
     saturations <= en & active_q[ToShifted-1] & clipped;
     if (rst) {start_q, frame_start_q, active_q, out_start, out_frame_start, saturations} <= '0;

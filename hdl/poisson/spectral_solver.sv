@@ -46,17 +46,17 @@ module spectral_solver
   localparam int Sine = Neumann != 0 ? 0 : 1;
 
   logic row_start, row_modes_start, column_start, modes_start, divided_start;
-  logic column_out_start, depth_row_start, depth_start, depth_valid;
+  logic column_out_start, depth_row_start, depth_start;
   logic row_frame_start, row_modes_frame_start, column_frame_start, modes_frame_start, divided_frame_start;
   logic column_out_frame_start, depth_row_frame_start, depth_frame_start;
   logic [InWidth-1:0] row_data;
-  logic [DataWidth-1:0] column_data, depth_row_data, depth_reordered;
+  logic [DataWidth-1:0] column_data, depth_row_data;
   logic signed [DataWidth-1:0] row_modes, column_out, depth;
   logic signed [Width-1:0] modes, divided;
   logic [7:0] clipped_row_forward, clipped_column_forward, clipped_column_inverse, clipped_row_inverse;
   logic clipped_divide;
 
-  row_reorder #(.Width(InWidth), .Columns(Columns), .ToBurst(1)) u_row_in (
+  row_order #(.Width(InWidth), .Columns(Columns), .Paths(1)) u_row_in (
     .clk, .rst, .en, .in_valid, .in_frame_start, .in_data(in_data),
     .out_start(row_start), .out_frame_start(row_frame_start), .out_data(row_data)
   );
@@ -95,9 +95,9 @@ module spectral_solver
     .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
     .InWidth(Width), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(ColumnInverseOut)
   ) u_column_inverse (
-    .clk, .rst, .en, .in_start(divided_start), .in_frame_start(divided_frame_start), .in_data(divided),
-    .out_start(column_out_start), .out_frame_start(column_out_frame_start), .out_data(column_out),
-    .saturations(clipped_column_inverse)
+    .clk, .rst, .en, .in_start(divided_start), .in_frame_start(divided_frame_start), .in_alone(1'b1),
+    .in_a(divided), .in_b(Width'(0)), .out_start(column_out_start), .out_frame_start(column_out_frame_start),
+    .out_alone(), .out_a(column_out), .out_b(), .saturations(clipped_column_inverse)
   );
 
   transpose #(.Width(DataWidth), .Columns(Columns), .MakhoulIn(1), .MakhoulOut(0), .Style(StoreStyle)) u_to_rows (
@@ -109,18 +109,15 @@ module spectral_solver
     .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
     .InWidth(DataWidth), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
   ) u_row_inverse (
-    .clk, .rst, .en, .in_start(depth_row_start), .in_frame_start(depth_row_frame_start), .in_data(depth_row_data),
-    .out_start(depth_start), .out_frame_start(depth_frame_start), .out_data(depth), .saturations(clipped_row_inverse)
+    .clk, .rst, .en, .in_start(depth_row_start), .in_frame_start(depth_row_frame_start), .in_alone(1'b1),
+    .in_a(depth_row_data), .in_b(DataWidth'(0)), .out_start(depth_start), .out_frame_start(depth_frame_start),
+    .out_alone(), .out_a(depth), .out_b(), .saturations(clipped_row_inverse)
   );
 
-  td_burst_counter #(.Words(Columns)) u_depth_valid (
-    .clk, .rst, .en, .start(depth_start), .position(), .active(depth_valid)
+  corner_turn #(.Width(DataWidth), .Size(Columns), .Lanes(1)) u_row_out (
+    .clk, .rst, .en, .in_start(depth_start), .in_frame_start(depth_frame_start), .in_alone(1'b1), .in_a(depth),
+    .in_b(DataWidth'(0)), .out_start, .out_frame_start, .out_data(out_data)
   );
-  row_reorder #(.Width(DataWidth), .Columns(Columns), .ToBurst(0)) u_row_out (
-    .clk, .rst, .en, .in_valid(depth_valid), .in_frame_start(depth_frame_start), .in_data(depth),
-    .out_start, .out_frame_start, .out_data(depth_reordered)
-  );
-  assign out_data = depth_reordered;
 
   always_ff @(posedge clk) begin
     saturations <= clipped_row_forward + clipped_column_forward + 8'(clipped_divide) + clipped_column_inverse

@@ -13,7 +13,7 @@
 
 module thomas_table #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
-  parameter Table       = "thomas",  // begin of their names
+  parameter Table       = "down",  // begin of their names
   parameter int CoeffWidth     = 18,
   parameter int Rows           = 128,
   parameter int Columns        = 128,   // modes in a row

@@ -9,7 +9,7 @@ import numpy as np
 from formal.entries import ROUNDING, Proof
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.poisson.forward_elimination import zero_mean
+from tactile_depth.chip.poisson.elimination import zero_mean
 from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
 from tb.stream import MANY, configuration, drive, parametrize, uniform
 from tb.structures import ICARUS, VERILATOR, Structure
@@ -53,7 +53,7 @@ async def check(dut: Any, amplitude: float | None, frames: int, pause: float, st
         used.append(len(stimuli) - 1)
     pins = await drive(dut, stimuli, ["mean", "clipped"], pause)
     monitor = Monitor()
-    zero_mean(d, config, monitor, "column_mean")
+    zero_mean(d, config, monitor)
     np.testing.assert_array_equal([pins["mean"][clock].to_signed() for clock in used], d[:, -1, 0])
     if not pause and not strays:
         clips = [pins["clipped"][clock] for clock in range(CLOSEST, len(stimuli))]

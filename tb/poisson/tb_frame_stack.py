@@ -1,74 +1,129 @@
 # SPDX-License-Identifier: Apache-2.0
-"""frame_stack against its model: positions, latency, rows without a pause in each lane; gaps, pauses, reset."""
+"""frame_stack against its model: positions, latency, pairs of rows without a pause; gaps, pauses, reset."""
 
 from typing import Any
 
 import cocotb
+import numpy as np
+from cocotb.triggers import RisingEdge
 
 from formal.entries import WORD_FREE, Proof
-from tactile_depth.chip.poisson.frame_stack import LATENCY, frame_stack
-from tb.stream import check_frame_memory, parameters, parametrize, places, sample
+from tactile_depth.chip.poisson.frame_stack import LEAD, frame_stack, latency
+from tb.beats import BeatsDriver, BeatsMonitor
+from tb.pairs import AloneMonitor, PairMonitor, side_by_side
+from tb.stream import Bench, check_frame_starts, check_words, interrupt, parameters, parametrize, places, sample
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
-built = of_parameters("Columns Width Rows WordsPerRow")
+built = of_parameters("Columns Width Rows InWords Lanes WordsPerRow")
 STRUCTURES = (
-    built(16, 24, 8, 3, on=VERILATOR),
-    built(8, 16, 3, 1, on=ICARUS),
-    built(4, 4, 3, 1, on=ICARUS),
-    built(8, 16, 3, 2, on=ICARUS),
-    built(4, 4, 4, 3, on=ICARUS, mutants=ICARUS),
-    built(4, 4, 4, 2),
-    built(5, 6, 2, 2),
-    built(2, 5, 2, 6),
-    built(8, 16, 2, 1),
-    built(16, 16, 17, 1),
-    built(16, 9, 17, 3),
-    built(16, 12, 5, 6),
+    built(32, 24, 9, 4, 16, 8, on=VERILATOR),
+    built(16, 16, 8, 2, 8, 4, on=ICARUS),
+    built(16, 16, 9, 1, 1, 3, on=ICARUS, mutants=ICARUS),
+    built(16, 12, 8, 1, 2, 1, on=ICARUS, mutants=ICARUS),
+    built(32, 12, 7, 2, 8, 4, on=ICARUS, mutants=ICARUS),
+    built(64, 16, 6, 4, 32, 16, on=ICARUS),
+    built(16, 16, 8, 1, 1, 1),
+    built(16, 16, 9, 1, 2, 2),
+    built(64, 16, 7, 8, 16, 8),
+    built(128, 16, 9, 8, 64, 32),
 )
-PROTOCOL = "protocol_bursts"
 PROOFS = tuple(
     Proof(
-        "rows, positions and memory rows are only counted; rows and memory rows no power of two, and one; words to "
-        f"a memory row that divide a burst, and not; {WORD_FREE}",
-        {"Rows": rows, "Columns": size, "WordsPerRow": words},
+        "rows and beats are only counted; memories with the words of a clock and of several; an even and "
+        f"an odd number of rows; {WORD_FREE}",
+        {"Rows": rows, "Columns": columns, "InWords": in_words, "Lanes": lanes, "WordsPerRow": words},
     )
-    for rows, size, words in ((3, 4, 1), (4, 4, 1), (3, 4, 2), (3, 4, 3), (3, 5, 3), (2, 3, 3))
+    for rows, columns, in_words, lanes, words in ((5, 8, 1, 1, 3), (4, 8, 1, 2, 1), (4, 16, 2, 8, 4))
 )
 
 
 FRAMES = 4  # in place, the order of rows in the memory flips with every frame
 
 
-async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
-    columns, width, rows = parameters(dut, "Columns", "Width", "Rows")
+async def idle(dut: Any, cycles: int) -> None:
+    """Wait for as many cycles with en as a driver does, to the last one; `Bench.clocks` ends one early in a pause."""
+    for _ in range(cycles):
+        await RisingEdge(dut.clk)
+        while not dut.en.value:
+            await RisingEdge(dut.clk)
+
+
+async def check(
+    dut: Any, count: int = FRAMES, gap: int = 0, pause: float = 0.0, interrupts: Any = (), strays: int = 0
+) -> None:
+    """Send frames of places and compare; for `interrupts` and `strays` see stream.check_bursts."""
+    columns, width, rows, words, lanes = parameters(dut, "Columns", "Width", "Rows", "InWords", "Lanes")
+    paths = max(1, lanes // 2)
+    clocks, pairs, beats = columns // words, (rows + 1) // 2, columns // paths
     # One word per frame is left out, so that every bit of a position changes from frame to frame.
-    words = places(frames * (rows * columns + 1), width).reshape(frames, -1)[:, 1:]
-    await check_frame_memory(dut, words, frame_stack, LATENCY, rows=rows, **behaviour)
+    sent = places(count * (2 * rows * columns + 1), width).reshape(count, -1)[:, 1:]
+    bursts = sent.reshape(count * rows, clocks, 2 * words)
+    bench = Bench(dut, pause)
+    driver = BeatsDriver(dut, "in", ["last", "ahead"], words, LEAD)
+    source = BeatsMonitor(dut, "in", ["last", "ahead"], clocks, words, LEAD)
+    sink, alone = PairMonitor(dut, "out", beats, paths, rows, LEAD), AloneMonitor(dut, "out")
+    await bench.start()
+
+    leaves = (pairs - 1) * 2 * columns // lanes + (beats if rows % 2 else 2 * columns // lanes)
+    slower = max(0, leaves - rows * clocks)  # a frame leaves as fast as the next one comes
+
+    async def send(words: int) -> None:
+        for index, begin in enumerate(range(0, words, clocks)):
+            if index % rows == 0:
+                await idle(dut, slower)
+            driver.frame_start = index % rows == 0
+            await driver.send(bursts[index % len(bursts), : words - begin].tolist())
+
+    first = latency(columns, words, paths)
+    await interrupt(bench, send, interrupts, (source, sink), first + LEAD + 4)
+    await send(strays * clocks)
+    for index, burst in enumerate(bursts):
+        await idle(dut, bench.random.randint(0, gap) + (slower if index % rows == 0 else 0))
+        driver.frame_start = index % rows == 0
+        await driver.send(burst.tolist())
+    await bench.clocks(leaves + first + 2 * LEAD + 4)
+    source.forget_but(len(bursts))
+    sink.forget_but(count * pairs)
+    last, ahead = np.moveaxis(np.array(source.words).reshape(count, rows, clocks, 2, words), 3, 0)
+    stored = np.concatenate((ahead[:, 1:], last[:, -1:]), axis=1).reshape(count, rows, columns)
+    check_words(np.array(sink.words), side_by_side(frame_stack(stored), paths).reshape(-1, 2 * paths), beats, pairs)
+    check_frame_starts([source], rows)
+    check_frame_starts([sink], pairs)
+    assert alone.marks[-count * pairs :] == [
+        rows % 2 != 0 and pair % pairs == pairs - 1 for pair in range(count * pairs)
+    ]
+    last_rows, first_out = source.starts[rows - 1 :: rows], sink.starts[::pairs]
+    delays = {out - row for out, row in zip(first_out, last_rows, strict=True)}
+    assert delays == {first}, delays
+    apart = np.diff(np.array(sink.starts).reshape(count, pairs), axis=1)
+    assert np.all(apart == 2 * columns // lanes), "a frame leaves with a pause between two pairs"
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @parametrize((("gap", "pause"), sample([(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)])))
-async def frames(dut: Any, gap: float, pause: float) -> None:
+async def frames(dut: Any, gap: int, pause: float) -> None:
     await check(dut, gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @parametrize(halves=[1, 3, 5])
 async def reset_in_mid_frame(dut: Any, halves: int) -> None:
-    columns, rows = parameters(dut, "Columns", "Rows")
-    await check(dut, frames=2, interrupts=[halves * columns * rows // 2 + columns // 2])
+    columns, rows, words = parameters(dut, "Columns", "Rows", "InWords")
+    clocks = columns // words
+    await check(dut, 2, interrupts=[halves * clocks * rows // 2 + clocks // 2])
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.test(timeout_time=4, timeout_unit="ms")
 async def resets_as_a_frame_begins_to_leave(dut: Any) -> None:
-    """Reset at the first words of the last row and around its end, where each register of the reading side is set."""
-    columns, rows = parameters(dut, "Columns", "Rows")
-    clocks = (1, 2, 3, columns, columns + 1, columns + 2)
-    await check(dut, frames=2, interrupts=[(rows - 1) * columns + clock for clock in clocks])
+    """Reset in each cycle around the end of a frame's last row, where each register of the reading side is set."""
+    columns, rows, words, lanes = parameters(dut, "Columns", "Rows", "InWords", "Lanes")
+    clocks, beats = columns // words, columns // max(1, lanes // 2)
+    around = range(max(0, clocks - beats - 2), clocks + LEAD + 2)
+    await check(dut, 2, interrupts=[(rows - 1) * clocks + clock for clock in around])
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
 @parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """Start a frame after part of another one, and after more than one without a start of frame in between."""
-    await check(dut, frames=2, strays=strays)
+    await check(dut, 2, strays=strays)

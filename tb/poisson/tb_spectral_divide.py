@@ -12,6 +12,7 @@ from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.spectral_divide import LATENCY, reciprocals, spectral_divide
 from tactile_depth.chip.rom_files import write_solver
+from tb.beats import one_path
 from tb.stream import MANY, check_bursts, configuration, extremes, parameters, parametrize, sample, uniform
 from tb.structures import ICARUS, VERILATOR, Structure
 
@@ -40,7 +41,7 @@ STRUCTURES = (
     built({"columns": 32, "data_width": 12, "coefficient_width": 10}, mutants=ICARUS),
     built({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 40.0}),
 )
-PROTOCOL = {"protocol_bursts": {"Rows": "Columns"}}
+PROTOCOL = {"protocol_beats": {"Beats": "Columns", "Rows": "Columns"}}
 PROOFS = tuple(
     Proof(f"one recurrence for every size; {ROUNDING}", {"Columns": size}, roms=divide_rom(size)) for size in (4, 8)
 )
@@ -53,6 +54,7 @@ async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
         return spectral_divide(x.reshape(-1, config.columns, config.columns), config, monitor)
 
     behaviour |= {"in_fields": ["data"], "out_fields": ["data"], "frame": config.columns}
+    behaviour |= one_path(dut, config.columns)
     return await check_bursts(dut, x, model, LATENCY, **behaviour)
 
 

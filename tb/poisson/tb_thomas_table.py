@@ -21,9 +21,10 @@ CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 def built(choices: Any, **runs: Any) -> Structure:
     config = Configuration(**choices)
     parameters = solver_parameters(config)
-    taken = ("CoeffWidth", "Rows", "Columns", "SettledWidth", "LastShiftWidth")
+    taken = ("CoeffWidth", "Rows", "Columns", "LastShiftWidth")
     return Structure(
-        {name: parameters[name] for name in taken} | {"Words": parameters["TableWords"]},
+        {name: parameters[name] for name in taken}
+        | {"Words": parameters["DownTableWords"], "SettledWidth": parameters["DownSettledWidth"]},
         device={"configuration": choices},
         roms=lambda folder: write_thomas(folder, config),
         **runs,

@@ -13,7 +13,7 @@ from tb.settings import RUN
 
 
 @pytest.mark.parametrize(
-    ("core", "dsps"), [("td_burst_counter", 0), pytest.param("twiddle_multiply", 4, marks=pytest.mark.regress)]
+    ("core", "dsps"), [("td_burst_counter", 0), pytest.param("twiddle", 4, marks=pytest.mark.regress)]
 )
 def test_a_netlist_is_as_the_rtl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, core: str, dsps: Any) -> None:
     monkeypatch.setattr(netlists, "OUT", tmp_path)

@@ -27,10 +27,8 @@ def memory(depth: Any, width: Any, style: Any = "block") -> Any:
     return Memory("u_ram", depth, width, style, rom=False)
 
 
-@pytest.mark.parametrize(
-    ("lanes", "solver"), [(1, {"u_row_forward", "u_row_inverse"}), (2, {"u_forward", "u_up", "u_inverse"})]
-)
-def test_memories_and_cores_are_those_of_the_rtl(tmp_path: Path, lanes: int, solver: set[str]) -> None:
+@pytest.mark.parametrize("lanes", [1, 2])
+def test_memories_and_cores_are_those_of_the_rtl(tmp_path: Path, lanes: int) -> None:
     tiny = replace(TINY, lanes=lanes)
     _, modules = synth.elaborate(tiny, synthetic(tiny.bits_per_channel), tmp_path, XCZU7EV)
     arrays = memories(tmp_path / "design.json")
@@ -41,7 +39,7 @@ def test_memories_and_cores_are_those_of_the_rtl(tmp_path: Path, lanes: int, sol
     assert len({memory.path for memory in arrays}) == len(arrays)
     cores = {path_of(module) for module in synth.kept(modules)}
     assert {"u_video.u_guard", "u_contact.u_events", "u_registers"} <= cores
-    assert {f"u_poisson.u_solver.{name}" for name in solver} <= cores
+    assert {f"u_poisson.u_solver.{name}" for name in ("u_forward", "u_up", "u_inverse")} <= cores
     assert not cores & {"u_poisson", "u_poisson.u_solver"}
 
 
@@ -160,7 +158,7 @@ def test_a_design_too_large_ends_with_a_line(tmp_path: Path, monkeypatch: pytest
     ended = run_command("synth", "PRESET=published", "N=16", "SOLVER=tridiagonal", f"OUT={tmp_path}")
     (error,) = ended.errors
     assert ended.status == 1
-    assert error == "make synth: it does not fit the XCZU7EV: BRAM36 12.5 of 10, 2.5 too many"
+    assert error == "make synth: it does not fit the XCZU7EV: BRAM36 13 of 10, 3 too many"
     (design,) = json.loads((tmp_path / "resources.json").read_text())["designs"]
     assert design["misfit"]
     assert not list(tmp_path.glob(".work*"))

@@ -8,6 +8,7 @@ import pytest
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.limits import most_lanes
 from tactile_depth.chip.poisson import spectral_solver
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.poisson.tridiagonal_solver import tridiagonal_solver
@@ -71,3 +72,15 @@ def test_zero_gives_zero() -> None:
     for neumann in (False, True):
         config = Configuration(**CHOICES, neumann=neumann)
         assert not np.any(tridiagonal_solver(np.zeros((8, 16), np.int64), config))
+
+
+@pytest.mark.parametrize("neumann", [False, True])
+@pytest.mark.parametrize(("columns", "rows"), [(16, 8), (64, 9), (64, 96), (128, 127), (1024, 33)])
+def test_all_numbers_of_depths_per_clock_give_the_same_codes(columns: int, rows: int, neumann: bool) -> None:
+    slopes = np.random.default_rng(1).uniform(-0.1, 0.1, (2, rows, columns, 2))
+    codes = []
+    for log2 in range(most_lanes(columns).bit_length()):
+        config = Configuration(columns=columns, rows=rows, solver="tridiagonal", neumann=neumann, lanes=1 << log2)
+        codes.append(tridiagonal_solver(divergence_codes(slopes, config)[0], config))
+    assert len(codes) >= 4
+    assert all(np.array_equal(codes[0], other) for other in codes[1:])

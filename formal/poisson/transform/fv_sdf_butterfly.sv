@@ -76,7 +76,7 @@ end
 logic none_leaves;  // nothing was rounded in the clock before
 always_ff @(posedge clk) none_leaves <= rst | ~en | ~active_q[Delay];
 
-burst_timing #(.Columns(Size), .Latency(Delay + 2)) u_timing (.*, .row());
+beat_timing #(.Beats(Size), .Latency(Delay + 2)) u_timing (.*, .beat(position));
 always_comb begin
   if (started) begin
     if (following && age == AgeWidth'(Delay + 2)) begin

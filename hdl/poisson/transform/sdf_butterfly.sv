@@ -4,8 +4,9 @@
 //   words a, b of a block of 2 Delay, Delay apart:   a + b, then a - b        Halve: halved
 //   RotateBlock > 0: the last quarter of each block of that size is first multiplied by -j (Inverse: +j)
 //
-// Stream in: bursts of Size complex words. Stream out: the same, sums of a block before its differences.
-// Latency: Delay + 2 cycles. The delay line moves with en alone, so a burst leaves without one behind it.
+// Stream in: bursts of Size complex words; starts come 2 cycles before the first word. Stream out: the same, sums of a
+// block before its differences. Latency: Delay + 2 cycles. The delay line moves with en alone, so a burst leaves
+// without one behind it.
 // Bit-accurate model: models/tactile_depth/chip/poisson/transform/sdf_butterfly.py.
 
 `default_nettype none
@@ -35,10 +36,13 @@ module sdf_butterfly #(
   localparam int PositionWidth = $clog2(Size);
   localparam int DelayBit = $clog2(Delay);
 
+  logic [1:0] start_q, start_of_frame_q;
+  logic start;  // with the words
   logic [PositionWidth-1:0] position;
   logic active;
+  assign start = start_q[1];
   td_burst_counter #(.Words(Size)) u_counter (
-    .clk, .rst, .en, .start(in_start), .position, .active
+    .clk, .rst, .en, .start, .position, .active
   );
 
   logic second;  // b is present, a leaves the delay line
@@ -52,7 +56,7 @@ module sdf_butterfly #(
     logic rotate, rotate_q;  // rotate_q: the word after this one, unless it begins a burst
     logic [PositionWidth-1:0] next;
     assign next = position + PositionWidth'(1);
-    assign rotate = rotate_q & ~in_start;
+    assign rotate = rotate_q & ~start;
     always_ff @(posedge clk) if (en && active) rotate_q <= &2'(next >> QuarterBit);
     assign minus_re = rotate & (Inverse != 0);
     assign minus_im = rotate & (Inverse == 0);
@@ -77,18 +81,20 @@ module sdf_butterfly #(
     .in(second ? {difference_re, difference_im} : {(Width + 1)'(in_re), (Width + 1)'(in_im)}), .out({a_re, a_im})
   );
 
-  logic leaves_first, leaves_first_q, frame_start_q, leaves_frame_start;  // the first sum of a burst
-  assign leaves_first = active & (position == PositionWidth'(Delay));
+  logic leaves_first_q, frame_start_q;
+  assign out_start = active & (position == PositionWidth'(Delay));  // the first sum of a burst is formed
+  assign out_frame_start = out_start & frame_start_q;
   logic signed [Width:0] leaving_re, leaving_im;
   always_ff @(posedge clk) begin
     if (en) begin
-      if (in_start) frame_start_q <= in_frame_start;
-      leaves_first_q <= leaves_first;
-      leaves_frame_start <= leaves_first & frame_start_q;
+      start_q <= {start_q[0], in_start};
+      start_of_frame_q <= {start_of_frame_q[0], in_frame_start};
+      if (start) frame_start_q <= start_of_frame_q[1];
+      leaves_first_q <= out_start;
       leaving_re <= second ? sum_re : a_re;
       leaving_im <= second ? sum_im : a_im;
     end
-    if (rst) {leaves_first_q, leaves_frame_start} <= '0;
+    if (rst) {start_q, leaves_first_q} <= '0;
   end
 
   logic leaving;
@@ -105,13 +111,11 @@ module sdf_butterfly #(
   );
   always_ff @(posedge clk) begin
     if (en) begin
-      out_start <= leaves_first_q;
-      out_frame_start <= leaves_frame_start;
       out_re <= rounded_re;
       out_im <= rounded_im;
     end
     clipped_q <= clipped & {2{en & leaving}};
-    if (rst) {out_start, out_frame_start, clipped_q} <= '0;
+    if (rst) clipped_q <= '0;
   end
   assign saturations = 2'(clipped_q[0]) + 2'(clipped_q[1]);
 

@@ -2,8 +2,9 @@
 // transpose: rows of a frame in, columns out, through one memory of exactly Columns x Columns words.
 //
 // Stream in: bursts of Columns words, Columns of them a frame, gaps between bursts anywhere; rows count from a frame's
-// start. Stream out: Columns bursts without a pause, one a column. Latency: 2 cycles from the first word of the last
-// row to the first word of the first column; nothing need follow, the reader runs by itself.
+// start. Stream out: Columns bursts without a pause, one a column. Starts of both come 2 cycles before the first word.
+// Latency: 3 cycles from the first word of the last row to the first word of the first column; nothing need follow, the
+// reader runs by itself.
 //   MakhoulIn = 1:  the words of a row come in Makhoul order (0, 2, 4, .., 5, 3, 1)
 //   MakhoulOut = 1: the words of a column leave in Makhoul order
 //
@@ -38,16 +39,22 @@ module transpose #(
     makhoul = {p[IndexWidth-2:0] ^ {(IndexWidth - 1){p[IndexWidth-1]}}, p[IndexWidth-1]};
   endfunction
 
+  // Starts with the words.
+  logic [1:0] start_q, frame_start_q;
+  logic start, frame_start;
+  assign start = start_q[1];
+  assign frame_start = frame_start_q[1];
+
   // Writer: row counts bursts, transposed says whether rows of this frame lie along the memory's columns.
   logic [IndexWidth-1:0] row, row_q, write_position, write_column;
   logic write_active, write_transposed, write_transposed_q, read_transposed, last_row_start;
   td_burst_counter #(.Words(Columns)) u_write (
-    .clk, .rst, .en, .start(in_start), .position(write_position), .active(write_active)
+    .clk, .rst, .en, .start, .position(write_position), .active(write_active)
   );
-  assign row = in_frame_start ? '0 : row_q;
-  assign write_transposed = in_frame_start ? ~read_transposed : write_transposed_q;
+  assign row = start & frame_start ? '0 : row_q;
+  assign write_transposed = start & frame_start ? ~read_transposed : write_transposed_q;
   assign write_column = MakhoulIn != 0 ? makhoul(write_position) : write_position;
-  assign last_row_start = in_start & (row == IndexWidth'(Columns - 1));
+  assign last_row_start = start & (row == IndexWidth'(Columns - 1));
 
   // Reader: one burst of Columns^2 from the cycle after the last row begins.
   logic read_start, read_active;
@@ -59,6 +66,7 @@ module transpose #(
   assign column = read_position[2*IndexWidth-1:IndexWidth];
   assign read_row = MakhoulOut != 0 ? makhoul(read_position[IndexWidth-1:0]) : read_position[IndexWidth-1:0];
 
+  logic [Width-1:0] word;
   td_ram #(.Width(Width), .Depth(Columns * Columns), .Style(Style)) u_ram (
     .clk,
     .write_en     (en & write_active),
@@ -66,20 +74,23 @@ module transpose #(
     .write_data   (in_data),
     .read_en      (en & read_active),
     .read_address (read_transposed ? {column, read_row} : {read_row, column}),
-    .read_data    (out_data)
+    .read_data    (word)
   );
 
   always_ff @(posedge clk) begin
     if (en) begin
+      start_q <= {start_q[0], in_start};
+      frame_start_q <= {frame_start_q[0], in_frame_start};
+      out_data <= word;
       row_q <= row + IndexWidth'(write_active & (write_position == IndexWidth'(Columns - 1)));
       write_transposed_q <= write_transposed;
       if (last_row_start) read_transposed <= write_transposed;
       read_start <= last_row_start;
-      out_frame_start <= read_start;
-      out_start <= read_active & (read_position[IndexWidth-1:0] == '0);
     end
-    if (rst) {read_start, read_transposed, out_start, out_frame_start} <= '0;
+    if (rst) {start_q, read_start, read_transposed} <= '0;
   end
+  assign out_frame_start = read_start;
+  assign out_start = read_active & (read_position[IndexWidth-1:0] == '0);
 
 endmodule
 

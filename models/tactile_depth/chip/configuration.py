@@ -45,9 +45,9 @@ from tactile_depth.chip.limits import (
     Boundary,
     most_lanes,
 )
-from tactile_depth.chip.poisson.transform.sdf_fft import twiddle_stages
+from tactile_depth.chip.poisson.transform.fft import twiddle_stages
 from tactile_depth.chip.poisson.transform.transform import Transform
-from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
+from tactile_depth.chip.poisson.transform.twiddle import coefficient_gain
 from tactile_depth.chip.resources import BLOCK, ULTRA
 
 
@@ -278,27 +278,33 @@ class Configuration:
 
     @property
     def down_words(self) -> int:
-        """Modes per clock on the way down, at most the square root of those on the way up, but at least 2.
+        """Modes per clock on the way down, at most the square root of the depth values per clock.
 
         More would cost more, and fewer would delay the last row, on which the whole map waits.
         """
-        return max(2, 1 << (self.lanes.bit_length() - 1) // 2)
+        return 1 << (self.lanes.bit_length() - 1) // 2
+
+    @property
+    def up_paths(self) -> int:
+        """Modes per clock of each of two rows on the way up; with one lane they come in half of the clocks."""
+        return max(1, self.lanes // 2)
 
     @property
     def store_style(self) -> int:
-        """Style of a memory of a frame store, BLOCK or ULTRA; with several lanes the store has several memories."""
-        memories = 1 if self.lanes == 1 else self.lanes // min(self.down_words, self.lanes // 2)
-        bits = self.rows * self.columns * self.data_width // memories
-        return ULTRA if bits >= 2 * ULTRA_WORDS * ULTRA_WIDTH else BLOCK
+        """Style of a memory of a frame store, BLOCK or ULTRA."""
+        wide = -(-self.up_paths * self.data_width // ULTRA_WIDTH)
+        bits = self.rows * self.columns * self.data_width // (2 * wide)
+        return ULTRA if bits >= ULTRA_WORDS * ULTRA_WIDTH else BLOCK
 
     @property
     def words_per_row(self) -> int:
-        """Stored words side by side in a row of the tridiagonal solver's frame store: as many as fit an UltraRAM's row.
+        """Stored words side by side in a row of the tridiagonal solver's frame store.
 
-        The rows of a block RAM are as wide as one word. The spectral solver stores one word in a row, because it reads
-        columns.
+        They are those of a clock, or as many as fit an UltraRAM's row, or one as the rows of a block RAM are narrow.
+        The spectral solver stores one word in a row, because it reads columns.
         """
-        return ULTRA_WIDTH // self.data_width if self.store_style == ULTRA and self.solver == "tridiagonal" else 1
+        packed = ULTRA_WIDTH // self.data_width if self.store_style == ULTRA and self.solver == "tridiagonal" else 1
+        return self.up_paths if self.up_paths > 1 else packed
 
     # Formats, in the order of the stream. Slopes, divergence and forward modes have the unit `unit_px`; all values
     # after the solve along the columns have the unit `depth_limit_px`.
@@ -438,8 +444,8 @@ class Configuration:
 
     @property
     def _row_inverse_bound(self) -> float:
-        """Bound of the inverse row transform, which takes two rows at a time where several depths leave in a clock."""
-        return self._bounds.row_inverse if self.lanes == 1 else self._bounds.row_pair
+        """Bound of the inverse row transform, which takes two rows at a time in the tridiagonal solver."""
+        return self._bounds.row_pair if self.solver == "tridiagonal" else self._bounds.row_inverse
 
     @property
     def _elimination_bounds(self) -> dict[str, float]:
@@ -452,9 +458,9 @@ class Configuration:
         difference = float(np.minimum(by_slopes * slope, by_depths / DEPTH_HEADROOM).max())
         depth = self._bounds.depth_modes / DEPTH_HEADROOM
         return {
-            "forward_elimination.difference": difference,
-            "forward_elimination.state": 2 * depth,
-            "back_substitution": depth,
+            "elimination.difference": difference,
+            "elimination.state": 2 * depth,
+            "substitution": depth,
         }
 
     def bounds_within_range(self) -> dict[str, tuple[float, Format]]:
@@ -467,8 +473,8 @@ class Configuration:
         }
         if self.solver == "tridiagonal":
             running = {node: (bound, self.elimination) for node, bound in self._elimination_bounds.items()}
-            stored = (self._elimination_bounds["forward_elimination.state"], self.elimination_store)
-            return found | running | {"forward_elimination.store": stored}
+            stored = (self._elimination_bounds["elimination.state"], self.elimination_store)
+            return found | running | {"elimination.store": stored}
         return found | {
             "row_forward.phase.re": (self._bounds.row_modes * steep, self.row_modes),
             "column_forward": (self._bounds.column_forward * steep, self.column_forward),

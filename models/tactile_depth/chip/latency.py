@@ -12,7 +12,7 @@ from tactile_depth.chip.common import td_axis_skid
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.depth import zero_offset
 from tactile_depth.chip.gradient import flat_field, gradient_lookup, light_gains, polynomial_gradient
-from tactile_depth.chip.poisson import divergence, spectral_solver, tridiagonal_solver, wide_solver
+from tactile_depth.chip.poisson import divergence, spectral_solver, tridiagonal_solver
 from tactile_depth.chip.video import frame_guard
 
 
@@ -41,10 +41,8 @@ def by_core(config: Configuration) -> list[tuple[str, str, int]]:
 
 def by_solver_core(config: Configuration) -> list[tuple[str, int]]:
     """Return cores of the solver and cycles from the last divergence word of a frame to its first depth."""
-    if config.lanes > 1:
-        return wide_solver.latency_by_core(config.columns, config.down_words, config.lanes)
     solver = tridiagonal_solver if config.solver == "tridiagonal" else spectral_solver
-    return solver.latency_by_core(config.columns)
+    return solver.latency_by_core(config)
 
 
 def frame_latency(config: Configuration) -> int:

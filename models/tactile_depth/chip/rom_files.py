@@ -12,14 +12,13 @@ from pathlib import Path
 import numpy as np
 
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.poisson.elimination import down_positions
 from tactile_depth.chip.poisson.spectral_divide import reciprocal_rom, reciprocals
 from tactile_depth.chip.poisson.thomas_table import thomas_table
-from tactile_depth.chip.poisson.transform.sdf_fft import stages
-from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors
-from tactile_depth.chip.poisson.transform.wide_commutator import positions
-from tactile_depth.chip.poisson.transform.wide_fft import wide_factors
-from tactile_depth.chip.poisson.wide_solver import tables
-from tactile_depth.chip.poisson.wide_stack import down_positions
+from tactile_depth.chip.poisson.transform.commutator import positions
+from tactile_depth.chip.poisson.transform.fft import path_factors, stages
+from tactile_depth.chip.poisson.transform.twiddle import phase_factors
+from tactile_depth.chip.poisson.tridiagonal_solver import tables
 
 CRCS = "tables.crc"
 
@@ -79,36 +78,21 @@ def unsigned(words: np.ndarray, width: int) -> np.ndarray:
 
 
 def write_factors(path: Path, factors: np.ndarray, width: int) -> None:
-    """Write complex factors (block, 2) as twiddle_multiply.sv reads them: {-Im, Im, Re}."""
-    re, im = factors.T
-    write_words(path, pack((-im, im, re), width), 3 * width)
-
-
-def write_wide_factors(path: Path, factors: np.ndarray, width: int) -> None:
-    """Write complex factors (beats, paths, 2) as wide_twiddle.sv reads them: {-Im, Im, Re} of each path, 0 lowest."""
+    """Write complex factors (beats, paths, 2) as twiddle.sv reads them: {-Im, Im, Re} of each path, path 0 lowest."""
     re, im = np.moveaxis(factors[:, ::-1], -1, 0)
     fields = np.stack((-im, im, re), axis=-1).reshape(len(re), -1)
     write_words(path, pack(fields.T, width), fields.shape[1] * width)
 
 
 def write_direction(folder: Path, size: int, paths: int, inverse: bool, width: int) -> None:
-    """Write the ROMs of wide_fft in one direction, and the phases of the transform around it.
-
-    With 0 paths they are those of sdf_fft, and of the transform around it; one path has the same twiddle factors.
-    """
+    """Write the ROMs of fft.sv in one direction, and the phases of the transform around it."""
     direction = "inverse" if inverse else "forward"
     blocks = sorted({s.block for s in stages(size, inverse) if s.delay == 0}, reverse=True)
     for pair, block in enumerate(blocks):
-        path = folder / f"{'wide_' if paths > 1 else ''}twiddle_{direction}_{pair}.hex"
-        if paths > 1:
-            write_wide_factors(path, wide_factors(size, paths, block, inverse, width), width)
-        else:
-            write_factors(path, twiddle_factors(block, inverse, width), width)
+        factors = path_factors(size, paths, block, inverse, width)
+        write_factors(folder / f"twiddle_{direction}_{pair}.hex", factors, width)
     phases = phase_factors(size, inverse, width)
-    if paths:
-        write_wide_factors(folder / f"wide_phase_{direction}.hex", phases[positions(size, paths, 0)], width)
-    else:
-        write_factors(folder / f"phase_{direction}.hex", phases, width)
+    write_factors(folder / f"phase_{direction}.hex", phases[positions(size, paths, 0)], width)
 
 
 def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
@@ -142,42 +126,28 @@ def write_polynomials(folder: Path, words: np.ndarray, width: int) -> None:
 
 
 def write_thomas(folder: Path, config: Configuration) -> None:
-    """Write the ROMs of thomas_table.sv."""
-    table = thomas_table(config)
-    width = config.coefficient.width
-    write_words(folder / "thomas.hex", unsigned(table.words, width), width)
-    write_words(folder / "thomas_index.hex", table.index, table.index_width)
-    last = table.last_shift << width | unsigned(table.last, width)
-    write_words(folder / "thomas_last.hex", last, table.last_shift_width + width)
-
-
-def write_wide_thomas(folder: Path, config: Configuration) -> None:
-    """Write the ROMs of the two tables of wide_solver.sv, the coefficients of a clock side by side in a word."""
+    """Write the ROMs of the two tables of tridiagonal_solver.sv, the coefficients of a clock side by side in a word."""
     width, table = config.coefficient.width, thomas_table(config)
-    last = down_positions(config.columns, config.down_words)
-    for name, wide in zip(("wide_down", "wide_up"), tables(config), strict=True):
-        count = wide.words.shape[1]
-        write_words(folder / f"{name}.hex", pack(wide.words.T[::-1], width), count * width)
-        write_words(folder / f"{name}_index.hex", wide.index, wide.index_width)
+    last = down_positions(config)
+    for name, packed in zip(("down", "up"), tables(config), strict=True):
+        count = packed.words.shape[1]
+        write_words(folder / f"{name}.hex", pack(packed.words.T[::-1], width), count * width)
+        write_words(folder / f"{name}_index.hex", packed.index, packed.index_width)
     words = []
     for shift, word in zip(table.last_shift[last], pack(table.last[last].T[::-1], width), strict=True):
-        packed = 0
+        shifts = 0
         for each in shift[::-1].tolist():
-            packed = packed << table.last_shift_width | each
-        words.append(packed << last.shape[1] * width | word)
-    write_words(folder / "wide_down_last.hex", words, last.shape[1] * (table.last_shift_width + width))
+            shifts = shifts << table.last_shift_width | each
+        words.append(shifts << last.shape[1] * width | word)
+    write_words(folder / "down_last.hex", words, last.shape[1] * (table.last_shift_width + width))
 
 
 def write_solver(folder: Path, config: Configuration) -> None:
     """Write the ROMs of the solver."""
-    size, width = config.columns, config.coefficient.width
-    # Of several lanes the inverse has half as many paths as words, because it transforms two rows at once.
-    paths = (config.down_words, config.lanes // 2) if config.lanes > 1 else (0, 0)
-    for inverse, count in enumerate(paths):
-        write_direction(folder, size, count, bool(inverse), width)
-    if config.lanes > 1:
-        write_wide_thomas(folder, config)
-    elif config.solver == "tridiagonal":
+    width = config.coefficient.width
+    for inverse, paths in enumerate((config.down_words, config.up_paths)):
+        write_direction(folder, config.columns, paths, bool(inverse), width)
+    if config.solver == "tridiagonal":
         write_thomas(folder, config)
     else:
         write_words(folder / "reciprocal.hex", reciprocal_rom(config), width + reciprocals(config).shift_width)

@@ -56,7 +56,7 @@ from tactile_depth.chip.limits import (
     POLYNOMIAL,
     RATIO,
 )
-from tactile_depth.chip.poisson import spectral_solver, tridiagonal_solver, wide_solver
+from tactile_depth.chip.poisson import spectral_solver, tridiagonal_solver
 from tactile_depth.chip.poisson.cores import NUMPY, Cores
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.device_description import description_parameters
@@ -260,8 +260,6 @@ def light_of(
 
 def solve(f: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY) -> np.ndarray:
     """Return the depth codes of divergence codes (..., rows, columns) by the configuration's solver."""
-    if config.lanes > 1:
-        return wide_solver.wide_solver(f, config, monitor, cores)
     if config.solver == "tridiagonal":
         return tridiagonal_solver.tridiagonal_solver(f, config, monitor, cores)
     return spectral_solver.spectral_solver(f, config, monitor, cores)
@@ -287,8 +285,7 @@ def top_parameters(
 def default_parameters() -> MappingProxyType[str, int]:
     """Return the fields of the default configuration, in the order of the vector."""
     flat = [Configuration(flat_field=True, gradient_model=model) for model in ("cubic", "lut")]
-    solvers = [Configuration(solver="tridiagonal", lanes=lanes) for lanes in (8, 1)]
-    options = [*flat, Configuration(zero_offset=True), *solvers]
+    options = [*flat, Configuration(zero_offset=True), Configuration(solver="tridiagonal")]
     merged: dict[str, int] = {}
     for config in (*options, Configuration()):
         merged |= _own_parameters(config)
@@ -317,7 +314,7 @@ def hdl_parameters(
 def _own_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[str, int]:
     """Return the fields that a configuration uses."""
     tridiagonal = config.solver == "tridiagonal"
-    solver = wide_solver if config.lanes > 1 else tridiagonal_solver if tridiagonal else spectral_solver
+    solver = tridiagonal_solver if tridiagonal else spectral_solver
     parameters = solver.solver_parameters(config)
     return {
         "Columns": config.columns,

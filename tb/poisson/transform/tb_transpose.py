@@ -7,6 +7,7 @@ import cocotb
 
 from formal.entries import ONE_ORDER, WORD_FREE, Proof
 from tactile_depth.chip.poisson.transform.transpose import LATENCY, transpose
+from tb.beats import one_path
 from tb.stream import check_frame_memory, parameters, parametrize, places
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
@@ -19,7 +20,7 @@ STRUCTURES = (
     built(8, 16, 1, 1),
     built(4, 5, 0, 1, mutants=ICARUS),
 )
-PROTOCOL = {"protocol_bursts": {"Rows": "Columns"}}
+PROTOCOL = {"protocol_beats": {"Beats": "Columns", "Rows": "Columns"}}
 PROOFS = tuple(
     Proof(f"{ONE_ORDER}; {WORD_FREE}", {"Columns": 4, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out})
     for makhoul_in, makhoul_out in ((0, 1), (1, 0))
@@ -36,7 +37,7 @@ async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
         return transpose(words, bool(makhoul_in), bool(makhoul_out))
 
     words = places(frames * columns * columns, width).reshape(frames, -1)
-    await check_frame_memory(dut, words, model, LATENCY, rows=columns, **behaviour)
+    await check_frame_memory(dut, words, model, LATENCY, rows=columns, **one_path(dut, columns), **behaviour)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")

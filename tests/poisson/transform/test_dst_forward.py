@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from scipy.fft import dst
 
 from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
+from tactile_depth.chip.poisson.transform.fft import halvings, twiddle_stages
 from tactile_depth.chip.poisson.transform.orders import bit_reversed, makhoul
-from tactile_depth.chip.poisson.transform.sdf_fft import halvings, twiddle_stages
 from tactile_depth.chip.poisson.transform.transform import Transform
-from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
+from tactile_depth.chip.poisson.transform.twiddle import coefficient_gain
 from tests.poisson.transform.transforms import coefficient_noise
 
 

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from scipy.fft import idst
 
 from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
-from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse, dst_inverse_pairs
+from tactile_depth.chip.poisson.transform.fft import halvings, twiddle_stages
 from tactile_depth.chip.poisson.transform.orders import bit_reversed, makhoul
-from tactile_depth.chip.poisson.transform.sdf_fft import halvings, twiddle_stages
 from tactile_depth.chip.poisson.transform.transform import Transform
-from tactile_depth.chip.poisson.transform.twiddle_multiply import coefficient_gain
+from tactile_depth.chip.poisson.transform.twiddle import coefficient_gain
 from tests.poisson.transform.transforms import coefficient_noise
 
 
@@ -74,3 +74,18 @@ def test_sums_go_through_within_their_rounding(seed: int, size: int, factor: int
 
 def test_zero_gives_zero() -> None:
     assert not np.any(inverse(np.zeros(16, np.int64), 18))
+
+
+# In steps of a word, coefficients being all but exact. Measured on 100 pairs of rows: 3, 4, 5.
+@pytest.mark.parametrize(("size", "largest"), [(16, 4), (64, 5), (128, 6)])
+def test_rows_of_a_pair_are_those_alone_within_steps(size: int, largest: int) -> None:
+    modes = np.random.default_rng(size).integers(-(2**12), 2**12, (100, 2, size))
+    pairs = dst_inverse_pairs(modes, Transform(0, 30, 30, 0, 30))
+    assert np.abs(pairs - dst_inverse(modes, Transform(0, 30, 30, 0, 30))).max() <= largest
+
+
+def test_an_odd_row_is_one_beside_zeros() -> None:
+    modes = np.random.default_rng(1).integers(-1000, 1000, (3, 16))
+    rows = dst_inverse_pairs(modes, Transform(0, 27, 18, 0, 27))
+    beside = np.stack((modes[2], np.zeros(16, np.int64)))
+    np.testing.assert_array_equal(rows[2], dst_inverse_pairs(beside, Transform(0, 27, 18, 0, 27))[0])

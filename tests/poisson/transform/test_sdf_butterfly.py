@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.fft import Stage
 from tactile_depth.chip.poisson.transform.sdf_butterfly import sdf_butterfly
-from tactile_depth.chip.poisson.transform.sdf_fft import Stage
 
 WORDS = st.lists(st.integers(-(2**20), 2**20), min_size=32, max_size=32)
 

@@ -10,13 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_depth.chip.gradient.light_gains import settled
-from tactile_depth.chip.poisson.back_substitution import back_substitution
-from tactile_depth.chip.poisson.forward_elimination import forward_elimination
+from tactile_depth.chip.poisson.elimination import elimination
+from tactile_depth.chip.poisson.substitution import substitution
 from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
-from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse
-from tactile_depth.chip.poisson.transform.wide_dst_inverse import wide_dst_inverse
-from tactile_depth.chip.poisson.wide_elimination import wide_elimination
-from tactile_depth.chip.poisson.wide_substitution import wide_substitution
+from tactile_depth.chip.poisson.transform.dst_inverse import dst_inverse, dst_inverse_pairs
 
 Model = Callable[..., "np.ndarray"]
 
@@ -26,18 +23,13 @@ class Cores(NamedTuple):
 
     dst_forward: Model
     dst_inverse: Model
-    forward_elimination: Model
-    back_substitution: Model
-    wide_dst_inverse: Model
-    wide_elimination: Model
-    wide_substitution: Model
+    dst_inverse_pairs: Model
+    elimination: Model
+    substitution: Model
     settled: Model
 
 
-NUMPY = Cores(
-    *(dst_forward, dst_inverse, forward_elimination, back_substitution),
-    *(wide_dst_inverse, wide_elimination, wide_substitution, settled),
-)
+NUMPY = Cores(dst_forward, dst_inverse, dst_inverse_pairs, elimination, substitution, settled)
 """The reference, with which RTL is compared."""
 
 

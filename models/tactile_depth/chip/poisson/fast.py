@@ -17,12 +17,12 @@ from numba import njit
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.light_gains import NEAR_LOG2, ROUNDS, SETTLED, STEP_SHARE, Light
-from tactile_depth.chip.poisson.forward_elimination import coefficient_rows, stored
-from tactile_depth.chip.poisson.thomas_table import thomas_table
+from tactile_depth.chip.poisson.elimination import ahead, coefficient_rows
+from tactile_depth.chip.poisson.thomas_table import ahead_rows
+from tactile_depth.chip.poisson.transform.fft import stages
 from tactile_depth.chip.poisson.transform.orders import mirror, read_only
-from tactile_depth.chip.poisson.transform.sdf_fft import stages
 from tactile_depth.chip.poisson.transform.transform import Transform
-from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors
+from tactile_depth.chip.poisson.transform.twiddle import phase_factors, twiddle_factors
 
 BURSTS = 128  # bursts at most that are transformed side by side: words of one position are loops of that length
 P = ParamSpec("P")
@@ -97,46 +97,78 @@ def _graph(size: int, inverse: bool, factor_width: int) -> Graph:
 
 
 @compiled
-def _transform(
+def _forward(
     x: np.ndarray,
-    inverse: bool,
     alternate: bool,
     drops: tuple[int, int],
     formats: tuple[int, int, int],
+    graph: Graph,
+    factors: np.ndarray,
+    y: np.ndarray,
+    counts: np.ndarray,
+) -> None:
+    """Transform bursts (.., N), as `dst_forward`; `counts`: first step, the stages, last step."""
+    (bursts, size), (first, last), (width, drop, output_width) = x.shape, drops, formats
+    for start in range(0, bursts, BURSTS):
+        there = min(BURSTS, bursts - start)
+        re, im = np.empty((size, there), np.int64), np.zeros((size, there), np.int64)
+        for p in range(size):
+            a = re[p]
+            for i in range(there):
+                a[i] = -x[start + i, p] if alternate and p >= size // 2 else x[start + i, p]
+            counts[0, 0] += _clip_all(a, first, width)
+        _fft(re, im, False, width, drop, graph, counts[1:])
+        for p in range(size):
+            c, s = factors[p]
+            a, b = re[p], im[p]
+            for i in range(there):
+                a[i] = a[i] * c - b[i] * s
+            counts[-1, 0] += _clip_all(a, last, output_width)
+            y[start : start + there, p] = a
+
+
+@compiled
+def _inverse(
+    x: np.ndarray,
+    lone: np.ndarray,
+    alternate: bool,
+    drops: tuple[int, int],
+    formats: tuple[int, int, int, int],
     graph: Graph,
     phase: Graph,
     y: np.ndarray,
     counts: np.ndarray,
 ) -> None:
-    """Transform bursts (.., N), as `dst_forward` or `dst_inverse`; `counts`: first step, the stages, last step."""
-    (bursts, size), (first, last), (width, drop, output_width), (factors, partners) = x.shape, drops, formats, phase
-    for start in range(0, bursts, BURSTS):
-        there = min(BURSTS, bursts - start)
-        re, im = np.empty((size, there), np.int64), np.zeros((size, there), np.int64)
+    """Transform pairs of bursts (.., 2, N), as `dst_inverse_pairs`, of which the second one of `lone` pairs is 0.
+
+    `counts`: the sums of the two, first step, the stages, last step.
+    """
+    (pairs, _, size), (first, last), (factors, partners) = x.shape, drops, phase
+    pair_width, width, drop, output_width = formats
+    for start in range(0, pairs, BURSTS):
+        there = min(BURSTS, pairs - start)
+        re, im = np.empty((size, there), np.int64), np.empty((size, there), np.int64)
         for p in range(size):
-            c, s = factors[p]
             a, b, q = re[p], im[p], partners[p]
-            if inverse:
-                for i in range(there):
-                    mode = x[start + i, p]
-                    other = x[start + i, q] if p else 0
-                    a[i], b[i] = other * c - mode * s, other * s + mode * c
-                counts[0, 1] += _clip_all(b, first, width)
-            else:
-                for i in range(there):
-                    a[i] = -x[start + i, p] if alternate and p >= size // 2 else x[start + i, p]
-            counts[0, 0] += _clip_all(a, first, width)
-        _fft(re, im, inverse, width, drop, graph, counts[1:])
-        for p in range(size):
-            c, s = factors[p]
-            a, b = re[p], im[p]
             for i in range(there):
-                if not inverse:
-                    a[i] = a[i] * c - b[i] * s
-                elif alternate and p >= size // 2:
-                    a[i] = -a[i]
-            counts[-1, 0] += _clip_all(a, last, output_width)
-            y[start : start + there, p] = a
+                pair = x[start + i]
+                a[i], b[i] = (pair[0, q] if p else 0) - pair[1, p], pair[0, p] + (pair[1, q] if p else 0)
+            counts[0, 0] += _clip_all(a, 0, pair_width)
+            counts[0, 1] += _clip_all(b, 0, pair_width)
+            c, s = factors[p]
+            for i in range(there):
+                a[i], b[i] = a[i] * c - b[i] * s, a[i] * s + b[i] * c
+            counts[1, 0] += _clip_all(a, first, width)
+            counts[1, 1] += _clip_all(b, first, width)
+        _fft(re, im, True, width, drop, graph, counts[2:])
+        for p in range(size):
+            a, b = re[p], im[p]
+            sign = -1 if alternate and p >= size // 2 else 1
+            for i in range(there):
+                a[i], b[i] = sign * a[i], 0 if lone[start + i] else sign * b[i]
+            counts[-1, 0] += _clip_all(a, last, output_width) + _clip_all(b, last, output_width)
+            for i in range(there):
+                y[start + i, 0, p], y[start + i, 1, p] = a[i], b[i]
 
 
 @compiled
@@ -158,17 +190,16 @@ def _eliminate(f: np.ndarray, coefficients: np.ndarray, drop: int, width: int, d
 
 
 @compiled
-def _substitute(d: np.ndarray, coefficients: np.ndarray, lift: int, drop: int, width: int, z: np.ndarray) -> int:
+def _substitute(e: np.ndarray, coefficients: np.ndarray, lift: int, drop: int, width: int, z: np.ndarray) -> int:
     count = 0
-    frames, rows, columns = d.shape
-    state = np.zeros(columns, np.int64)
+    frames, rows, columns = e.shape
     for frame in range(frames):
         for row in range(rows):
+            state = z[frame, row]
             for k in range(columns):
-                above = coefficients[row - 1, k] * state[k] if row else 0
-                state[k] = (d[frame, row, k] << (lift + drop)) - above
+                below = coefficients[row - 2, k] * z[frame, row - 2, k] if row >= 2 else 0
+                state[k] = (e[frame, row, k] << (lift + drop)) - below
             count += _clip_all(state, drop, width)
-            z[frame, row] = state
     return count
 
 
@@ -214,59 +245,86 @@ def _settle(ratios: np.ndarray, lsb: np.float32, limit: float, rounds: int, enou
 # The models.
 
 
-def _dst(x: np.ndarray, formats: Transform, inverse: bool, monitor: Monitor | None, node: str) -> np.ndarray:
-    size, drop, factor_width = x.shape[-1], formats.factor_drop, formats.factor_width
-    graph, phase = _graph(size, inverse, factor_width), (phase_factors(size, inverse, factor_width), mirror(size))
-    steps, drops = ["input", "phase"], (formats.input_drop, drop + formats.output_drop)
-    if inverse:
-        steps, drops = ["phase", "output"], (drop + formats.input_drop, formats.output_drop)
-    steps[1:1] = [f"fft.stage{index}" for index in range(len(graph[0]))]
-    bursts, counts = np.ascontiguousarray(x).reshape(-1, size), np.zeros((len(steps), 2), np.int64)
-    y, widths = np.empty(bursts.shape, np.int64), (formats.width, drop, formats.output_width)
-    _transform(bursts, inverse, formats.alternate, drops, widths, graph, phase, y, counts)
+def _told(monitor: Monitor | None, node: str, steps: list[str], counts: np.ndarray) -> None:
     if monitor is not None:
         for step, parts in zip(steps, counts.tolist(), strict=True):
             for part, count in zip((".re", ".im"), parts, strict=True):
                 monitor.clipped(f"{node}.{step}{'' if step.endswith('put') else part}", count)
-    return y.reshape(x.shape)
+
+
+def _stages(graph: Graph) -> list[str]:
+    return [f"fft.stage{index}" for index in range(len(graph[0]))]
 
 
 def dst_forward(
     x: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_forward"
 ) -> np.ndarray:
     """Model poisson/transform/dst_forward.py."""
-    return _dst(x, formats, False, monitor, node)
+    size, drop, factor_width = x.shape[-1], formats.factor_drop, formats.factor_width
+    graph, factors = _graph(size, False, factor_width), phase_factors(size, False, factor_width)
+    steps, drops = ["input", *_stages(graph), "phase"], (formats.input_drop, drop + formats.output_drop)
+    bursts, counts = np.ascontiguousarray(x).reshape(-1, size), np.zeros((len(steps), 2), np.int64)
+    y, widths = np.empty(bursts.shape, np.int64), (formats.width, drop, formats.output_width)
+    _forward(bursts, formats.alternate, drops, widths, graph, factors, y, counts)
+    _told(monitor, node, steps, counts)
+    return y.reshape(x.shape)
 
 
 def dst_inverse(
     modes: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_inverse"
 ) -> np.ndarray:
     """Model poisson/transform/dst_inverse.py."""
-    return _dst(modes, formats, True, monitor, node)
+    return _inverse_rows(modes[..., None, :], 63, formats, monitor, node)[..., 0, :]
 
 
-def forward_elimination(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
-    """Model poisson/forward_elimination.py."""
+def dst_inverse_pairs(
+    modes: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_inverse"
+) -> np.ndarray:
+    """Model `dst_inverse_pairs` of poisson/transform/dst_inverse.py."""
+    return _inverse_rows(modes, formats.width, formats, monitor, node)
+
+
+def _inverse_rows(
+    modes: np.ndarray, pair_width: int, formats: Transform, monitor: Monitor | None, node: str
+) -> np.ndarray:
+    *frames, rows, size = modes.shape
+    drop, factor_width = formats.factor_drop, formats.factor_width
+    pairs = np.zeros((*frames, rows + rows % 2, size), np.int64)
+    pairs[..., :rows, :] = modes
+    lone = np.zeros((*frames, pairs.shape[-2] // 2), bool)
+    lone[..., -1] = rows % 2
+    graph, phase = _graph(size, True, factor_width), (phase_factors(size, True, factor_width), mirror(size))
+    steps, drops = ["pair", "phase", *_stages(graph), "output"], (drop + formats.input_drop, formats.output_drop)
+    y, counts = np.empty_like(pairs), np.zeros((len(steps), 2), np.int64)
+    widths, shape = (pair_width, formats.width, drop, formats.output_width), (-1, 2, size)
+    x, of_rows = pairs.reshape(shape), y.reshape(shape)
+    _inverse(x, lone.ravel(), formats.alternate, drops, widths, graph, phase, of_rows, counts)
+    _told(monitor, node, steps, counts)
+    return y[..., :rows, :]
+
+
+def elimination(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Model poisson/elimination.py."""
     frames = np.ascontiguousarray(f).reshape(-1, *f.shape[-2:])
     d = np.empty_like(frames)
     coefficients = coefficient_rows(config, f.shape[-2])
     counts = _eliminate(frames, coefficients, config.coefficient.fraction, config.arithmetic_width, d)
     if monitor is not None:
-        monitor.clipped("forward_elimination.difference", counts[0])
-        monitor.clipped("forward_elimination.state", counts[1])
-    return stored(d.reshape(f.shape), config, monitor)
+        monitor.clipped("elimination.difference", counts[0])
+        monitor.clipped("elimination.state", counts[1])
+    return ahead(d.reshape(f.shape), config, monitor)
 
 
-def back_substitution(d: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
-    """Model poisson/back_substitution.py."""
-    frames = np.ascontiguousarray(d).reshape(-1, *d.shape[-2:])
+def substitution(e: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Model poisson/substitution.py."""
+    frames = np.ascontiguousarray(e).reshape(-1, *e.shape[-2:])
     z = np.empty_like(frames)
-    coefficients = np.ascontiguousarray(thomas_table(config).rows(d.shape[-2] - 1)[::-1])
+    coefficients = np.ascontiguousarray(ahead_rows(config)[::-1])
     lift = config.elimination.fraction - config.elimination_store.fraction
     count = _substitute(frames, coefficients, lift, config.coefficient.fraction, config.arithmetic_width, z)
     if monitor is not None:
-        monitor.clipped("back_substitution", count)
-    return z.reshape(d.shape)
+        monitor.clipped("substitution", count)
+    return z.reshape(e.shape)
 
 
 def settled(ratios: np.ndarray, light: Light) -> np.ndarray:

@@ -13,7 +13,7 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.transform.orders import eigenvalues
 from tactile_depth.chip.resources import Parts, Words, products, rom
 
-LATENCY = 6
+LATENCY = 4
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,13 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.cores import NUMPY, Cores
 from tactile_depth.chip.poisson.spectral_divide import LATENCY as SPECTRAL_DIVIDE
 from tactile_depth.chip.poisson.spectral_divide import reciprocals, spectral_divide
+from tactile_depth.chip.poisson.transform.commutator import LEAD
+from tactile_depth.chip.poisson.transform.corner_turn import corner_turn
+from tactile_depth.chip.poisson.transform.corner_turn import latency as corner_latency
 from tactile_depth.chip.poisson.transform.dst_forward import latency as forward_latency
 from tactile_depth.chip.poisson.transform.dst_inverse import latency as inverse_latency
-from tactile_depth.chip.poisson.transform.row_reorder import LATENCY as ROW_REORDER
-from tactile_depth.chip.poisson.transform.row_reorder import row_reorder
+from tactile_depth.chip.poisson.transform.row_order import LATENCY as ROW_ORDER
+from tactile_depth.chip.poisson.transform.row_order import row_order
 from tactile_depth.chip.poisson.transform.transpose import LATENCY as TRANSPOSE
 from tactile_depth.chip.poisson.transform.transpose import transpose
 
@@ -67,7 +70,7 @@ def row_forward(
 ) -> np.ndarray:
     """Return the modes of rows in natural order, for the first frame store."""
     formats = config.transform(config.divergence, config.row_forward, config.row_modes)
-    return cores.dst_forward(row_reorder(rows, to_burst=True), formats, monitor, "row_forward")
+    return cores.dst_forward(row_order(rows), formats, monitor, "row_forward")
 
 
 def column_forward(
@@ -92,14 +95,15 @@ def row_inverse(
     """Return rows of depth in natural order from their modes."""
     formats = config.transform(config.depth_modes, config.row_inverse, config.depth)
     depth = cores.dst_inverse(modes, formats, monitor, "row_inverse")
-    return row_reorder(depth, to_burst=False)
+    return corner_turn(depth)
 
 
-def latency_by_core(size: int) -> list[tuple[str, int]]:
+def latency_by_core(config: Configuration) -> list[tuple[str, int]]:
     """Return cores and cycles from the last divergence word of a frame to its first depth, for any gaps."""
-    forward, inverse = forward_latency(size), inverse_latency(size)
+    size = config.columns
+    forward, inverse = forward_latency(size, 1), inverse_latency(size, 1)
     return [
-        ("row_reorder", ROW_REORDER),
+        ("row_order", ROW_ORDER + LEAD),
         ("dst_forward, of the last row", forward),
         ("transpose, to columns", TRANSPOSE),
         ("dst_forward, of a column", forward),
@@ -109,5 +113,5 @@ def latency_by_core(size: int) -> list[tuple[str, int]]:
         ("all other columns", size * (size - 1)),
         ("transpose, to rows", TRANSPOSE),
         ("dst_inverse, of the first row out", inverse),
-        ("row_reorder, waits for the whole row", size - 1 + ROW_REORDER),
+        ("corner_turn, waits for the whole row", corner_latency(size, 1) - LEAD),
     ]

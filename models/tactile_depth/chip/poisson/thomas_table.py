@@ -21,7 +21,7 @@ LATENCY = 5
 
 
 @dataclass(frozen=True)
-class WideTable:
+class PackedTable:
     """Coefficients of several positions side by side in a word, compressed as those of one position.
 
     Attributes
@@ -51,7 +51,7 @@ class WideTable:
 
 
 @dataclass(frozen=True)
-class ThomasTable(WideTable):
+class ThomasTable(PackedTable):
     """Coefficients c[i] of each position as words of the coefficient width; the last row is stored separately.
 
     A column of the table settles; values after its last change are not stored.
@@ -127,16 +127,16 @@ def ahead_rows(config: Configuration) -> np.ndarray:
     return _codes(-full[:-1] * full[1:], config)
 
 
-def wide_table(codes: np.ndarray, positions: np.ndarray) -> WideTable:
+def packed_table(codes: np.ndarray, positions: np.ndarray) -> PackedTable:
     """Compress coefficients (rows, columns) for bursts whose clocks take `positions` (clocks, positions in a word)."""
     bursts = codes[:, positions]  # (rows, clocks, positions)
     settled = np.array([_settled(bursts[:, clock]).max() for clock in range(len(positions))])
     base = np.concatenate(([0], np.cumsum(settled + 1)[:-1]))
     words = np.concatenate([bursts[: last + 1, clock] for clock, last in enumerate(settled)])
-    return WideTable(words, base, settled)
+    return PackedTable(words, base, settled)
 
 
-def table_parts(table: WideTable, width: int) -> list[Memory]:
+def table_parts(table: PackedTable, width: int) -> list[Memory]:
     """Return the two ROMs of a table of words of `width` bits, without that of the last row."""
     index = rom(table.index_width, len(table.base), late_style(table.index_width * len(table.base)))
     return [rom(width, len(table.words)), index]

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/poisson/tridiagonal_solver.sv: divergence in, depth codes out, bottom row first."""
+"""Bit-accurate model of hdl/poisson/tridiagonal_solver.sv: divergence in, depth codes out, bottom row first.
+
+All numbers of depth values per clock give the same codes.
+"""
 
 from __future__ import annotations
 
@@ -8,22 +11,29 @@ import numpy as np
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import Format
-from tactile_depth.chip.poisson.back_substitution import LATENCY as BACK_SUBSTITUTION
+from tactile_depth.chip.poisson import elimination, substitution
 from tactile_depth.chip.poisson.cores import NUMPY, Cores
-from tactile_depth.chip.poisson.forward_elimination import LATENCY as FORWARD_ELIMINATION
-from tactile_depth.chip.poisson.forward_elimination import mean_reciprocal
-from tactile_depth.chip.poisson.frame_stack import LATENCY as FRAME_STACK
+from tactile_depth.chip.poisson.elimination import mean_reciprocal
 from tactile_depth.chip.poisson.frame_stack import frame_stack
-from tactile_depth.chip.poisson.thomas_table import thomas_table
+from tactile_depth.chip.poisson.frame_stack import latency as stack_latency
+from tactile_depth.chip.poisson.thomas_table import PackedTable, thomas_table
+from tactile_depth.chip.poisson.transform.commutator import LEAD
+from tactile_depth.chip.poisson.transform.corner_turn import corner_turn
+from tactile_depth.chip.poisson.transform.corner_turn import latency as corner_latency
 from tactile_depth.chip.poisson.transform.dst_forward import latency as forward_latency
 from tactile_depth.chip.poisson.transform.dst_inverse import latency as inverse_latency
-from tactile_depth.chip.poisson.transform.row_reorder import LATENCY as ROW_REORDER
-from tactile_depth.chip.poisson.transform.row_reorder import row_reorder
+from tactile_depth.chip.poisson.transform.row_order import LATENCY as ROW_ORDER
+from tactile_depth.chip.poisson.transform.row_order import row_order
+
+
+def tables(config: Configuration) -> tuple[PackedTable, PackedTable]:
+    """Return the tables of the coefficients down and up the rows."""
+    return elimination.table(config), substitution.table(config)
 
 
 def solver_parameters(config: Configuration) -> dict[str, int]:
     """Parameters of hdl/poisson/tridiagonal_solver.sv."""
-    table = thomas_table(config)
+    down, up = tables(config)
     reciprocal, mean_drop = mean_reciprocal(config)
     return {
         **config.solver_parameters(),
@@ -34,9 +44,12 @@ def solver_parameters(config: Configuration) -> dict[str, int]:
         "StoreDrop": config.elimination.fraction - config.elimination_store.fraction,
         "RowInverseIn": row_inverse_drops(config)[0],
         "RowInverseOut": row_inverse_drops(config)[1],
-        "TableWords": len(table.words),
-        "SettledWidth": table.settled_width,
-        "LastShiftWidth": table.last_shift_width,
+        "DownWords": config.down_words,
+        "DownTableWords": len(down.words),
+        "DownSettledWidth": down.settled_width,
+        "LastShiftWidth": thomas_table(config).last_shift_width,
+        "UpTableWords": len(up.words),
+        "UpSettledWidth": up.settled_width,
         "MomentDrop": config.moment_drop,
         "MeanReciprocal": reciprocal,
         "MeanDrop": mean_drop - config.moment_drop,
@@ -66,8 +79,8 @@ def tridiagonal_solver(
     -------
     int64 array (..., rows, columns), codes of `config.depth`, bottom row first
     """
-    d = cores.forward_elimination(row_forward(f, config, monitor, cores), config, monitor)
-    z = cores.back_substitution(frame_stack(d), config, monitor)
+    e = cores.elimination(row_forward(f, config, monitor, cores), config, monitor)
+    z = cores.substitution(frame_stack(e), config, monitor)
     return row_inverse(z, config, monitor, cores)
 
 
@@ -77,27 +90,26 @@ def row_forward(
     """Return the modes of rows (..., columns) in natural order, codes of `config.elimination`."""
     modes = Format(config.arithmetic_width, config.elimination.fraction - config.depth_limit_log2)
     formats = config.transform(config.row_forward, config.row_forward, modes)
-    return cores.dst_forward(row_reorder(rows, to_burst=True), formats, monitor, "row_forward")
+    return cores.dst_forward(row_order(rows), formats, monitor, "row_forward")
 
 
 def row_inverse(
     modes: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
 ) -> np.ndarray:
-    """Return rows of depth in natural order from their modes (..., rows, columns), two at a time with several lanes."""
+    """Return rows of depth in natural order from their modes (..., rows, columns), two at a time."""
     formats = config.transform(config.elimination, config.row_inverse, config.depth)
-    inverse = cores.wide_dst_inverse if config.lanes > 1 else cores.dst_inverse
-    depth = inverse(modes, formats, monitor, "row_inverse")
-    return row_reorder(depth, to_burst=False)
+    return corner_turn(cores.dst_inverse_pairs(modes, formats, monitor, "row_inverse"))
 
 
-def latency_by_core(size: int) -> list[tuple[str, int]]:
+def latency_by_core(config: Configuration) -> list[tuple[str, int]]:
     """Return cores and cycles from the last divergence word of a frame to its first depth, for any gaps."""
+    columns, words, paths = config.columns, config.down_words, config.up_paths
     return [
-        ("row_reorder", ROW_REORDER),
-        ("dst_forward, of the last row", forward_latency(size)),
-        ("forward_elimination", FORWARD_ELIMINATION),
-        ("frame_stack, turns the order of the rows", FRAME_STACK),
-        ("back_substitution", BACK_SUBSTITUTION),
-        ("dst_inverse, of the first row out", inverse_latency(size)),
-        ("row_reorder, waits for the whole row", size - 1 + ROW_REORDER),
+        ("row_order", ROW_ORDER + LEAD),
+        ("dst_forward, of the last row", forward_latency(columns, words)),
+        ("elimination", elimination.LATENCY),
+        ("frame_stack, turns the order of the rows", stack_latency(columns, words, paths)),
+        ("substitution", substitution.LATENCY),
+        ("dst_inverse, of the last two rows", inverse_latency(columns, paths)),
+        ("corner_turn, waits for whole rows", corner_latency(columns, paths) - LEAD),
     ]

@@ -5,17 +5,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactile_depth.chip.common.td_rom import LATENCY as MEMORY_READ
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
-from tactile_depth.chip.poisson.transform.sdf_fft import latency as sdf_fft_latency
-from tactile_depth.chip.poisson.transform.sdf_fft import parts as fft_parts
-from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft
+from tactile_depth.chip.poisson.transform.fft import fft
+from tactile_depth.chip.poisson.transform.fft import latency as fft_latency
+from tactile_depth.chip.poisson.transform.fft import parts as fft_parts
 from tactile_depth.chip.poisson.transform.transform import Transform
-from tactile_depth.chip.poisson.transform.twiddle_multiply import LATENCY as TWIDDLE_MULTIPLY
-from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_multiply
-from tactile_depth.chip.resources import Parts, Sizes, Words, products, rom
+from tactile_depth.chip.poisson.transform.twiddle import LATENCY as TWIDDLE
+from tactile_depth.chip.poisson.transform.twiddle import factors_rom, phase_factors, twiddle
+from tactile_depth.chip.resources import Parts, Sizes, Words, products
 
-SIGN = 2  # cycles of sign and rounding
+SIGN = 1  # cycles of sign and rounding
 
 
 def alternate_sign(x: np.ndarray) -> np.ndarray:
@@ -46,18 +45,24 @@ def dst_forward(
     width, coefficients = formats.width, formats.factor_width
     signs = alternate_sign(x) if formats.alternate else x
     signed = round_saturate(signs, formats.input_drop, width, monitor, node + ".input")
-    re, im = sdf_fft(signed, np.zeros_like(signed), False, width, coefficients, monitor, node + ".fft")
+    re, im = fft(signed, np.zeros_like(signed), False, width, coefficients, monitor, node + ".fft")
     factors, drop = phase_factors(x.shape[-1], False, coefficients), formats.factor_drop + formats.output_drop
-    return twiddle_multiply(re, im, factors, drop, formats.output_width, monitor, node + ".phase", real_only=True)[0]
+    return twiddle(re, im, factors, drop, formats.output_width, monitor, node + ".phase", real_only=True)[0]
 
 
-def latency(size: int) -> int:
-    """Return the latency of a transform: read of the memory at its input, sign, FFT, phase."""
-    return MEMORY_READ + SIGN + sdf_fft_latency(size) + TWIDDLE_MULTIPLY
+def latency(size: int, words: int) -> int:
+    """Return the latency of a transform: sign, FFT, phase."""
+    return SIGN + fft_latency(size, words) + TWIDDLE
 
 
 def parts(config: Sizes) -> Parts:
     """Return those of the rows, and of the columns of the spectral solver; a phase gives its real part alone."""
-    factors = rom(3 * config.coefficient.width, config.columns)
-    instance = [Words(config.depth.width), *fft_parts(config, False), *products(config, 2), factors]
+    words = config.down_words
+    factors = factors_rom(config, words, config.columns)
+    instance = [
+        Words(words * config.depth.width),
+        *fft_parts(config, words, False),
+        *products(config, 2 * words),
+        factors,
+    ]
     return instance * (2 if config.solver == "spectral" else 1)

@@ -1,27 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/poisson/transform/dst_inverse.sv: the inverse of dst_forward."""
+"""Bit-accurate model of hdl/poisson/transform/dst_inverse.sv: two rows in one complex transform, or every row alone."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
-from tactile_depth.chip.poisson.transform.dst_forward import SIGN, alternate_sign
-from tactile_depth.chip.poisson.transform.mode_pairs import latency as mode_pairs_latency
-from tactile_depth.chip.poisson.transform.mode_pairs import mode_pairs
-from tactile_depth.chip.poisson.transform.sdf_fft import latency as sdf_fft_latency
-from tactile_depth.chip.poisson.transform.sdf_fft import parts as fft_parts
-from tactile_depth.chip.poisson.transform.sdf_fft import sdf_fft
+from tactile_depth.chip.poisson.transform.dst_forward import alternate_sign
+from tactile_depth.chip.poisson.transform.fft import fft
+from tactile_depth.chip.poisson.transform.fft import latency as fft_latency
+from tactile_depth.chip.poisson.transform.fft import parts as fft_parts
+from tactile_depth.chip.poisson.transform.row_pairs import latency as row_pairs_latency
+from tactile_depth.chip.poisson.transform.row_pairs import mode_pairs, row_pairs
 from tactile_depth.chip.poisson.transform.transform import Transform
-from tactile_depth.chip.poisson.transform.twiddle_multiply import LATENCY as TWIDDLE_MULTIPLY
-from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_multiply
-from tactile_depth.chip.resources import DISTRIBUTED, Memory, Multiplier, Parts, Sizes, Words, delay_line, rom
+from tactile_depth.chip.poisson.transform.twiddle import LATENCY as TWIDDLE
+from tactile_depth.chip.poisson.transform.twiddle import factors_rom, phase_factors, twiddle
+from tactile_depth.chip.resources import Memory, Multiplier, Parts, Sizes, Words, delay_line, late_style
+
+SIGN = 2  # cycles of sign and rounding
 
 
 def dst_inverse(
     modes: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_inverse"
 ) -> np.ndarray:
-    """Compute the inverse DST-II along the last axis.
+    """Compute the inverse DST-II along the last axis, every row alone.
 
     Parameters
     ----------
@@ -33,30 +35,65 @@ def dst_inverse(
     (1 - 2**(1 - factor_width)) ** (2 (twiddle_stages + 1)).
     """
     mode, mirrored = mode_pairs(modes)
+    return _rounded(_transformed(mirrored, mode, formats, monitor, node)[0], formats, monitor, node)
+
+
+def dst_inverse_pairs(
+    modes: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_inverse"
+) -> np.ndarray:
+    """Compute `dst_inverse` of rows, two in one complex FFT: one as its real part, the next as its imaginary part.
+
+    Parameters
+    ----------
+    modes : int64 array (..., rows, N), words of `width` bits in bit-reversed order
+        Rows in the order in which they enter, the first and the second as a pair. An odd last row has zeros beside it.
+
+    Returns
+    -------
+    int64 array (..., rows, N), Makhoul order
+    """
+    rows, size = modes.shape[-2:]
+    first, second = modes[..., 0::2, :], modes[..., 1::2, :]
+    if rows % 2:
+        second = np.concatenate((second, np.zeros_like(first[..., -1:, :])), axis=-2)
+    re, im = row_pairs(first, second, formats.width, monitor, node + ".pair")
+    pairs = np.stack(_transformed(re, im, formats, monitor, node), axis=-2)
+    return _rounded(pairs.reshape(*modes.shape[:-2], -1, size)[..., :rows, :], formats, monitor, node)
+
+
+def _transformed(
+    re: np.ndarray, im: np.ndarray, formats: Transform, monitor: Monitor | None, node: str
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the complex samples of words C[N-k] + j C[k]."""
     width, coefficients = formats.width, formats.factor_width
-    factors, drop = phase_factors(modes.shape[-1], True, coefficients), formats.factor_drop + formats.input_drop
-    re, im = twiddle_multiply(mirrored, mode, factors, drop, width, monitor, node + ".phase")
-    re, im = sdf_fft(re, im, True, width, coefficients, monitor, node + ".fft")
-    signed = alternate_sign(re) if formats.alternate else re
+    factors, drop = phase_factors(re.shape[-1], True, coefficients), formats.factor_drop + formats.input_drop
+    re, im = twiddle(re, im, factors, drop, width, monitor, node + ".phase")
+    return fft(re, im, True, width, coefficients, monitor, node + ".fft")
+
+
+def _rounded(x: np.ndarray, formats: Transform, monitor: Monitor | None, node: str) -> np.ndarray:
+    signed = alternate_sign(x) if formats.alternate else x
     return round_saturate(signed, formats.output_drop, formats.output_width, monitor, node + ".output")
 
 
-def latency(size: int) -> int:
-    """Return the latency of a transform: pairs, phase, FFT, sign."""
-    return mode_pairs_latency(size) + TWIDDLE_MULTIPLY + sdf_fft_latency(size) + SIGN
+def latency(size: int, paths: int) -> int:
+    """Return the latency of a transform: pairs, phase, FFT, sign and rounding."""
+    return row_pairs_latency(size, paths) + TWIDDLE + fft_latency(size, paths) + SIGN
 
 
 def parts(config: Sizes) -> Parts:
-    """Return those of the words of the arithmetic, and of the stored words of the spectral solver; with mode_pairs."""
-    size, coefficient, found = config.columns, config.coefficient.width, Parts()
+    """Return those of the words of the arithmetic, and of the stored words of the spectral solver; with row_pairs."""
+    size, paths, found = config.columns, config.up_paths, Parts()
     widths = [config.arithmetic_width, config.depth.width]
     for width in widths if config.solver == "spectral" else widths[:1]:
+        beats, waits = size // paths, size // paths // 2 + 1
         found += [
-            Words(config.depth.width),
-            *[Multiplier(width, coefficient)] * 4,
-            *delay_line(width, size // 2 + 1),
-            Memory("row buffers", width, size, DISTRIBUTED),
-            rom(3 * coefficient, size),
-            *fft_parts(config, True),
+            Words(paths * config.depth.width),
+            *delay_line(width, waits) * (2 * paths),
+            *[Memory("row buffers", width, beats, late_style(width * beats))] * (2 * paths),
+            *[Multiplier(width, config.coefficient.width)] * (4 * paths),
+            factors_rom(config, paths, size),
+            *fft_parts(config, paths, True),
+            *delay_line(1, latency(size, paths)),
         ]
     return found

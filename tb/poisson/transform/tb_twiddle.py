@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""twiddle against its model: codes, latency, saturations; gaps, pauses, extremes, reset."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from formal.entries import ROUNDING, Proof
+from formal.tables import factor_rom
+from tactile_depth.chip.common.td_round_saturate import Monitor
+from tactile_depth.chip.poisson.transform.commutator import positions
+from tactile_depth.chip.poisson.transform.fft import path_factors
+from tactile_depth.chip.poisson.transform.twiddle import LATENCY, ones, phase_factors, twiddle
+from tactile_depth.chip.rom_files import write_factors
+from tb.beats import check_beats
+from tb.settings import RUN
+from tb.stream import extremes, parameters, parametrize, uniform
+from tb.structures import ICARUS, VERILATOR, Structure
+
+PARAMETERS = ("Paths", "Beats", "Block", "InWidth", "OutWidth", "CoeffWidth", "Drop", "RealOnly")
+
+
+def factors_of(kind: str, paths: int, beats: int, block: int, coeff: int) -> Any:
+    """Return the factors of each beat of a block and each path."""
+    name, direction = kind.split("_")
+    inverse, size = direction == "inverse", paths * beats
+    if name == "phase":
+        return phase_factors(size, inverse, coeff)[positions(size, paths, 0)]
+    return path_factors(size, paths, paths * block, inverse, coeff)
+
+
+def built(kind: str, *values: int, **runs: object) -> Structure:
+    parameters = dict(zip(PARAMETERS, values, strict=True))
+    coeff = parameters["CoeffWidth"]
+    words = factors_of(kind, values[0], values[1], values[2], coeff)
+    return Structure(
+        {**parameters, "Ones": ones(words, coeff)},
+        device={"factors": kind},
+        roms=lambda folder: write_factors(folder / "twiddle_inverse_0.hex", words, coeff),
+        **runs,  # type: ignore[arg-type]
+    )
+
+
+STRUCTURES = (
+    built("twiddle_inverse", 4, 8, 8, 27, 27, 18, 17, 0, on=VERILATOR),
+    built("twiddle_forward", 4, 4, 4, 9, 9, 7, 6, 0, on=ICARUS, mutants=ICARUS),
+    built("phase_forward", 2, 4, 4, 15, 12, 10, 12, 1, on=ICARUS),
+    built("phase_inverse", 4, 2, 2, 9, 9, 7, 4, 0, on=ICARUS),
+    built("twiddle_inverse", 1, 32, 8, 6, 6, 5, 4, 0, on=ICARUS, mutants=ICARUS),
+    built("twiddle_forward", 1, 16, 8, 35, 35, 24, 23, 0),
+    built("phase_inverse", 1, 64, 64, 24, 27, 18, 14, 0),
+    built("phase_inverse", 2, 128, 128, 27, 27, 18, 17, 0),
+)
+PROTOCOL = "protocol_beats"
+PROOFS = tuple(
+    Proof(
+        f"paths with multipliers and without; one path whose factors repeat; {ROUNDING}",
+        {"Paths": paths, "Beats": beats, "Block": 2, "RealOnly": real_only, "Ones": ones_of_paths},
+        roms=factor_rom(paths, 2, ones_of_paths),
+    )
+    for paths, beats, real_only, ones_of_paths in ((2, 2, 0, 1), (2, 2, 1, 0), (1, 4, 0, 0))
+)
+
+
+def factors(dut: Any) -> Any:
+    return factors_of(RUN.device["factors"], *parameters(dut, "Paths", "Beats", "Block", "CoeffWidth"))
+
+
+async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
+    paths, drop, width, real_only = parameters(dut, "Paths", "Drop", "OutWidth", "RealOnly")
+    own = factors(dut).reshape(-1, 2)
+
+    def model(x: Any, monitor: Monitor) -> Any:
+        re, im = (x[..., part].reshape(len(x), -1) for part in (0, 1))
+        products = twiddle(re, im, own, drop, width, monitor, real_only=bool(real_only))
+        return np.stack(products, axis=-1).reshape(x.shape)
+
+    return await check_beats(dut, words, model, LATENCY, fields=["re", "im"], paths=paths, **behaviour)
+
+
+def shape(dut: Any, bursts: int) -> tuple[int, ...]:
+    paths, beats = parameters(dut, "Paths", "Beats")
+    return bursts, beats, paths, 2
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0, None]))
+async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
+    (width,) = parameters(dut, "InWidth")
+    await check(dut, uniform(shape(dut, 12), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def limits(dut: Any) -> None:
+    paths, beats, width = parameters(dut, "Paths", "Beats", "InWidth")
+    _, sink = await check(dut, extremes(paths * beats, width, 2).reshape(shape(dut, 8)))
+    assert not np.any(sink.words[:beats]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@parametrize(part=[0, 1])
+async def ties(dut: Any, part: Any) -> None:
+    """Send a burst of products that drop exactly half a step, then for each lower bit one of half a step and that bit
+    alone.
+
+    The kept part is even, so each of those bits decides between rounding down and up. If the real part of the factor is
+    odd, there is a word for every remainder of the product, for any other part of the word.
+    """
+    paths, beats, width, drop = parameters(dut, "Paths", "Beats", "InWidth", "Drop")
+    size = paths * beats
+    half, modulus = 1 << drop - 1, 1 << drop + 1
+    remainders = [half, *(half + (1 << bit) for bit in range(drop - 1))]
+    words = uniform((len(remainders), size, 2), width, 0.3)
+    own = factors(dut).reshape(-1, 2).tolist()
+    own *= size // len(own)
+    for burst, remainder in zip(words, remainders, strict=True):
+        for word, (re, im) in zip(burst, own, strict=True):
+            if re % 2:
+                other = int(word[1 - part]) * im * (-1 if part else 1)
+                wanted = (remainder + other) * pow(re, -1, modulus) % modulus
+                word[part] = wanted - modulus * (wanted >= modulus // 2)
+    assert any(re % 2 for re, _ in own), "the test is void: no factor is odd"
+    await check(dut, words.reshape(len(words), beats, paths, 2))
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def reset_in_mid_burst(dut: Any) -> None:
+    """Reset in each cycle in which a burst enters or leaves."""
+    beats, width = parameters(dut, "Beats", "InWidth")
+    await check(dut, uniform(shape(dut, 3), width, None), interrupts=range(1, beats + LATENCY + 4))
