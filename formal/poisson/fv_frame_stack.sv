@@ -80,7 +80,7 @@ bind td_ram ram_check #(.Depth(Depth), .Defined(0), .Covered(0)) u_check (.*);
 // Protocol: bursts of Columns / InWords clocks as protocol_bursts allows them, no faster in all than a frame of them
 // leaves; pairs of rows going out, 6 enabled clocks behind their starts.
 module protocol_frame_stack;
-  localparam int Paths = Lanes > 1 ? Lanes / 2 : 1, Clocks = Columns / InWords, Beats = Columns / Paths,
+  localparam int Clocks = Columns / InWords, Beats = Columns / Paths,
       Period = 2 * Columns / Lanes, Pairs = (Rows + 1) / 2, PositionWidth = $clog2(Clocks),
       RowWidth = $clog2(Rows + 1);
   // Clocks that a frame waits, where rows come faster than they leave.

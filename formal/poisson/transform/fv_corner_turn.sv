@@ -8,7 +8,8 @@ localparam int PathWidth = Paths > 1 ? $clog2(Paths) : 1;
 input logic pick, row_b;
 input logic [PathWidth-1:0] chosen;
 
-localparam int Beats = Size / Paths, BeatWidth = $clog2(Beats), Latency = Beats + 4, SlotWidth = Lanes > 1 ? $clog2(Lanes) : 1;
+localparam int Beats = Size / Paths, BeatWidth = $clog2(Beats), Latency = Beats + 4,
+    SlotWidth = Lanes > 1 ? $clog2(Lanes) : 1;
 
 logic started, active;
 logic [BeatWidth-1:0] beat;
@@ -23,9 +24,8 @@ assign sample = position < Size / 2 ? 2 * position : 2 * (Size - 1 - position) +
 
 logic following, watched, held;
 logic alone, alone_now;  // the burst present is row a alone
-logic [1:0] begins;
+logic [1:0] begins, alone_q;
 assign alone_now = begins[1] ? alone_q[1] : alone;
-logic [1:0] alone_q;
 logic [7:0] left;  // enabled clocks to the one in which the word shall stand at the output
 logic [SlotWidth-1:0] slot;
 logic [Width-1:0] value;
