@@ -194,6 +194,7 @@ if (1) begin : g_steps
   end
   always_comb begin
     if (started && following) begin
+      own_path: assert (32'(of_path) < Paths);
       in_time: assert (age >= 32'(of_beat) + 2 && age < Longest && starts[$clog2(Longest)'(age)]);
       if (follows_b) of_pair: assert (seconds[$clog2(Longest)'(age)]);
       own_slot: assert (slot == SlotWidth'(of_sample % Lanes));
