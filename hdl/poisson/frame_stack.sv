@@ -118,9 +118,9 @@ module frame_stack #(
   logic starts_active, pair_end, read_start, read_active, read_row, read_last;
   logic [PeriodWidth-1:0] start_time;
   logic [BeatWidth-1:0] read_time;
-  logic [ToRead-1:0] read_start_q, frame_start_q;
+  logic [ToRead-1:0] read_start_q, frame_start_q, alone_q;
   logic [ServeWidth-1:0] serve, serve_q;
-  logic first_pair, first_pair_q, reads_down;
+  logic first_pair, first_pair_q, alone, alone_now, reads_down;
   td_burst_counter #(.Words(Period)) u_starts (
     .clk, .rst, .en, .start(out_start), .position(start_time), .active(starts_active)
   );
@@ -130,6 +130,7 @@ module frame_stack #(
     .clk, .rst, .en, .start(read_start), .position(read_time), .active(read_active)
   );
   assign first_pair = read_start ? frame_start_q[ToRead-1] : first_pair_q;
+  assign alone = Rows % 2 != 0 && (read_start ? alone_q[ToRead-1] : alone_now);
   assign serve = read_start ? FirstServe : serve_q;
   assign read_row = read_active & ~first_pair & (read_start | (serve == ServeWidth'(Serve - 1)));
   assign read_last = read_time == BeatWidth'(Beats - Serve);  // of the memory rows of a burst
@@ -144,7 +145,9 @@ module frame_stack #(
       if (begins) reads_down <= ~down;
       read_start_q <= {read_start_q[ToRead-2:0], out_start};
       frame_start_q <= {frame_start_q[ToRead-2:0], out_frame_start};
+      alone_q <= {alone_q[ToRead-2:0], out_alone};
       first_pair_q <= first_pair;
+      alone_now <= alone;
       serve_q <= serve == '0 ? ServeWidth'(Serve - 1) : serve - ServeWidth'(1);
     end
     if (rst) {pair, out_start, out_frame_start, out_alone, read_start_q, frame_start_q} <= '0;
@@ -173,7 +176,8 @@ module frame_stack #(
 
     // The words of the row above, which comes with the row after it.
     logic [AddressWidth-1:0] write_address, read_address;
-    logic write_now;
+    logic write_now, read_now;
+    assign read_now = read_row & ~(alone & (side == 1));
     assign write_now = write_row & stores & (written[0] == 1'(Rows - 1 - side));
     logic [RowWords*Width-1:0] words;
     td_ram #(.Width(RowWords * Width), .Depth(Depth), .Style(Style)) u_ram (
@@ -181,7 +185,7 @@ module frame_stack #(
       .write_en     (en & write_now),
       .write_address(write_address),
       .write_data   (ahead),
-      .read_en      (en & read_row),
+      .read_en      (en & read_now),
       .read_address (read_address),
       .read_data    (words)
     );
@@ -193,12 +197,12 @@ module frame_stack #(
         end
         // A frame that was written upwards is read from the top down.
         if (read_start && first_pair) read_address <= reads_down ? Top : '0;
-        else if (read_row) read_address <= address_after(read_address, read_last, reads_down);
+        else if (read_now) read_address <= address_after(read_address, read_last, reads_down);
       end
     end
 
     logic [InWords*Width-1:0] in_words;
-    logic [Paths*Width-1:0] past, word, word_q;
+    logic [Paths*Width-1:0] past, lowest, word, word_q;
     assign in_words = side == 0 ? in_last : in_ahead;
     if (Past) begin : g_past
       assign past = in_words;
@@ -222,8 +226,9 @@ module frame_stack #(
       );
       always_ff @(posedge clk) if (en) past <= buffered;
     end
+    assign lowest = words[Paths*Width-1:0];
     always_comb begin
-      word = words[Paths*Width-1:0];
+      word = lowest;
       for (int later = 1; later < Serve; later++) begin
         if (word_serve == ServeWidth'(Serve - 1 - later)) word = words[later*Width+:Paths*Width];
       end
