@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// row_pair_timing: bursts of two rows come as protocol_row_pairs allows them. The first row of a burst leaves Latency
+// row_pair_timing: bursts of two rows come as protocol_two_rows allows them. The first row of a burst leaves Latency
 // enabled clocks behind its start, the second one OutBeats later unless the first came alone; frame_start with the
 // first row of a frame; no other row leaves. `active` and `beat` are those of the words, 2 enabled clocks behind it.
 
@@ -28,7 +28,7 @@ module row_pair_timing #(
 
   logic allowed, coming;
   logic [BeatWidth-1:0] position;
-  protocol_row_pairs #(.Beats(Beats), .OutBeats(OutBeats)) u_protocol (
+  protocol_two_rows #(.Beats(Beats), .OutBeats(OutBeats)) u_protocol (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_alone, .out_start, .active(coming), .position, .holds(allowed)
   );
   assumed u_assumed (.*);

@@ -25,7 +25,7 @@ STRUCTURES = (
     built(64, 24, 32),
     built(128, 24, 8),
 )
-PROTOCOL = {"protocol_row_pairs": {"Beats": "Size / Paths", "OutBeats": "Size / Lanes"}}
+PROTOCOL = {"protocol_two_rows": {"Beats": "Size / Paths", "OutBeats": "Size / Lanes"}}
 PROOFS = tuple(
     Proof(f"{ONE_ORDER}; {WORD_FREE}", {"Size": size, "Lanes": lanes}, steps=2)
     for size, lanes in ((8, 1), (8, 2), (8, 4), (16, 8))

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_row_pairs: protocol_bursts of Beats beats with the words of two rows, or (in_alone) of one, no faster than
+// protocol_two_rows: protocol_bursts of Beats beats with the words of two rows, or (in_alone) of one, no faster than
 // the rows leave, which are bursts of OutBeats beats whose starts come with their words.
 
 `default_nettype none
 
-module protocol_row_pairs #(
+module protocol_two_rows #(
   parameter int Beats    = 4,
   parameter int OutBeats = 2,
   localparam int PositionWidth = $clog2(Beats)
