@@ -29,10 +29,11 @@ from tactile_depth.chip.gradient.polynomial_gradient import (
     polynomial_words,
 )
 from tactile_depth.chip.limits import CORRECTION_BITS, CORRECTION_WIDTH, POLYNOMIAL
-from tactile_depth.chip.poisson import back_substitution, forward_elimination, spectral_divide
-from tactile_depth.chip.poisson.thomas_table import ThomasTable, thomas_table
-from tactile_depth.chip.poisson.transform import dst_forward, dst_inverse, sdf_fft
-from tactile_depth.chip.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors, twiddle_multiply
+from tactile_depth.chip.poisson import elimination, spectral_divide, substitution
+from tactile_depth.chip.poisson.thomas_table import PackedTable, thomas_table
+from tactile_depth.chip.poisson.transform import dst_forward, dst_inverse, fft
+from tactile_depth.chip.poisson.transform.twiddle import phase_factors, twiddle, twiddle_factors
+from tactile_depth.chip.poisson.tridiagonal_solver import tables as solver_tables
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.self_test import built_in, self_test
 from tactile_depth.chip.tactile_depth import Tables, slope_tables, slopes_and_light
@@ -42,7 +43,7 @@ from tactile_depth.sensor.sensor import Sensor
 SEED, FLIPS = 61, 200
 SHARES = {"published": {"gradient": 0.97}, "sensor": {"corrections": 0.88}, "chip": {"corrections": 0.89}}
 """Entries of tables of colours that pixels read, and that no clipped slope hides."""
-ROMS = ("twiddle", "phase", "reciprocal", "thomas", "index", "last")
+ROMS = ("twiddle", "phase", "reciprocal", "down", "up", "index", "last")
 
 
 def signed(words: Any, width: int) -> Any:
@@ -52,17 +53,15 @@ def signed(words: Any, width: int) -> Any:
 def multiply(re: np.ndarray, im: np.ndarray, factors: np.ndarray, *formats: Any, **named: Any) -> Any:
     """Multiply by words {-Im, Im, Re} of a ROM, of which a flip changes one."""
     if factors.shape[1] == 2:
-        return twiddle_multiply(re, im, factors, *formats, **named)
-    real = twiddle_multiply(re, im, np.stack([factors[:, 0], -factors[:, 2]], axis=-1), *formats, **named)[0]
-    return real, twiddle_multiply(re, im, factors[:, :2], *formats, **named)[1]
+        return twiddle(re, im, factors, *formats, **named)
+    real = twiddle(re, im, np.stack([factors[:, 0], -factors[:, 2]], axis=-1), *formats, **named)[0]
+    return real, twiddle(re, im, factors[:, :2], *formats, **named)[1]
 
 
-class Clamped(ThomasTable):
-    """Table whose index may point behind its end."""
-
-    def rows(self, count: int) -> np.ndarray:
-        index = self.base + np.minimum(np.arange(count)[:, None], self.settled)
-        return self.words[np.minimum(index, len(self.words) - 1)]
+def unpacked(table: PackedTable, count: int) -> np.ndarray:
+    """Return the first rows of a table, (count, positions); its index may point behind its end."""
+    index = table.base + np.minimum(np.arange(count)[:, None], table.settled)
+    return table.words[np.minimum(index, len(table.words) - 1)]
 
 
 @dataclass
@@ -96,7 +95,7 @@ class Preset:
             words["gradient"] = gradient_codes(sensor, config), config.gradient.width
         for inverse in (False, True):
             factors = {"phase": phase_factors(config.columns, inverse, width)}
-            for stage in sdf_fft.stages(config.columns, inverse):
+            for stage in fft.stages(config.columns, inverse):
                 if not stage.delay:
                     factors[f"twiddle {stage.block}"] = twiddle_factors(stage.block, inverse, width)
             for name, pair in factors.items():
@@ -106,7 +105,8 @@ class Preset:
             words["reciprocal"] = spectral_divide.reciprocal_rom(config), width + shift_width
         else:
             table = thomas_table(config)
-            words |= {"thomas": (table.words, width), "index": (table.index, table.index_width)}
+            for name, packed in zip(("down", "up"), solver_tables(config), strict=True):
+                words |= {name: (packed.words, width), f"index {name}": (packed.index, packed.index_width)}
             last = table.last_shift << width | table.last & (1 << width) - 1
             words["last"] = last, width + table.last_shift_width
         return words
@@ -149,7 +149,7 @@ class Preset:
     def hides(self, name: str, at: int, mask: int) -> bool:
         """Return True if the signature is right with bits of a word flipped."""
         words, width = self.words[name]
-        changed, is_signed = words.copy(), name not in ("gains", "reciprocal", "index", "last")
+        changed, is_signed = words.copy(), name.split()[0] not in ("gains", "reciprocal", "index", "last")
         word = changed.flat[at] ^ mask
         changed.flat[at] = signed(word, width) if is_signed else word & (1 << width) - 1
         return self.signature(name, changed) == self.right
@@ -158,13 +158,13 @@ class Preset:
         """Return what a ROM replaces: modules, their functions, and others."""
         width, kind = self.config.coefficient.width, name.split()[0]
         transforms: list[Any] = [dst_forward, dst_inverse]
-        products = [(module, "twiddle_multiply", multiply) for module in (sdf_fft, *transforms)]
+        products = [(module, "twiddle", multiply) for module in (fft, *transforms)]
         if kind == "twiddle":
 
             def twiddles(block: int, inverse: bool, width: int) -> np.ndarray:
                 return words if name == f"twiddle {block} {inverse}" else twiddle_factors(block, inverse, width)
 
-            return [*products, (sdf_fft, "twiddle_factors", twiddles)]
+            return [*products, (fft, "twiddle_factors", twiddles)]
         if kind == "phase":
             transform = transforms[name.endswith("True")]
             return [*products, (transform, "phase_factors", lambda *_: words)]
@@ -177,16 +177,24 @@ class Preset:
             return [(spectral_divide, "reciprocals", lambda _: flipped)]
         if kind not in ROMS:
             return []
-        thomas = thomas_table(self.config)
-        if kind == "thomas":
-            thomas = replace(thomas, words=words)
-        elif kind == "last":
-            thomas = replace(thomas, last=signed(words, width), last_shift=words >> width)
+        if kind == "last":
+            thomas = replace(thomas_table(self.config), last=signed(words, width), last_shift=words >> width)
+            return [(elimination, "thomas_table", lambda _: thomas)]
+        down, up = solver_tables(self.config)
+        packed = up if "up" in name else down
+        bits = packed.settled_width
+        if kind == "index":
+            packed = replace(packed, base=words >> bits, settled=words & (1 << bits) - 1)
         else:
-            bits = thomas.settled_width
-            parts = {"base": words >> bits, "settled": words & (1 << bits) - 1}
-            thomas = Clamped(**vars(thomas) | parts)
-        return [(module, "thomas_table", lambda _: thomas) for module in (forward_elimination, back_substitution)]
+            packed = replace(packed, words=words)
+        rows, columns = self.config.rows, self.config.columns
+        if "up" in name:
+            pairs = unpacked(packed, (rows - 1) // 2)[:, :, ::-1]  # (pairs, clocks, upper and lower row)
+            ahead = np.moveaxis(pairs, 2, 1).reshape(-1, columns)[rows % 2 :]
+            return [(substitution, "ahead_rows", lambda _: ahead)]
+        last = elimination.coefficient_rows(self.config, rows)[-1:]
+        inner = np.concatenate((unpacked(packed, rows - 1).reshape(-1, columns), last))
+        return [(elimination, "coefficient_rows", lambda *_: inner)]
 
 
 def preset_of(name: str) -> Preset:
