@@ -15,7 +15,7 @@ import numpy as np
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.commutator import LEAD
 from tb.pins import Late, Read, signed, unsigned
-from tb.stream import StreamDriver, StreamMonitor, at_every_edge, check_bursts
+from tb.stream import Bench, StreamDriver, StreamMonitor, at_every_edge, check_frame_starts, check_words, interrupt
 
 WORDS_TRIED, BURSTS_OF_A_STAGE = 1 << 20, 8  # enough to fill fft's clip count in each of six seeds
 
@@ -76,41 +76,73 @@ class BeatsDriver(StreamDriver):
             beats = deque(begun.popleft()) or beats
 
 
-async def check_beats(
-    dut: Any, words: Any, model: Any, latency: int, *, fields: Sequence[str], paths: int, **behaviour: Any
-) -> Any:
-    """Send bursts (count, beats, paths, fields); `model` takes and returns such arrays. See `check_bursts`."""
-    count, beats = words.shape[:2]
+async def check_bursts(
+    dut: Any,
+    bursts: Any,
+    model: Any,
+    latency: int | None,
+    *,
+    fields: Sequence[str] = ("data",),
+    out_fields: Sequence[str] = (),
+    driver: Any = BeatsDriver,
+    source: Any = BeatsMonitor,
+    sink: Any = BeatsMonitor,
+    frame: int = 3,
+    gap: int = 0,
+    gap_every: int = 1,
+    pause: float = 0.0,
+    interrupts: Any = (),
+    strays: int = 0,
+    settle: int = 40,
+) -> tuple[Any, ...]:
+    """Send bursts (count, beats, paths, fields); compare the output with the model of the words seen at the input.
 
-    def flat(words: Any) -> Any:
-        return np.moveaxis(words, -1, 2).reshape(*words.shape[:2], -1)
+    `model` takes such int64 bursts and a Monitor, and returns the expected bursts. `latency` is the number of cycles
+    from each start at the input to its start at the output, or None if the core regroups bursts. Up to `gap` idle
+    cycles lie before every `gap_every`-th burst. A frame begins every `frame` bursts. `interrupts`: see `interrupt`.
+    `strays` bursts of an incomplete frame come right before; their results are not compared.
 
-    def on_beats(flat_words: Any, monitor: Any) -> Any:
-        shaped = flat_words.reshape(count, beats, len(fields), paths)
-        return flat(model(np.moveaxis(shaped, 2, -1), monitor))
+    Return the monitors of both sides.
+    """
+    bench = Bench(dut, pause)
+    count, size, paths, _ = bursts.shape
+    driver = driver(dut, "in", fields, paths)
+    source = source(dut, "in", fields, size, paths)
+    sink = sink(dut, "out", out_fields or fields, size, paths)
+    await bench.start()
 
-    names = [f"{field}{path}" for field in fields for path in range(paths)]
-    return await check_bursts(
-        dut,
-        flat(words),
-        on_beats,
-        latency,
-        in_fields=names,
-        out_fields=names,
-        driver=BeatsDriver(dut, "in", fields, paths),
-        source=BeatsMonitor(dut, "in", fields, beats, paths),
-        sink=BeatsMonitor(dut, "out", fields, beats, paths),
-        **behaviour,
-    )
+    def flat(bursts: Any) -> Any:
+        return np.moveaxis(bursts, -1, -2).reshape(count, size, -1)
 
+    beats = flat(bursts)
 
-def one_path(dut: Any, beats: int) -> dict[str, Any]:
-    """Return driver and monitors for `check_bursts` of a core with the field data, one word a cycle."""
-    return {
-        "driver": BeatsDriver(dut, "in", ["data"], 1),
-        "source": BeatsMonitor(dut, "in", ["data"], beats, 1),
-        "sink": BeatsMonitor(dut, "out", ["data"], beats, 1),
-    }
+    async def send(words: int) -> None:
+        for index, sent in enumerate(range(0, words, size)):
+            if gap and index % gap_every == 0:
+                await bench.clocks(bench.random.randint(0, gap))
+            driver.frame_start = index % frame == 0
+            await driver.send(beats[index % count, : words - sent].tolist())
+
+    await interrupt(bench, send, interrupts, (source, sink), quiet=(latency or 0) + 4)
+    await send(strays * size)
+    await send(count * size)
+    await bench.clocks(driver.lead + 1)
+    source.forget_but(count)
+    words_in = np.moveaxis(np.array(source.words).reshape(count, size, -1, paths), 2, -1)
+    np.testing.assert_array_equal(words_in, bursts, "the driver sent other words than the test gave it")
+    clipped = Monitor()
+    expected = flat(model(words_in, clipped))
+    await bench.clocks((latency or count * size) + 2 * size + settle)
+    if strays:
+        sink.forget_but(count)
+    check_words(np.array(sink.words), expected.reshape(count * size, -1), size, frame)
+    check_frame_starts((source, sink), frame)
+    if latency is not None:
+        measured = {after - before for before, after in zip(source.starts, sink.starts, strict=True)}
+        assert measured == {latency}, f"latency {measured}, expected {latency}"
+    total = clipped.saturations.total()
+    assert strays or bench.saturations == total, f"{bench.saturations} values clipped, {total} in the model"
+    return source, sink
 
 
 class Clips(Monitor):
@@ -146,8 +178,8 @@ def all_stages_clip(
 
 
 def alone(bursts: Any) -> Any:
-    """Return whether the first row of each burst (count, beats, words) comes alone: its first word is odd."""
-    return np.asarray(bursts)[:, 0, 0] % 2 == 1
+    """Return whether the first row of each burst (count, beats, ..) comes alone: its first word is odd."""
+    return np.asarray(bursts).reshape(len(bursts), -1)[:, 0] % 2 == 1
 
 
 class AloneDriver(BeatsDriver):

@@ -15,7 +15,6 @@ from cocotb.triggers import RisingEdge
 from cocotb_bus.drivers import BusDriver
 from cocotb_bus.monitors import BusMonitor
 
-from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tb import pins
 from tb.pins import CLOCK_NS as CLOCK_NS
@@ -146,8 +145,6 @@ class StreamDriver(BusDriver):
     `en`. Where the device has a pin `frame_start`, it is high with the first word of a transaction sent while
     `frame_start` is true.
     """
-
-    lead = 0  # cycles from a start to its word
 
     def __init__(self, dut: Any, name: str, qualifier: str, fields: Any) -> None:
         self._signals = [qualifier, *fields]
@@ -379,95 +376,6 @@ async def interrupt(bench: Any, send: Any, interrupts: Any, monitors: Any, quiet
             await bench.clocks(quiet)
             assert not any(monitor.starts for monitor in monitors), f"words left after a reset at {count}"
             assert bench.saturations == 0, f"clipped words were counted after a reset at {count}"
-
-
-async def check_bursts(
-    dut: Any,
-    bursts: Any,
-    model: Any,
-    latency: Any,
-    *,
-    in_fields: Any,
-    out_fields: Any,
-    frame: int = 3,
-    gap: Any = 0,
-    gap_every: int = 1,
-    pause: float = 0.0,
-    interrupts: Any = (),
-    strays: int = 0,
-    settle: int = 40,
-    driver: Any = None,
-    source: Any = None,
-    sink: Any = None,
-) -> tuple[Any, ...]:
-    """Send bursts (count, size, fields); compare the output with the model of the words seen at the input.
-
-    `model` takes int64 (count, size, fields) and a Monitor, and returns the expected bursts. `latency` is the
-    number of cycles from each start at the input to its start at the output, or None if the core regroups bursts. Up to
-    `gap` idle cycles lie before every `gap_every`-th burst. A frame begins every `frame` bursts. `interrupts`: see
-    `interrupt`. `strays` bursts of an incomplete frame come right before; their results are not compared. `driver`,
-    `source` and `sink` are those of streams with several words per cycle.
-
-    Return the monitors of both sides.
-    """
-    bench = Bench(dut, pause)
-    size = bursts.shape[1]
-    driver = driver if driver is not None else StreamDriver(dut, "in", "start", in_fields)
-    source = source if source is not None else StreamMonitor(dut, "in", "start", in_fields, length=size)
-    sink = sink if sink is not None else StreamMonitor(dut, "out", "start", out_fields, length=size)
-    await bench.start()
-
-    async def send(count: int) -> None:
-        for index, sent in enumerate(range(0, count, size)):
-            driver.frame_start = index % frame == 0
-            await driver.send(bursts[index % len(bursts), : count - sent].tolist())
-
-    await interrupt(bench, send, interrupts, (source, sink), quiet=(latency or 0) + 4)
-    await send(strays * size)
-    for index, burst in enumerate(bursts):
-        if gap and index % gap_every == 0:
-            await bench.clocks(bench.random.randint(0, gap))
-        driver.frame_start = index % frame == 0
-        await driver.send(burst.tolist())
-    await bench.clocks(driver.lead + 1)
-    source.forget_but(len(bursts))
-    words_in = np.array(source.words).reshape(bursts.shape)
-    np.testing.assert_array_equal(words_in, bursts, "the driver sent other words than the test gave it")
-    clipped = Monitor()
-    expected = model(words_in, clipped).reshape(-1, len(out_fields))
-    await bench.clocks((latency or len(expected)) + 2 * size + settle)
-    if strays:
-        sink.forget_but(len(expected) // size)
-    check_words(np.array(sink.words).reshape(-1, len(out_fields)), expected, size, frame)
-    check_frame_starts((source, sink), frame)
-    if latency is not None:
-        measured = {after - before for before, after in zip(source.starts, sink.starts, strict=True)}
-        assert measured == {latency}, f"latency {measured}, expected {latency}"
-    total = clipped.saturations.total()
-    assert strays or bench.saturations == total, f"{bench.saturations} values clipped, {total} in the model"
-    return source, sink
-
-
-async def check_frame_memory(dut: Any, words: Any, model: Any, latency: Any, *, rows: int, **behaviour: Any) -> None:
-    """Check a core that stores frames (count, rows * size) and sends each without a pause after its last row came.
-
-    `latency` is the number of cycles from the start of the last row in to the first start out.
-    """
-    count, size = len(words), words.shape[1] // rows
-    source, sink = await check_bursts(
-        dut,
-        words.reshape(-1, size, 1),
-        lambda words, _: model(words.reshape(count, rows, size)),
-        None,
-        in_fields=["data"],
-        out_fields=["data"],
-        frame=rows,
-        **behaviour,
-    )
-    last_rows, first_out = source.starts[rows - 1 :: rows], sink.starts[::rows]
-    assert [out - row for out, row in zip(first_out, last_rows, strict=True)] == [latency] * count
-    apart = np.diff(np.array(sink.starts).reshape(count, rows), axis=1)
-    assert np.all(apart == size), "a frame leaves with a pause between two bursts"
 
 
 async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any:

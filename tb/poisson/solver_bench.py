@@ -9,7 +9,7 @@ import numpy as np
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.latency import by_solver_core
 from tactile_depth.chip.tactile_depth import solve
-from tb.lanes import BeatMonitor
+from tb.beats import BeatsMonitor
 from tb.stream import (
     MANY,
     REGRESS,
@@ -34,7 +34,7 @@ async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrup
     bench = Bench(dut, pause)
     driver = StreamDriver(dut, "in", "valid", ["data"])
     source = StreamMonitor(dut, "in", "valid", ["data"])
-    sink = BeatMonitor(dut, "out", config.columns // config.lanes, config.lanes)
+    sink = BeatsMonitor(dut, "out", ["data"], config.columns // config.lanes, config.lanes, lead=0)
     await bench.start()
     words = f.reshape(-1, 1).tolist()
     latency = sum(cycles for _, cycles in by_solver_core(config))
@@ -73,32 +73,32 @@ def codes(frames: int, amplitude: float) -> Any:
     return uniform(shape, width, amplitude)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.test
 @parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.3, 0.0), (0.0, 0.3), (0.3, 0.3)])))
 async def frames(dut: Any, gap: float, pause: float) -> None:
     assert not await check(dut, codes(4, 0.002), gap, pause)
 
 
-@cocotb.test(timeout_time=200, timeout_unit="ms")
+@cocotb.test
 @parametrize(amplitude=[0.002, 0.05, None])
 async def many_frames(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     await check(dut, codes(MANY, amplitude))
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.test
 async def full_scale_saturates(dut: Any) -> None:
     assert await check(dut, codes(3, 1.0)), "full scale everywhere must clip somewhere"
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.test
 async def a_frame_does_not_know_the_one_before(dut: Any) -> None:
     f = codes(3, 0.002)
     f[2] = f[0]
     await check(dut, f)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.test
 @parametrize(amplitude=[0.002, 1.0])
 async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     """Reset at two positions in a row of the second frame, four in `make regress`, as the first one leaves: every core
@@ -109,7 +109,7 @@ async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     await check(dut, codes(2, amplitude), interrupts=places)
 
 
-@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.test
 @parametrize(rows=[1, 3])
 async def a_frame_begins_afresh(dut: Any, rows: int) -> None:
     """Start a frame after rows of an incomplete frame, and after part of another row."""

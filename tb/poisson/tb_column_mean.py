@@ -60,13 +60,13 @@ async def check(dut: Any, amplitude: float | None, frames: int, pause: float, st
         assert sum(int(clip).bit_count() for clip in clips) == monitor.saturations.total()
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.test
 @parametrize(amplitude=[0.01, 1.0, None], pause=[0.0, 0.3])
 async def means(dut: Any, amplitude: float | None, pause: float) -> None:
     await check(dut, amplitude, MANY * 3, pause)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.test
 @parametrize(strays=[1, 5])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     await check(dut, 0.5, 3, 0.0, strays)

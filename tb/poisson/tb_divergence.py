@@ -70,14 +70,14 @@ async def check(dut: Any, gradient: Any, gap: float = 0.0, pause: float = 0.0, i
     check_frame_starts([sink], gradient[0, ..., 0].size)
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.test
 @parametrize((("gap", "pause"), [(0.0, 0.0), (0.1, 0.3), (0.7, 0.0)]), ("rows", [1, 4]))
 async def frames(dut: Any, gap: float, pause: float, rows: int) -> None:
     width, columns = parameters(dut, "Width", "Columns")
     await check(dut, uniform((3, rows, columns, 2), width), gap, pause)
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.test
 async def limits(dut: Any) -> None:
     """Send rows of each kind of limits, then with their fields exchanged; the last frame is a chequer board.
 
@@ -90,7 +90,7 @@ async def limits(dut: Any) -> None:
     await check(dut, np.concatenate(frames))
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.test
 async def reset_in_mid_frame(dut: Any) -> None:
     """Reset at each of the first words, and in the second row."""
     width, columns = parameters(dut, "Width", "Columns")

@@ -3,6 +3,7 @@
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import cocotb
@@ -16,9 +17,9 @@ from tactile_depth.chip.poisson.elimination import LATENCY, elimination
 from tactile_depth.chip.poisson.frame_stack import LEAD as LEAD_OUT
 from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.chip.rom_files import write_thomas
-from tb.beats import BeatsDriver, BeatsMonitor
+from tb.beats import BeatsMonitor, check_bursts
 from tb.pins import Read
-from tb.stream import MANY, check_bursts, configuration, parametrize, sample, uniform, with_and_without_en
+from tb.stream import MANY, configuration, parametrize, sample, uniform, with_and_without_en
 from tb.structures import ICARUS, VERILATOR, Structure
 
 NAMES = ["Width", "CoeffWidth", "Rows", "Columns", "StoreDrop", "Neumann"]
@@ -67,9 +68,9 @@ UNCLIPPED = 0.01  # amplitude at which nothing clips
 class Eliminated(BeatsMonitor):
     """Monitor of the words that count: d of a frame's last row, and e of the row above in all rows but the first."""
 
-    def __init__(self, dut: Any, clocks: int, words: int, rows: int) -> None:
-        super().__init__(dut, "out", ["last", "ahead"], clocks, words, LEAD_OUT)
-        self.rows, self.row = rows, 0
+    def __init__(self, *arguments: Any, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self.rows, self.row = configuration().rows, 0
 
     def word(self, reads: Sequence[Read]) -> Any:
         if len(self.words) % self.length == 0:
@@ -86,46 +87,34 @@ async def check(dut: Any, amplitude: Any, frames: int = 3, **behaviour: Any) -> 
     """
     config = configuration()
     paths, width = config.down_words, config.arithmetic_width
-    clocks = config.columns // paths
-    shape = (frames * config.rows, clocks, paths)
+    shape = (frames * config.rows, config.columns // paths, paths, 1)
     words = np.full(shape, (1 << width - 1) - 1) if amplitude == math.inf else uniform(shape, width, amplitude)
 
     def model(words: Any, monitor: Monitor) -> Any:
         out = elimination(words.reshape(-1, config.rows, config.columns), config, monitor)
-        seen = np.zeros((2, *out.shape), np.int64)
-        seen[0, :, -1] = out[:, -1]
-        seen[1, :, 1:] = out[:, :-1]
-        return np.moveaxis(seen.reshape(2, -1, clocks, paths), 0, 2)
+        seen = np.zeros((*out.shape, 2), np.int64)
+        seen[:, -1, :, 0] = out[:, -1]
+        seen[:, 1:, :, 1] = out[:, :-1]
+        return seen.reshape(*shape[:3], 2)
 
-    await check_bursts(
-        dut,
-        words,
-        model,
-        LATENCY,
-        in_fields=["data"] * paths,
-        out_fields=["data"] * 2 * paths,
-        frame=config.rows,
-        driver=BeatsDriver(dut, "in", ["data"], paths),
-        source=BeatsMonitor(dut, "in", ["data"], clocks, paths),
-        sink=Eliminated(dut, clocks, paths, config.rows),
-        **behaviour,
-    )
+    behaviour |= {"out_fields": ("last", "ahead"), "sink": partial(Eliminated, lead=LEAD_OUT)}
+    await check_bursts(dut, words, model, LATENCY, frame=config.rows, **behaviour)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.test
 @parametrize((("gap", "pause"), sample([(0, 0.0), (30, 0.0), (0, 0.3), (30, 0.3)])), ("full_scale", [False, True]))
 async def frames(dut: Any, gap: float, pause: float, full_scale: bool) -> None:
     await check(dut, 1.0 if full_scale else UNCLIPPED, gap=gap, pause=pause)
 
 
-@cocotb.test(timeout_time=50, timeout_unit="ms")
+@cocotb.test
 @parametrize(amplitude=[0.003, 0.1, None])
 async def many_frames(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     await check(dut, amplitude, frames=MANY)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.test
 @parametrize(amplitude=[0.1, None])
 async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     """Reset as the first words enter and leave and in the middle of a frame; None: while values are clipped."""
@@ -136,14 +125,14 @@ async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     await check(dut, amplitude, interrupts=with_and_without_en(counts))
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.test
 @parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """Start a frame after part of another one, and after more than one without a start of frame in between."""
     await check(dut, 0.1, frames=1, strays=strays)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.test
 async def reset_as_the_mean_is_clipped(dut: Any) -> None:
     """Reset in each cycle after the addend of the last row but one: nothing is counted."""
     config = configuration()

@@ -12,8 +12,8 @@ from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.spectral_divide import LATENCY, reciprocals, spectral_divide
 from tactile_depth.chip.rom_files import write_solver
-from tb.beats import one_path
-from tb.stream import MANY, check_bursts, configuration, extremes, parameters, parametrize, sample, uniform
+from tb.beats import check_bursts
+from tb.stream import MANY, configuration, extremes, parameters, parametrize, sample, uniform
 from tb.structures import ICARUS, VERILATOR, Structure
 
 
@@ -47,52 +47,49 @@ PROOFS = tuple(
 )
 
 
-async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
+async def check(dut: Any, x: Any, **behaviour: Any) -> None:
     config = configuration()
 
     def model(x: Any, monitor: Monitor) -> Any:
-        return spectral_divide(x.reshape(-1, config.columns, config.columns), config, monitor)
+        return spectral_divide(x.reshape(-1, config.columns, config.columns), config, monitor).reshape(x.shape)
 
-    behaviour |= {"in_fields": ["data"], "out_fields": ["data"], "frame": config.columns}
-    behaviour |= one_path(dut, config.columns)
-    return await check_bursts(dut, x, model, LATENCY, **behaviour)
+    await check_bursts(dut, x.reshape(-1, config.columns, 1, 1), model, LATENCY, frame=config.columns, **behaviour)
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.test
 @parametrize((("gap", "pause"), sample([(0, 0.0), (9, 0.0), (9, 0.3)])), ("amplitude", [0.001, 1.0]))
 async def frames(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     columns, width = parameters(dut, "Columns", "Width")
-    await check(dut, uniform((3 * columns, columns, 1), width, amplitude), gap=gap, pause=pause)
+    await check(dut, uniform((3, columns, columns), width, amplitude), gap=gap, pause=pause)
 
 
-@cocotb.test(timeout_time=50, timeout_unit="ms")
+@cocotb.test
 @parametrize(amplitude=[0.01, 0.2, None])
 async def many_frames(dut: Any, amplitude: float) -> None:
     """Reach ties of the rounding, and values that just clip."""
     columns, width = parameters(dut, "Columns", "Width")
-    await check(dut, uniform((MANY * columns, columns, 1), width, amplitude))
+    await check(dut, uniform((MANY, columns, columns), width, amplitude))
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.test
 async def limits(dut: Any) -> None:
     """Fill a frame with each kind of burst, so that it reaches every position and the lowest modes clip."""
     columns, width = parameters(dut, "Columns", "Width")
-    _, sink = await check(dut, np.repeat(extremes(columns, width), columns, axis=0))
-    assert not np.any(sink.words[: columns * columns]), "zero in, but not zero out"
+    await check(dut, np.repeat(extremes(columns, width), columns, axis=0))
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.test
 @parametrize(late=[False, True])
 async def reset_in_mid_frame(dut: Any, late: bool) -> None:
     """Reset as the first words enter and leave, and in the middle of the second frame."""
     columns, width = parameters(dut, "Columns", "Width")
     first = 3 * columns * columns // 2 + columns // 2 if late else 1
-    await check(dut, uniform((columns, columns, 1), width), interrupts=range(first, first + LATENCY + 2))
+    await check(dut, uniform((columns, columns), width), interrupts=range(first, first + LATENCY + 2))
 
 
-@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.test
 @parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """Start a frame after part of another one, and after more than one without a start of frame in between."""
     columns, width = parameters(dut, "Columns", "Width")
-    await check(dut, uniform((columns, columns, 1), width), strays=strays)
+    await check(dut, uniform((columns, columns), width), strays=strays)

@@ -37,20 +37,20 @@ NO_PROOF = "a chain of proven cores, each of which takes what the one before it 
 __all__ = ["a_frame_begins_afresh", "frames_that_fit", "frames_that_saturate", "many_frames", "reset_in_mid_frame"]
 
 
-@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.test
 @parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
 async def frames_that_fit(dut: Any, gap: float, pause: float) -> None:
     await check(dut, codes(3, 0.002), gap=gap, pause=pause)
 
 
-@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.test
 async def frames_that_saturate(dut: Any) -> None:
     f = codes(3, 1.0)
     f[1], f[2] = f.max(), f.min()
     assert await check(dut, f, gap=0.1), "full scale everywhere must clip somewhere"
 
 
-@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.test
 @parametrize(amplitude=[0.002, 1.0])
 async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     """Reset as the third frame enters and the first one leaves: every core is active, and clips if it can."""

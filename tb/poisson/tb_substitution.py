@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """substitution against its model: codes, latency and clip counts, with gaps between frames, pauses and resets."""
 
+from functools import partial
 from typing import Any
 
 import cocotb
@@ -14,9 +15,9 @@ from tactile_depth.chip.poisson.frame_stack import LEAD as LEAD_IN
 from tactile_depth.chip.poisson.substitution import LATENCY, substitution
 from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.chip.rom_files import write_thomas
-from tb.beats import BeatsDriver, BeatsMonitor
+from tb.beats import BeatsDriver, BeatsMonitor, check_bursts
 from tb.pairs import AloneMonitor, side_by_side
-from tb.stream import MANY, check_bursts, configuration, parametrize, uniform, with_and_without_en
+from tb.stream import MANY, configuration, parametrize, uniform, with_and_without_en
 from tb.structures import ICARUS, VERILATOR, Structure
 
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal", "lanes": 4}
@@ -63,9 +64,9 @@ UNCLIPPED = 0.05  # amplitude at which nothing clips
 class PairDriver(BeatsDriver):
     """BeatsDriver of pairs of rows, the last one of an odd frame alone."""
 
-    def __init__(self, dut: Any, words: int, rows: int) -> None:
-        self.rows, self.pair = rows, 0
-        super().__init__(dut, "in", ["data"], words, LEAD_IN)
+    def __init__(self, *arguments: Any, **named: Any) -> None:
+        self.rows, self.pair = configuration().rows, 0
+        super().__init__(*arguments, **named)
 
     async def _driver_send(self, transaction: Any, sync: bool = True) -> None:
         self.pair = 0 if self.frame_start else self.pair + 1
@@ -79,48 +80,37 @@ async def check(dut: Any, amplitude: Any, count: int = 3, **behaviour: Any) -> N
     An amplitude of None gives mostly the lowest and the highest word.
     """
     config = configuration()
-    rows, paths, width = config.rows, config.up_paths, config.data_width
-    beats, pairs = config.columns // paths, (rows + 1) // 2
-    e = uniform((count * pairs, beats, 2 * paths), width, amplitude)  # beside a row alone come words of no meaning
+    rows, paths = config.rows, config.up_paths
+    pairs = (rows + 1) // 2
+    shape = (count * pairs, config.columns // paths, 2 * paths, 1)
+    e = uniform(shape, config.data_width, amplitude)  # beside a row alone come words of no meaning
 
     def model(sent: Any, monitor: Monitor) -> Any:
-        both = np.moveaxis(sent.reshape(count, pairs, beats, 2, paths), 3, 2)
+        both = np.moveaxis(sent.reshape(count, pairs, -1, 2, paths), 3, 2)
         z = substitution(both.reshape(count, 2 * pairs, -1)[:, :rows], config, monitor)
-        return side_by_side(z, paths)
+        return side_by_side(z, paths).reshape(shape)
 
     alone = AloneMonitor(dut, "out")
-    await check_bursts(
-        dut,
-        e,
-        model,
-        LATENCY,
-        in_fields=["data"] * 2 * paths,
-        out_fields=["data"] * 2 * paths,
-        frame=pairs,
-        gap_every=pairs,
-        driver=PairDriver(dut, 2 * paths, rows),
-        source=BeatsMonitor(dut, "in", ["data"], beats, 2 * paths, LEAD_IN),
-        sink=BeatsMonitor(dut, "out", ["data"], beats, 2 * paths),
-        **behaviour,
-    )
+    behaviour |= {"driver": partial(PairDriver, lead=LEAD_IN), "source": partial(BeatsMonitor, lead=LEAD_IN)}
+    await check_bursts(dut, e, model, LATENCY, frame=pairs, gap_every=pairs, **behaviour)
     want = [rows % 2 != 0 and pair % pairs == pairs - 1 for pair in range(count * pairs)]
     assert alone.marks[-len(want) :] == want
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.test
 @parametrize(pause=[0.0, 0.3], full_scale=[False, True])
 async def frames(dut: Any, pause: float, full_scale: bool) -> None:
     await check(dut, 1.0 if full_scale else UNCLIPPED, gap=30, pause=pause)
 
 
-@cocotb.test(timeout_time=50, timeout_unit="ms")
+@cocotb.test
 @parametrize(amplitude=[0.003, 0.1, None])
 async def many_frames(dut: Any, amplitude: float) -> None:
     """Reach ties of the rounding, clip every value that can clip, and let frame follow frame without a pause."""
     await check(dut, amplitude, count=MANY)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.test
 @parametrize(amplitude=[0.1, None])
 async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     """Reset as the first words enter and leave and in the middle of a frame; None: while values are clipped."""
@@ -130,7 +120,7 @@ async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     await check(dut, amplitude, interrupts=with_and_without_en(counts))
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.test
 @parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """Start a frame after part of another one, and after more than one without a start of frame in between."""

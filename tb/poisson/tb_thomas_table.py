@@ -46,7 +46,7 @@ PROOFS = (
 )
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.test
 @parametrize(pause=[0.0, 0.3])
 async def every_entry(dut: Any, pause: float) -> None:
     config = configuration()

@@ -72,13 +72,13 @@ async def check(dut: Any, gap: int = 0, pause: float = 0.0, interrupts: Any = ()
     assert sink.frame_starts == begins[leaves].tolist(), f"frames begin at {sink.frame_starts}"
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.test
 @parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3), (200, 0.3)]))
 async def bursts(dut: Any, gap: int, pause: float) -> None:
     await check(dut, gap=gap, pause=pause)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.test
 async def reset_in_mid_burst(dut: Any) -> None:
     """Reset in each cycle of a burst, as it enters and as it leaves."""
     size, lanes = parameters(dut, "Size", "Lanes")

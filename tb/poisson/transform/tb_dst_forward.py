@@ -3,9 +3,6 @@
 
 from typing import Any
 
-import cocotb
-import numpy as np
-
 from formal.entries import Proof
 from formal.tables import transform_roms
 from tactile_depth.chip.common.td_round_saturate import Monitor
@@ -14,8 +11,8 @@ from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
 from tactile_depth.chip.poisson.transform.dst_forward import latency as dst_forward_latency
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.rom_files import write_direction
-from tb.beats import check_beats
-from tb.stream import MANY, extremes, parameters, parametrize, sample, uniform, with_and_without_en
+from tb.poisson.transform.burst_core import BurstCore
+from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
 PARAMETERS = ("Size", "Words", "InWidth", "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Sine")
@@ -48,55 +45,12 @@ PROOFS = (
 )
 
 
-CLOCKS_OF_A_BURST_EDGE = 12  # cycles in which a burst begins to enter, or to leave
-
-
-async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
-    """Send bursts (count, beats, words, 1) and compare the output with the model of the device."""
+def model(dut: Any, x: Any, monitor: Monitor) -> Any:
     formats: Any = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Sine")
-    size, paths = parameters(dut, "Size", "Words")
-
-    def model(words: Any, monitor: Monitor) -> Any:
-        rows = from_beats(words[..., 0], (size // paths).bit_length() - 1)
-        return to_beats(dst_forward(rows, Transform(*formats), monitor), paths, 0)[..., None]
-
-    return await check_beats(
-        dut, words, model, dst_forward_latency(size, paths), fields=["data"], paths=paths, **behaviour
-    )
+    _, beats, paths, _ = x.shape
+    rows = from_beats(x[..., 0], beats.bit_length() - 1)
+    return to_beats(dst_forward(rows, Transform(*formats), monitor), paths, 0)[..., None]
 
 
-def shape(dut: Any, bursts: int) -> tuple[int, ...]:
-    size, paths = parameters(dut, "Size", "Words")
-    return bursts, size // paths, paths, 1
-
-
-@cocotb.test(timeout_time=2, timeout_unit="ms")
-@parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", sample([0.3, 1.0, None])))
-async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
-    (width,) = parameters(dut, "InWidth")
-    await check(dut, uniform(shape(dut, 5), width, amplitude), gap=gap, pause=pause)
-
-
-@cocotb.test(timeout_time=50, timeout_unit="ms")
-@parametrize(amplitude=[0.1, None])
-async def many_bursts(dut: Any, amplitude: float) -> None:
-    """Reach ties of every rounding, and clip every value that can clip."""
-    (width,) = parameters(dut, "InWidth")
-    await check(dut, uniform(shape(dut, 4 * MANY), width, amplitude))
-
-
-@cocotb.test(timeout_time=2, timeout_unit="ms")
-async def limits(dut: Any) -> None:
-    size, width = parameters(dut, "Size", "InWidth")
-    _, sink = await check(dut, extremes(size, width).reshape(shape(dut, 8)))
-    assert not np.any(sink.words[: shape(dut, 1)[1]]), "zero in, but not zero out"
-
-
-@cocotb.test(timeout_time=2, timeout_unit="ms")
-@parametrize((("late", "clips"), sample([(False, True), (False, False), (True, False), (True, True)])))
-async def reset_in_mid_burst(dut: Any, late: bool, clips: bool) -> None:
-    """Reset in each cycle in which a burst begins to enter, or to leave; a clip after the reset is not counted."""
-    size, width, paths = parameters(dut, "Size", "InWidth", "Words")
-    first = dst_forward_latency(size, paths) - 3 if late else 1
-    words = uniform(shape(dut, 2), width, None if clips else 1.0)
-    await check(dut, words, interrupts=with_and_without_en(range(first, first + CLOCKS_OF_A_BURST_EDGE)))
+CORE = BurstCore(model, lambda dut: dst_forward_latency(*parameters(dut, "Size", "Words")), "InWidth", ("data",))
+bursts, many_bursts, limits, reset_in_mid_burst = CORE.tests()

@@ -18,7 +18,8 @@ from tactile_depth.chip.rom_files import write_direction
 from tb.beats import AloneDriver, BeatsMonitor, all_stages_clip, alone
 from tb.pairs import AloneMonitor
 from tb.pins import Read
-from tb.stream import MANY, check_bursts, extremes, parameters, parametrize, sample, uniform, with_and_without_en
+from tb.poisson.transform.burst_core import BurstCore
+from tb.stream import MANY, parameters
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
 PARAMETERS = ("Size", "Paths", "InWidth", "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Sine")
@@ -52,29 +53,11 @@ PROOFS = (
 )
 
 
-CLOCKS_OF_A_BURST_EDGE = 12  # cycles in which a burst begins to enter, or to leave
-
-
-def shape(dut: Any, bursts: int) -> tuple[int, ...]:
-    size, paths = parameters(dut, "Size", "Paths")
-    return bursts, size // paths, 2 * paths
-
-
-def pairs_of(beats: Any) -> Any:
-    """Return bursts (count, beats, 2 paths) as rows (count, 2, N)."""
-    return np.stack([from_beats(part, 0) for part in np.split(beats, 2, axis=-1)], axis=1)
-
-
-def formats(dut: Any) -> Transform:
-    values: Any = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Sine")
-    return Transform(*values)
-
-
 class RowsMonitor(BeatsMonitor):
     """BeatsMonitor of two rows; what leaves beside a row alone counts as 0."""
 
-    def __init__(self, dut: Any, beats: int, paths: int) -> None:
-        super().__init__(dut, "out", ["a", "b"], beats, paths)
+    def __init__(self, dut: Any, *arguments: Any) -> None:
+        super().__init__(dut, *arguments)
         self.of_starts, self.alone = AloneMonitor(dut, "out"), False
 
     def word(self, reads: Sequence[Read]) -> Any:
@@ -83,73 +66,48 @@ class RowsMonitor(BeatsMonitor):
         return super().word(reads[: self.paths]) + (0,) * self.paths if self.alone else super().word(reads)
 
 
-async def check(dut: Any, bursts: Any, **behaviour: Any) -> None:
-    size, paths = parameters(dut, "Size", "Paths")
-    bursts[alone(bursts), :, paths:] = 0
+class RowsCore(BurstCore):
+    """BurstCore of two rows, with zeros beside a row alone."""
 
-    def model(beats: Any, monitor: Monitor) -> Any:
-        pairs = pairs_of(beats)
-        out = np.zeros_like(pairs)
-        for samples, modes, count in zip(out, pairs, 2 - alone(beats), strict=True):
-            samples[:count] = dst_inverse_pairs(modes[:count], formats(dut), monitor)
-        lowest = (size // paths).bit_length() - 1
-        return np.concatenate([to_beats(out[:, row], paths, lowest) for row in (0, 1)], axis=-1)
-
-    await check_bursts(
-        dut,
-        bursts,
-        model,
-        dst_inverse_latency(size, paths),
-        in_fields=["word"] * 2 * paths,
-        out_fields=["word"] * 2 * paths,
-        driver=AloneDriver(dut, "in", ["a", "b"], paths),
-        source=BeatsMonitor(dut, "in", ["a", "b"], size // paths, paths),
-        sink=RowsMonitor(dut, size // paths, paths),
-        **behaviour,
-    )
+    async def check(self, dut: Any, words: Any, **behaviour: Any) -> None:
+        words[alone(words), ..., 1] = 0
+        await super().check(dut, words, **behaviour)
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
-@parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", sample([0.3, 1.0, None])))
-async def bursts(dut: Any, gap: int, pause: float, amplitude: float) -> None:
-    (width,) = parameters(dut, "InWidth")
-    await check(dut, uniform(shape(dut, 8), width, amplitude), gap=gap, pause=pause)
+def formats(dut: Any) -> Transform:
+    values: Any = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Sine")
+    return Transform(*values)
 
 
-@cocotb.test(timeout_time=50, timeout_unit="ms")
-@parametrize(amplitude=[0.1, None])
-async def many_bursts(dut: Any, amplitude: float) -> None:
-    """Reach ties of every rounding, and clip every value that can clip."""
-    (width,) = parameters(dut, "InWidth")
-    await check(dut, uniform(shape(dut, 4 * MANY), width, amplitude))
+def model(dut: Any, x: Any, monitor: Monitor) -> Any:
+    _, beats, paths, _ = x.shape
+    pairs = np.stack([from_beats(x[..., row], 0) for row in (0, 1)], axis=1)
+    out = np.zeros_like(pairs)
+    for samples, modes, count in zip(out, pairs, 2 - alone(x), strict=True):
+        samples[:count] = dst_inverse_pairs(modes[:count], formats(dut), monitor)
+    return np.stack([to_beats(out[:, row], paths, beats.bit_length() - 1) for row in (0, 1)], axis=-1)
 
 
-@cocotb.test(timeout_time=50, timeout_unit="ms")
+CORE = RowsCore(
+    model,
+    lambda dut: dst_inverse_latency(*parameters(dut, "Size", "Paths")),
+    "InWidth",
+    ("a", "b"),
+    {"driver": AloneDriver, "sink": RowsMonitor},
+)
+bursts, many_bursts, limits, reset_in_mid_burst = CORE.tests()
+
+
+@cocotb.test
 async def every_stage_clips_at_once(dut: Any) -> None:
     (in_width,) = parameters(dut, "InWidth")
 
-    def model(beats: Any, monitor: Monitor) -> Any:
-        pairs = pairs_of(beats)
-        pairs[alone(beats), 1] = 0
+    def of_pairs(x: Any, monitor: Monitor) -> Any:
+        pairs = np.stack([from_beats(x[..., row], 0) for row in (0, 1)], axis=1)
+        pairs[alone(x), 1] = 0
         return dst_inverse_pairs(pairs, formats(dut), monitor)
 
     def width_of(node: str) -> int:
         return formats(dut).output_width if node.endswith("output") else formats(dut).width
 
-    await check(dut, all_stages_clip(shape(dut, 20 * MANY), in_width, model, width_of))
-
-
-@cocotb.test(timeout_time=2, timeout_unit="ms")
-async def limits(dut: Any) -> None:
-    size, width = parameters(dut, "Size", "InWidth")
-    await check(dut, extremes(2 * size, width).reshape(shape(dut, 8)))
-
-
-@cocotb.test(timeout_time=2, timeout_unit="ms")
-@parametrize((("late", "clips"), sample([(False, True), (False, False), (True, False), (True, True)])))
-async def reset_in_mid_burst(dut: Any, late: bool, clips: bool) -> None:
-    """Reset in each cycle in which a burst begins to enter, or to leave; a clip after the reset is not counted."""
-    size, width, paths = parameters(dut, "Size", "InWidth", "Paths")
-    first = dst_inverse_latency(size, paths) - 3 if late else 1
-    bursts = uniform(shape(dut, 3), width, None if clips else 1.0)
-    await check(dut, bursts, interrupts=with_and_without_en(range(first, first + CLOCKS_OF_A_BURST_EDGE)))
+    await CORE.check(dut, all_stages_clip(CORE.shape(dut, 20 * MANY), in_width, of_pairs, width_of))

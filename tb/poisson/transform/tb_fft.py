@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """fft against its model: codes, latency, saturations; gaps, pauses, extremes, reset."""
 
+from functools import partial
 from typing import Any
 
 import cocotb
@@ -13,8 +14,9 @@ from tactile_depth.chip.poisson.transform.commutator import from_beats, to_beats
 from tactile_depth.chip.poisson.transform.fft import fft
 from tactile_depth.chip.poisson.transform.fft import latency as fft_latency
 from tactile_depth.chip.rom_files import write_direction
-from tb.beats import all_stages_clip, check_beats
-from tb.stream import MANY, extremes, parameters, parametrize, uniform
+from tb.beats import all_stages_clip
+from tb.poisson.transform.burst_core import BurstCore
+from tb.stream import MANY, parameters
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
 
@@ -55,63 +57,21 @@ PROOFS = tuple(
 )
 
 
-def model_of(dut: Any) -> Any:
-    width, coeff, inverse, size, paths = parameters(dut, "Width", "CoeffWidth", "Inverse", "Size", "Paths")
-    high = (size // paths).bit_length() - 1
+def model(dut: Any, x: Any, monitor: Monitor) -> Any:
+    width, coeff, inverse = parameters(dut, "Width", "CoeffWidth", "Inverse")
+    _, beats, paths, _ = x.shape
+    high = beats.bit_length() - 1
     before, behind = (0, high) if inverse else (high, 0)
-
-    def model(x: Any, monitor: Monitor) -> Any:
-        re, im = (from_beats(x[..., part], before) for part in (0, 1))
-        out = fft(re, im, bool(inverse), width, coeff, monitor)
-        return np.stack([to_beats(part, paths, behind) for part in out], axis=-1)
-
-    return model
+    re, im = (from_beats(x[..., part], before) for part in (0, 1))
+    out = fft(re, im, bool(inverse), width, coeff, monitor)
+    return np.stack([to_beats(part, paths, behind) for part in out], axis=-1)
 
 
-async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
-    size, paths = parameters(dut, "Size", "Paths")
-    return await check_beats(
-        dut, words, model_of(dut), fft_latency(size, paths), fields=["re", "im"], paths=paths, **behaviour
-    )
+CORE = BurstCore(model, lambda dut: fft_latency(*parameters(dut, "Size", "Paths")))
+bursts, many_bursts, limits, reset_in_mid_burst = CORE.tests()
 
 
-def shape(dut: Any, bursts: int) -> tuple[int, ...]:
-    size, paths = parameters(dut, "Size", "Paths")
-    return bursts, size // paths, paths, 2
-
-
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-@parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3), (3, 0.0)]), ("amplitude", [0.3, 1.0]))
-async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
-    (width,) = parameters(dut, "Width")
-    await check(dut, uniform(shape(dut, 8), width, amplitude), gap=gap, pause=pause)
-
-
-@cocotb.test(timeout_time=50, timeout_unit="ms")
-@parametrize(amplitude=[0.1, None])
-async def many_bursts(dut: Any, amplitude: float) -> None:
-    """Reach ties of every rounding, and clip every value that can clip."""
-    (width,) = parameters(dut, "Width")
-    await check(dut, uniform(shape(dut, 4 * MANY), width, amplitude))
-
-
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-async def limits(dut: Any) -> None:
-    size, width = parameters(dut, "Size", "Width")
-    _, sink = await check(dut, extremes(size, width, 2).reshape(shape(dut, 8)))
-    assert not np.any(sink.words[: shape(dut, 1)[1]]), "zero in, but not zero out"
-
-
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-@parametrize(late=[False, True])
-async def reset_in_mid_burst(dut: Any, late: bool) -> None:
-    """Reset in each cycle in which a burst begins to enter, or to leave."""
-    size, width, paths = parameters(dut, "Size", "Width", "Paths")
-    first = fft_latency(size, paths) - 3 if late else 1
-    await check(dut, uniform(shape(dut, 2), width), interrupts=range(first, first + 8))
-
-
-@cocotb.test(timeout_time=50, timeout_unit="ms")
+@cocotb.test
 async def every_stage_clips_at_once(dut: Any) -> None:
     (width,) = parameters(dut, "Width")
-    await check(dut, all_stages_clip(shape(dut, 20 * MANY), width, model_of(dut), lambda node: width))
+    await CORE.check(dut, all_stages_clip(CORE.shape(dut, 20 * MANY), width, partial(model, dut), lambda node: width))

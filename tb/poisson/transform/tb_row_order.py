@@ -71,20 +71,20 @@ async def check(dut: Any, gap: Any = 0.0, pause: float = 0.0, interrupts: Any = 
     assert [start - end for start, end in zip(sink.starts, ends, strict=True)] == [latency] * ROWS
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.test
 @parametrize(gap=[0.0, 0.1, 0.8], pause=[0.0, 0.3])
 async def rows(dut: Any, gap: float, pause: float) -> None:
     await check(dut, gap, pause)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.test
 async def reset_in_mid_row(dut: Any) -> None:
     """Reset at each word of a row, and while the row leaves."""
     (columns,) = parameters(dut, "Columns")
     await check(dut, interrupts=range(1, columns + columns // 2))
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.test
 @parametrize((("rows", "words"), [(0, 1), (1, -1), (1, 1)]))
 async def a_frame_begins_afresh(dut: Any, rows: int, words: Any) -> None:
     """Start a frame after `rows` rows and `words` words of an incomplete frame."""

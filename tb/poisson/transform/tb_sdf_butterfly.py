@@ -3,14 +3,13 @@
 
 from typing import Any
 
-import cocotb
 import numpy as np
 
 from formal.entries import ROUNDING, Proof
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.sdf_butterfly import LATENCY, Stage, sdf_butterfly
-from tb.beats import check_beats
-from tb.stream import extremes, parameters, parametrize, uniform
+from tb.poisson.transform.burst_core import BurstCore
+from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
 built = of_parameters("Size Delay RotateBlock Inverse Halve Width")
@@ -42,41 +41,12 @@ PROOFS = tuple(
 )
 
 
-async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
+def model(dut: Any, x: Any, monitor: Monitor) -> Any:
     width, delay, rotate_block, inverse, halve = parameters(dut, "Width", "Delay", "RotateBlock", "Inverse", "Halve")
     stage = Stage(rotate_block or 2 * delay, delay, bool(rotate_block), bool(halve))
-
-    def model(x: Any, monitor: Monitor) -> Any:
-        re, im = np.moveaxis(x[..., 0, :], -1, 0)
-        return np.stack(sdf_butterfly(re, im, stage, bool(inverse), width, monitor), axis=-1)[..., None, :]
-
-    return await check_beats(dut, x, model, delay + LATENCY, fields=["re", "im"], paths=1, **behaviour)
+    re, im = np.moveaxis(x[..., 0, :], -1, 0)
+    return np.stack(sdf_butterfly(re, im, stage, bool(inverse), width, monitor), axis=-1).reshape(x.shape)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-@parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0]))
-async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
-    size, width = parameters(dut, "Size", "Width")
-    await check(dut, uniform((8, size, 1, 2), width, amplitude), gap=gap, pause=pause)
-
-
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def limits(dut: Any) -> None:
-    size, width = parameters(dut, "Size", "Width")
-    _, sink = await check(dut, extremes(size, width, 2)[..., None, :])
-    assert not np.any(sink.words[:size]), "zero in, but not zero out"
-
-
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def limits_in_every_pairing(dut: Any) -> None:
-    size, width = parameters(dut, "Size", "Width")
-    await check(dut, uniform((30, size, 1, 2), width, None))
-
-
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-@parametrize(late=[False, True])
-async def reset_in_mid_burst(dut: Any, late: bool) -> None:
-    """Reset in each cycle in which a burst begins to enter, or to leave."""
-    size, width, delay = parameters(dut, "Size", "Width", "Delay")
-    first = max(delay + LATENCY, 4) - 3 if late else 1
-    await check(dut, uniform((2, size, 1, 2), width), interrupts=range(first, first + 8))
+CORE = BurstCore(model, lambda dut: parameters(dut, "Delay")[0] + LATENCY)
+bursts, many_bursts, limits, reset_in_mid_burst = CORE.tests()

@@ -13,9 +13,9 @@ from tactile_depth.chip.poisson.transform.commutator import positions
 from tactile_depth.chip.poisson.transform.fft import path_factors
 from tactile_depth.chip.poisson.transform.twiddle import LATENCY, ones, phase_factors, twiddle
 from tactile_depth.chip.rom_files import write_factors
-from tb.beats import check_beats
+from tb.poisson.transform.burst_core import BurstCore
 from tb.settings import RUN
-from tb.stream import extremes, parameters, parametrize, uniform
+from tb.stream import parameters, parametrize, uniform
 from tb.structures import ICARUS, VERILATOR, Structure
 
 PARAMETERS = ("Paths", "Beats", "Block", "InWidth", "OutWidth", "CoeffWidth", "Drop", "RealOnly")
@@ -67,38 +67,18 @@ def factors(dut: Any) -> Any:
     return factors_of(RUN.device["factors"], *parameters(dut, "Paths", "Beats", "Block", "CoeffWidth"))
 
 
-async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
-    paths, drop, width, real_only = parameters(dut, "Paths", "Drop", "OutWidth", "RealOnly")
+def model(dut: Any, x: Any, monitor: Monitor) -> Any:
+    drop, width, real_only = parameters(dut, "Drop", "OutWidth", "RealOnly")
+    re, im = np.moveaxis(x, -1, 0).reshape(2, len(x), -1)
     own = factors(dut).reshape(-1, 2)
-
-    def model(x: Any, monitor: Monitor) -> Any:
-        re, im = (x[..., part].reshape(len(x), -1) for part in (0, 1))
-        products = twiddle(re, im, own, drop, width, monitor, real_only=bool(real_only))
-        return np.stack(products, axis=-1).reshape(x.shape)
-
-    return await check_beats(dut, words, model, LATENCY, fields=["re", "im"], paths=paths, **behaviour)
+    return np.stack(twiddle(re, im, own, drop, width, monitor, real_only=bool(real_only)), axis=-1).reshape(x.shape)
 
 
-def shape(dut: Any, bursts: int) -> tuple[int, ...]:
-    paths, beats = parameters(dut, "Paths", "Beats")
-    return bursts, beats, paths, 2
+CORE = BurstCore(model, lambda dut: LATENCY, "InWidth")
+bursts, many_bursts, limits, reset_in_mid_burst = CORE.tests()
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-@parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0, None]))
-async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
-    (width,) = parameters(dut, "InWidth")
-    await check(dut, uniform(shape(dut, 12), width, amplitude), gap=gap, pause=pause)
-
-
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def limits(dut: Any) -> None:
-    paths, beats, width = parameters(dut, "Paths", "Beats", "InWidth")
-    _, sink = await check(dut, extremes(paths * beats, width, 2).reshape(shape(dut, 8)))
-    assert not np.any(sink.words[:beats]), "zero in, but not zero out"
-
-
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.test
 @parametrize(part=[0, 1])
 async def ties(dut: Any, part: Any) -> None:
     """Send a burst of products that drop exactly half a step, then for each lower bit one of half a step and that bit
@@ -121,11 +101,4 @@ async def ties(dut: Any, part: Any) -> None:
                 wanted = (remainder + other) * pow(re, -1, modulus) % modulus
                 word[part] = wanted - modulus * (wanted >= modulus // 2)
     assert any(re % 2 for re, _ in own), "the test is void: no factor is odd"
-    await check(dut, words.reshape(len(words), beats, paths, 2))
-
-
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def reset_in_mid_burst(dut: Any) -> None:
-    """Reset in each cycle in which a burst enters or leaves."""
-    beats, width = parameters(dut, "Beats", "InWidth")
-    await check(dut, uniform(shape(dut, 3), width, None), interrupts=range(1, beats + LATENCY + 4))
+    await CORE.check(dut, words.reshape(len(words), beats, paths, 2))
