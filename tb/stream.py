@@ -7,6 +7,7 @@ import gc
 import itertools
 import random
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any, ClassVar
 
 import cocotb
@@ -21,6 +22,7 @@ from tb.pins import CLOCK_NS as CLOCK_NS
 from tb.pins import Read
 from tb.pins import start_clock as start_clock
 from tb.settings import RUN
+from tb.structures import Structure
 
 gc.freeze()  # what was imported stays; a collection costs more than what a short simulation leaves
 gc.set_threshold(200_000, 50, 100)
@@ -58,6 +60,20 @@ def parameters(dut: Any, *names: str) -> tuple[int, ...]:
 def configuration() -> Configuration:
     """Return the configuration of the device."""
     return Configuration(**RUN.device["configuration"])
+
+
+def of_configuration(parameters: Callable[[Configuration], Any], write: Any = None) -> Callable[..., Structure]:
+    """Return a function from choices, and fields of `Structure`, to the structure of their configuration.
+
+    `parameters` returns those of the core, `write` writes its ROMs into a folder.
+    """
+
+    def built(choices: Any, **fields: Any) -> Structure:
+        config = Configuration(**choices)
+        roms = write and partial(write, config=config)
+        return Structure(parameters(config), device={"configuration": choices}, roms=roms, **fields)
+
+    return built
 
 
 def uniform(shape: int | tuple[int, ...], width: int, amplitude: float | None = 1.0) -> np.ndarray:

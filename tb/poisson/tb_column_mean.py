@@ -8,19 +8,16 @@ import numpy as np
 
 from formal.entries import ROUNDING, Proof
 from tactile_depth.chip.common.td_round_saturate import Monitor
-from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.elimination import zero_mean
 from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
-from tb.stream import MANY, configuration, drive, parametrize, uniform
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.stream import MANY, configuration, drive, of_configuration, parametrize, uniform
+from tb.structures import ICARUS, VERILATOR
 
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal", "neumann": True}
 NAMES = ("Width", "CoeffWidth", "Rows", "MomentDrop", "MeanReciprocal", "MeanDrop")
 
 
-def built(choices: Any, **runs: Any) -> Structure:
-    parameters = solver_parameters(Configuration(**choices))
-    return Structure({name: parameters[name] for name in NAMES}, device={"configuration": choices}, **runs)
+built = of_configuration(lambda config: {name: solver_parameters(config)[name] for name in NAMES})
 
 
 STRUCTURES = (

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """elimination against its model: codes, latency and saturation counts, with gaps, pauses and resets."""
 
-import math
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -17,36 +16,32 @@ from tactile_depth.chip.poisson.elimination import LATENCY, elimination
 from tactile_depth.chip.poisson.frame_stack import LEAD as LEAD_OUT
 from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.chip.rom_files import write_thomas
-from tb.beats import BeatsMonitor, check_bursts
+from tb.beats import BeatsMonitor
 from tb.pins import Read
-from tb.stream import MANY, configuration, parametrize, sample, uniform, with_and_without_en
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.poisson.burst_core import BurstCore
+from tb.stream import configuration, of_configuration, with_and_without_en
+from tb.structures import ICARUS, VERILATOR
 
 NAMES = ["Width", "CoeffWidth", "Rows", "Columns", "StoreDrop", "Neumann"]
 NAMES += ["LastShiftWidth", "MomentDrop", "MeanReciprocal", "MeanDrop"]
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal", "lanes": 4}
 
 
-def built(choices: Any, **runs: Any) -> Structure:
-    config = Configuration(**choices)
+def core_parameters(config: Configuration) -> Any:
     parameters = solver_parameters(config)
-    return Structure(
-        {name: parameters[name] for name in NAMES}
-        | {"OutWidth": config.data_width, "Words": config.down_words}
-        | {"TableWords": parameters["DownTableWords"], "SettledWidth": parameters["DownSettledWidth"]},
-        device={"configuration": choices},
-        roms=lambda folder: write_thomas(folder, config),
-        **runs,
-    )
+    table = {"TableWords": parameters["DownTableWords"], "SettledWidth": parameters["DownSettledWidth"]}
+    widths = {"OutWidth": config.data_width, "Words": config.down_words}
+    return widths | table | {name: parameters[name] for name in NAMES}
+
+
+built = of_configuration(core_parameters, write_thomas)
 
 
 STRUCTURES = (
     built(CHOICES | {"neumann": True}, on=VERILATOR),
     built(CHOICES | {"rows": 9}, on=ICARUS),
     # Few bits are dropped: ties are common.
-    built(
-        CHOICES | {"neumann": True, "data_width": 12, "coefficient_width": 10, "lanes": 4}, mutants=ICARUS, on=ICARUS
-    ),
+    built(CHOICES | {"neumann": True, "data_width": 12, "coefficient_width": 10}, mutants=ICARUS, on=ICARUS),
     built(CHOICES | {"columns": 32, "data_width": 12, "coefficient_width": 10, "lanes": 16}, mutants=ICARUS),
     built(CHOICES | {"rows": 9, "neumann": True, "lanes": 1}, on=ICARUS),
     built(CHOICES | {"rows": 21, "neumann": True, "data_width": 32, "coefficient_width": 24}),
@@ -60,9 +55,6 @@ PROOFS = tuple(
     )
     for word, neumann in ((0, 1), (1, 0))
 )
-
-
-UNCLIPPED = 0.01  # amplitude at which nothing clips
 
 
 class Eliminated(BeatsMonitor):
@@ -80,56 +72,23 @@ class Eliminated(BeatsMonitor):
         return last + (super().word(reads[self.paths :]) if self.row else zero)
 
 
-async def check(dut: Any, amplitude: Any, frames: int = 3, **behaviour: Any) -> None:
-    """Send frames of random words up to an amplitude, and compare the output with the model of the device.
-
-    An amplitude of None gives mostly the lowest and the highest word, infinity the highest word only.
-    """
+def model(dut: Any, x: Any, monitor: Monitor) -> Any:
     config = configuration()
-    paths, width = config.down_words, config.arithmetic_width
-    shape = (frames * config.rows, config.columns // paths, paths, 1)
-    words = np.full(shape, (1 << width - 1) - 1) if amplitude == math.inf else uniform(shape, width, amplitude)
-
-    def model(words: Any, monitor: Monitor) -> Any:
-        out = elimination(words.reshape(-1, config.rows, config.columns), config, monitor)
-        seen = np.zeros((*out.shape, 2), np.int64)
-        seen[:, -1, :, 0] = out[:, -1]
-        seen[:, 1:, :, 1] = out[:, :-1]
-        return seen.reshape(*shape[:3], 2)
-
-    behaviour |= {"out_fields": ("last", "ahead"), "sink": partial(Eliminated, lead=LEAD_OUT)}
-    await check_bursts(dut, words, model, LATENCY, frame=config.rows, **behaviour)
+    out = elimination(x.reshape(-1, config.rows, config.columns), config, monitor)
+    seen = np.zeros((*out.shape, 2), np.int64)
+    seen[:, -1, :, 0] = out[:, -1]
+    seen[:, 1:, :, 1] = out[:, :-1]
+    return seen.reshape(*x.shape[:3], 2)
 
 
-@cocotb.test
-@parametrize((("gap", "pause"), sample([(0, 0.0), (30, 0.0), (0, 0.3), (30, 0.3)])), ("full_scale", [False, True]))
-async def frames(dut: Any, gap: float, pause: float, full_scale: bool) -> None:
-    await check(dut, 1.0 if full_scale else UNCLIPPED, gap=gap, pause=pause)
-
-
-@cocotb.test
-@parametrize(amplitude=[0.003, 0.1, None])
-async def many_frames(dut: Any, amplitude: float) -> None:
-    """Reach ties of every rounding, and clip every value that can clip."""
-    await check(dut, amplitude, frames=MANY)
-
-
-@cocotb.test
-@parametrize(amplitude=[0.1, None])
-async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
-    """Reset as the first words enter and leave and in the middle of a frame; None: while values are clipped."""
-    config = configuration()
-    clocks = config.columns // config.down_words
-    inner = clocks * (config.rows // 2) + clocks // 2
-    counts = [*range(1, LATENCY + 4), *range(inner, inner + 4)]
-    await check(dut, amplitude, interrupts=with_and_without_en(counts))
-
-
-@cocotb.test
-@parametrize(strays=[1, 2, 11])
-async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
-    """Start a frame after part of another one, and after more than one without a start of frame in between."""
-    await check(dut, 0.1, frames=1, strays=strays)
+CORE = BurstCore(
+    model,
+    lambda dut: LATENCY,
+    fields=("data",),
+    ports={"out_fields": ("last", "ahead"), "sink": partial(Eliminated, lead=LEAD_OUT)},
+    frame=lambda dut: configuration().rows,
+)
+bursts, many_bursts, limits, reset_in_mid_burst, a_frame_begins_afresh = CORE.tests()
 
 
 @cocotb.test
@@ -137,4 +96,5 @@ async def reset_as_the_mean_is_clipped(dut: Any) -> None:
     """Reset in each cycle after the addend of the last row but one: nothing is counted."""
     config = configuration()
     last_addend = config.columns // config.down_words * (config.rows - 2) + LATENCY
-    await check(dut, math.inf, interrupts=with_and_without_en(range(last_addend - 4, last_addend + 7)))
+    words = np.full(CORE.shape(dut, 3), (1 << config.arithmetic_width - 1) - 1)
+    await CORE.check(dut, words, interrupts=with_and_without_en(range(last_addend - 4, last_addend + 7)))

@@ -3,35 +3,24 @@
 
 from typing import Any
 
-import cocotb
-import numpy as np
-
 from formal.entries import ROUNDING, Proof
 from formal.tables import divide_rom
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.spectral_divide import LATENCY, reciprocals, spectral_divide
 from tactile_depth.chip.rom_files import write_solver
-from tb.beats import check_bursts
-from tb.stream import MANY, configuration, extremes, parameters, parametrize, sample, uniform
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.poisson.burst_core import BurstCore
+from tb.stream import configuration, of_configuration
+from tb.structures import ICARUS, VERILATOR
 
 
-def built(choices: Any, **runs: Any) -> Structure:
-    config = Configuration(**choices)
+def core_parameters(config: Configuration) -> Any:
     table = reciprocals(config)
-    return Structure(
-        {
-            "Columns": config.columns,
-            "Width": config.arithmetic_width,
-            "CoeffWidth": config.coefficient_width,
-            "ShiftWidth": table.shift_width,
-            "Drop": table.drop,
-        },
-        device={"configuration": choices},
-        roms=lambda folder: write_solver(folder, config),
-        **runs,
-    )
+    widths = {"Width": config.arithmetic_width, "CoeffWidth": config.coefficient_width}
+    return widths | {"Columns": config.columns, "ShiftWidth": table.shift_width, "Drop": table.drop}
+
+
+built = of_configuration(core_parameters, write_solver)
 
 
 STRUCTURES = (
@@ -47,49 +36,10 @@ PROOFS = tuple(
 )
 
 
-async def check(dut: Any, x: Any, **behaviour: Any) -> None:
+def model(dut: Any, x: Any, monitor: Monitor) -> Any:
     config = configuration()
-
-    def model(x: Any, monitor: Monitor) -> Any:
-        return spectral_divide(x.reshape(-1, config.columns, config.columns), config, monitor).reshape(x.shape)
-
-    await check_bursts(dut, x.reshape(-1, config.columns, 1, 1), model, LATENCY, frame=config.columns, **behaviour)
+    return spectral_divide(x.reshape(-1, config.columns, config.columns), config, monitor).reshape(x.shape)
 
 
-@cocotb.test
-@parametrize((("gap", "pause"), sample([(0, 0.0), (9, 0.0), (9, 0.3)])), ("amplitude", [0.001, 1.0]))
-async def frames(dut: Any, gap: float, pause: float, amplitude: float) -> None:
-    columns, width = parameters(dut, "Columns", "Width")
-    await check(dut, uniform((3, columns, columns), width, amplitude), gap=gap, pause=pause)
-
-
-@cocotb.test
-@parametrize(amplitude=[0.01, 0.2, None])
-async def many_frames(dut: Any, amplitude: float) -> None:
-    """Reach ties of the rounding, and values that just clip."""
-    columns, width = parameters(dut, "Columns", "Width")
-    await check(dut, uniform((MANY, columns, columns), width, amplitude))
-
-
-@cocotb.test
-async def limits(dut: Any) -> None:
-    """Fill a frame with each kind of burst, so that it reaches every position and the lowest modes clip."""
-    columns, width = parameters(dut, "Columns", "Width")
-    await check(dut, np.repeat(extremes(columns, width), columns, axis=0))
-
-
-@cocotb.test
-@parametrize(late=[False, True])
-async def reset_in_mid_frame(dut: Any, late: bool) -> None:
-    """Reset as the first words enter and leave, and in the middle of the second frame."""
-    columns, width = parameters(dut, "Columns", "Width")
-    first = 3 * columns * columns // 2 + columns // 2 if late else 1
-    await check(dut, uniform((columns, columns), width), interrupts=range(first, first + LATENCY + 2))
-
-
-@cocotb.test
-@parametrize(strays=[1, 2, 11])
-async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
-    """Start a frame after part of another one, and after more than one without a start of frame in between."""
-    columns, width = parameters(dut, "Columns", "Width")
-    await check(dut, uniform((columns, columns), width), strays=strays)
+CORE = BurstCore(model, lambda dut: LATENCY, fields=("data",), frame=lambda dut: configuration().columns)
+bursts, many_bursts, limits, reset_in_mid_burst, a_frame_begins_afresh = CORE.tests()

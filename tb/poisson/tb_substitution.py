@@ -4,7 +4,6 @@
 from functools import partial
 from typing import Any
 
-import cocotb
 import numpy as np
 
 from formal.entries import ROUNDING, Proof
@@ -15,25 +14,23 @@ from tactile_depth.chip.poisson.frame_stack import LEAD as LEAD_IN
 from tactile_depth.chip.poisson.substitution import LATENCY, substitution
 from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.chip.rom_files import write_thomas
-from tb.beats import BeatsDriver, BeatsMonitor, check_bursts
+from tb.beats import BeatsDriver, BeatsMonitor
 from tb.pairs import AloneMonitor, side_by_side
-from tb.stream import MANY, configuration, parametrize, uniform, with_and_without_en
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.poisson.burst_core import BurstCore
+from tb.stream import configuration, of_configuration
+from tb.structures import ICARUS, VERILATOR
 
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal", "lanes": 4}
 
 
-def built(choices: Any, **runs: Any) -> Structure:
-    config = Configuration(**choices)
+def core_parameters(config: Configuration) -> Any:
     parameters = solver_parameters(config)
-    return Structure(
-        {name: parameters[name] for name in ("Width", "CoeffWidth", "Rows", "Columns")}
-        | {"InWidth": config.data_width, "Drop": -parameters["StoreDrop"], "Paths": config.up_paths}
-        | {"TableWords": parameters["UpTableWords"], "SettledWidth": parameters["UpSettledWidth"]},
-        device={"configuration": choices},
-        roms=lambda folder: write_thomas(folder, config),
-        **runs,
-    )
+    table = {"TableWords": parameters["UpTableWords"], "SettledWidth": parameters["UpSettledWidth"]}
+    widths = {"InWidth": config.data_width, "Drop": -parameters["StoreDrop"], "Paths": config.up_paths}
+    return widths | table | {name: parameters[name] for name in ("Width", "CoeffWidth", "Rows", "Columns")}
+
+
+built = of_configuration(core_parameters, write_thomas)
 
 
 STRUCTURES = (
@@ -58,9 +55,6 @@ PROOFS = tuple(
 )
 
 
-UNCLIPPED = 0.05  # amplitude at which nothing clips
-
-
 class PairDriver(BeatsDriver):
     """BeatsDriver of pairs of rows, the last one of an odd frame alone."""
 
@@ -74,54 +68,35 @@ class PairDriver(BeatsDriver):
         await super()._driver_send(transaction, sync)
 
 
-async def check(dut: Any, amplitude: Any, count: int = 3, **behaviour: Any) -> None:
-    """Send frames of random words up to an amplitude, and compare the output with the model.
+class PairsCore(BurstCore):
+    """BurstCore of pairs of rows, which follow each other in a frame without a pause."""
 
-    An amplitude of None gives mostly the lowest and the highest word.
-    """
+    def shape(self, dut: Any, frames: int) -> tuple[int, ...]:
+        paths = configuration().up_paths
+        return frames * self.frame(dut), configuration().columns // paths, 2 * paths, 1
+
+    async def check(self, dut: Any, words: Any, **behaviour: Any) -> None:
+        alone, pairs, odd = AloneMonitor(dut, "out"), self.frame(dut), configuration().rows % 2
+        await super().check(dut, words, gap_every=pairs, **behaviour)
+        want = [odd != 0 and pair % pairs == pairs - 1 for pair in range(len(words))]
+        assert alone.marks[-len(want) :] == want
+
+
+def model(dut: Any, x: Any, monitor: Monitor) -> Any:
+    """Return what leaves; beside a row alone come words of no meaning."""
     config = configuration()
     rows, paths = config.rows, config.up_paths
-    pairs = (rows + 1) // 2
-    shape = (count * pairs, config.columns // paths, 2 * paths, 1)
-    e = uniform(shape, config.data_width, amplitude)  # beside a row alone come words of no meaning
-
-    def model(sent: Any, monitor: Monitor) -> Any:
-        both = np.moveaxis(sent.reshape(count, pairs, -1, 2, paths), 3, 2)
-        z = substitution(both.reshape(count, 2 * pairs, -1)[:, :rows], config, monitor)
-        return side_by_side(z, paths).reshape(shape)
-
-    alone = AloneMonitor(dut, "out")
-    behaviour |= {"driver": partial(PairDriver, lead=LEAD_IN), "source": partial(BeatsMonitor, lead=LEAD_IN)}
-    await check_bursts(dut, e, model, LATENCY, frame=pairs, gap_every=pairs, **behaviour)
-    want = [rows % 2 != 0 and pair % pairs == pairs - 1 for pair in range(count * pairs)]
-    assert alone.marks[-len(want) :] == want
+    both = np.moveaxis(x.reshape(-1, rows - rows // 2, config.columns // paths, 2, paths), 3, 2)
+    z = substitution(both.reshape(len(both), -1, config.columns)[:, :rows], config, monitor)
+    return side_by_side(z, paths).reshape(x.shape)
 
 
-@cocotb.test
-@parametrize(pause=[0.0, 0.3], full_scale=[False, True])
-async def frames(dut: Any, pause: float, full_scale: bool) -> None:
-    await check(dut, 1.0 if full_scale else UNCLIPPED, gap=30, pause=pause)
-
-
-@cocotb.test
-@parametrize(amplitude=[0.003, 0.1, None])
-async def many_frames(dut: Any, amplitude: float) -> None:
-    """Reach ties of the rounding, clip every value that can clip, and let frame follow frame without a pause."""
-    await check(dut, amplitude, count=MANY)
-
-
-@cocotb.test
-@parametrize(amplitude=[0.1, None])
-async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
-    """Reset as the first words enter and leave and in the middle of a frame; None: while values are clipped."""
-    config = configuration()
-    inner = config.columns // config.up_paths * (config.rows // 4)
-    counts = [*range(1, LEAD_IN + LATENCY + 4), *range(inner, inner + 4)]
-    await check(dut, amplitude, interrupts=with_and_without_en(counts))
-
-
-@cocotb.test
-@parametrize(strays=[1, 2, 11])
-async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
-    """Start a frame after part of another one, and after more than one without a start of frame in between."""
-    await check(dut, 0.1, count=1, strays=strays)
+CORE = PairsCore(
+    model,
+    lambda dut: LATENCY,
+    "InWidth",
+    ("data",),
+    {"driver": partial(PairDriver, lead=LEAD_IN), "source": partial(BeatsMonitor, lead=LEAD_IN)},
+    lambda dut: (configuration().rows + 1) // 2,
+)
+bursts, many_bursts, limits, reset_in_mid_burst, a_frame_begins_afresh = CORE.tests()

@@ -12,23 +12,19 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.thomas_table import LATENCY, thomas_table
 from tactile_depth.chip.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.chip.rom_files import write_thomas
-from tb.stream import configuration, drive, parametrize
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.stream import configuration, drive, of_configuration, parametrize
+from tb.structures import ICARUS, VERILATOR
 
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 
 
-def built(choices: Any, **runs: Any) -> Structure:
-    config = Configuration(**choices)
+def table_parameters(config: Configuration) -> Any:
     parameters = solver_parameters(config)
-    taken = ("CoeffWidth", "Rows", "Columns", "LastShiftWidth")
-    return Structure(
-        {name: parameters[name] for name in taken}
-        | {"Words": parameters["DownTableWords"], "SettledWidth": parameters["DownSettledWidth"]},
-        device={"configuration": choices},
-        roms=lambda folder: write_thomas(folder, config),
-        **runs,
-    )
+    table = {"Words": parameters["DownTableWords"], "SettledWidth": parameters["DownSettledWidth"]}
+    return table | {name: parameters[name] for name in ("CoeffWidth", "Rows", "Columns", "LastShiftWidth")}
+
+
+built = of_configuration(table_parameters, write_thomas)
 
 
 STRUCTURES = (

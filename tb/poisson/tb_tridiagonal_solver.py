@@ -9,7 +9,6 @@ from tactile_depth.chip.rom_files import write_solver
 from tactile_depth.chip.tactile_depth import config_value, top_parameters
 from tb.poisson.solver_bench import (
     a_frame_begins_afresh,
-    a_frame_does_not_know_the_one_before,
     frames,
     full_scale_saturates,
     many_frames,
@@ -53,7 +52,6 @@ NO_PROOF = "a chain of proven cores, each of which takes what the one before it 
 
 __all__ = [
     "a_frame_begins_afresh",
-    "a_frame_does_not_know_the_one_before",
     "frames",
     "full_scale_saturates",
     "many_frames",

@@ -8,7 +8,7 @@ import numpy as np
 from formal.entries import ONE_ORDER, WORD_FREE, Proof
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.commutator import commutator
-from tb.poisson.transform.burst_core import BurstCore
+from tb.poisson.burst_core import BurstCore
 from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
@@ -33,4 +33,4 @@ def model(dut: Any, x: Any, monitor: Monitor) -> Any:
 
 
 CORE = BurstCore(model, lambda dut: parameters(dut, "Delay")[0])
-bursts, many_bursts, limits, reset_in_mid_burst = CORE.tests()
+bursts, many_bursts, limits, reset_in_mid_burst, *_ = CORE.tests()

@@ -11,7 +11,7 @@ from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
 from tactile_depth.chip.poisson.transform.dst_forward import latency as dst_forward_latency
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.rom_files import write_direction
-from tb.poisson.transform.burst_core import BurstCore
+from tb.poisson.burst_core import BurstCore
 from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
@@ -53,4 +53,4 @@ def model(dut: Any, x: Any, monitor: Monitor) -> Any:
 
 
 CORE = BurstCore(model, lambda dut: dst_forward_latency(*parameters(dut, "Size", "Words")), "InWidth", ("data",))
-bursts, many_bursts, limits, reset_in_mid_burst = CORE.tests()
+bursts, many_bursts, limits, reset_in_mid_burst, *_ = CORE.tests()

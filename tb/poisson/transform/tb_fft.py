@@ -15,7 +15,7 @@ from tactile_depth.chip.poisson.transform.fft import fft
 from tactile_depth.chip.poisson.transform.fft import latency as fft_latency
 from tactile_depth.chip.rom_files import write_direction
 from tb.beats import all_stages_clip
-from tb.poisson.transform.burst_core import BurstCore
+from tb.poisson.burst_core import BurstCore
 from tb.stream import MANY, parameters
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
@@ -68,10 +68,10 @@ def model(dut: Any, x: Any, monitor: Monitor) -> Any:
 
 
 CORE = BurstCore(model, lambda dut: fft_latency(*parameters(dut, "Size", "Paths")))
-bursts, many_bursts, limits, reset_in_mid_burst = CORE.tests()
+bursts, many_bursts, limits, reset_in_mid_burst, *_ = CORE.tests()
 
 
 @cocotb.test
 async def every_stage_clips_at_once(dut: Any) -> None:
     (width,) = parameters(dut, "Width")
-    await CORE.check(dut, all_stages_clip(CORE.shape(dut, 20 * MANY), width, partial(model, dut), lambda node: width))
+    await CORE.check(dut, all_stages_clip(CORE.shape(dut, 7 * MANY), width, partial(model, dut), lambda node: width))

@@ -10,7 +10,7 @@ from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.commutator import from_beats, to_beats
 from tactile_depth.chip.poisson.transform.row_pairs import latency as row_pairs_latency
 from tactile_depth.chip.poisson.transform.row_pairs import row_pairs
-from tb.poisson.transform.burst_core import BurstCore
+from tb.poisson.burst_core import BurstCore
 from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
@@ -44,4 +44,4 @@ CORE = BurstCore(
     fields=("a", "b"),
     ports={"out_fields": ("re", "im")},
 )
-bursts, many_bursts, limits, reset_in_mid_burst = CORE.tests()
+bursts, many_bursts, limits, reset_in_mid_burst, *_ = CORE.tests()

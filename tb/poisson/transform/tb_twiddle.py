@@ -13,7 +13,7 @@ from tactile_depth.chip.poisson.transform.commutator import positions
 from tactile_depth.chip.poisson.transform.fft import path_factors
 from tactile_depth.chip.poisson.transform.twiddle import LATENCY, ones, phase_factors, twiddle
 from tactile_depth.chip.rom_files import write_factors
-from tb.poisson.transform.burst_core import BurstCore
+from tb.poisson.burst_core import BurstCore
 from tb.settings import RUN
 from tb.stream import parameters, parametrize, uniform
 from tb.structures import ICARUS, VERILATOR, Structure
@@ -75,7 +75,7 @@ def model(dut: Any, x: Any, monitor: Monitor) -> Any:
 
 
 CORE = BurstCore(model, lambda dut: LATENCY, "InWidth")
-bursts, many_bursts, limits, reset_in_mid_burst = CORE.tests()
+bursts, many_bursts, limits, reset_in_mid_burst, *_ = CORE.tests()
 
 
 @cocotb.test
