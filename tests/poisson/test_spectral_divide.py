@@ -82,7 +82,3 @@ def test_negation_and_transposition_go_through(seed: int) -> None:
     out = spectral_divide(modes, config)
     np.testing.assert_array_equal(spectral_divide(-modes, config), -out)
     np.testing.assert_array_equal(spectral_divide(modes.T, config), out.T)
-
-
-def test_zero_gives_zero() -> None:
-    assert not np.any(spectral_divide(np.zeros((16, 16), np.int64), Configuration(columns=16)))

@@ -68,17 +68,3 @@ def test_sums_go_through_within_their_rounding(seed: int, size: int, factor: int
     x, y = np.random.default_rng(seed).integers(-(2**16), 2**16, (2, size))
     error = transform(factor * x + y, 30) - factor * transform(x, 30) - transform(y, 30)
     assert np.abs(error).max() <= (1 + abs(factor) + 1) * 4  # each transform is within 4 steps, see above
-
-
-@settings(max_examples=40, deadline=None)
-@given(SEED, SIZE)
-def test_a_reversed_row_negates_every_second_mode(seed: int, size: int) -> None:
-    """Reverse a row: about the middle odd modes are even and even modes are odd."""
-    x = np.random.default_rng(seed).integers(-(2**16), 2**16, size)
-    sign = 1 - 2 * (bit_reversed(size) % 2)  # position of mode N - k, so modes and k are of one parity
-    error = transform(x[::-1], 30) + sign * transform(x, 30)
-    assert np.abs(error).max() <= 2 * 4
-
-
-def test_zero_gives_zero() -> None:
-    assert not np.any(transform(np.zeros(16, np.int64), 18))

@@ -24,16 +24,6 @@ def inverse(modes: Any, coeff: int, width: int = 40) -> Any:
 
 @pytest.mark.parametrize("coeff", [18, 24])
 @pytest.mark.parametrize("size", [8, 16, 32, 64, 128, 256, 512])
-def test_inverse_of_forward_is_the_gain_but_for_rounded_coefficients(size: int, coeff: int) -> None:
-    x = np.random.default_rng(size).integers(-(2**30), 2**30, (20, size))
-    transforms = 2 * (twiddle_stages(size) + 1)
-    back = inverse(dst_forward(x, Transform(0, 40, coeff, 0, 40)), coeff)
-    error = np.std(back - x * coefficient_gain(coeff) ** transforms) / np.std(x)
-    assert error < coefficient_noise(transforms, coeff)
-
-
-@pytest.mark.parametrize("coeff", [18, 24])
-@pytest.mark.parametrize("size", [8, 16, 32, 64, 128, 256, 512])
 def test_model_is_the_inverse_dst_but_for_rounded_coefficients(size: int, coeff: int) -> None:
     modes = np.random.default_rng(size).integers(-(2**30), 2**30, (20, size))
     natural = np.empty_like(modes)
@@ -70,10 +60,6 @@ def test_sums_go_through_within_their_rounding(seed: int, size: int, factor: int
     x, y = np.random.default_rng(seed).integers(-(2**16), 2**16, (2, size))
     error = inverse(factor * x + y, 30) - factor * inverse(x, 30) - inverse(y, 30)
     assert np.abs(error).max() <= (1 + abs(factor) + 1) * 5  # each transform is within 5 steps, see above
-
-
-def test_zero_gives_zero() -> None:
-    assert not np.any(inverse(np.zeros(16, np.int64), 18))
 
 
 # In steps of a word, coefficients being all but exact. Measured on 100 pairs of rows: 3, 4, 5.

@@ -5,8 +5,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from tactile_depth.chip.poisson.transform.fft import fft, halvings, twiddle_stages
 from tactile_depth.chip.poisson.transform.orders import bit_reversed
@@ -56,35 +54,3 @@ def test_inverse_of_forward_is_the_identity_within_steps(size: int, largest: int
     z = random_words(size, (200, size), 12)
     error = transform(transform(z, False, 30, 30), True, 30, 30) - z
     assert max(np.abs(error.real).max(), np.abs(error.imag).max()) <= largest
-
-
-SEED = st.integers(0, 2**32 - 1)
-SIZE = st.sampled_from([8, 16, 32, 64])
-
-
-@settings(max_examples=40, deadline=None)
-@given(SEED, SIZE, st.booleans())
-def test_negation_goes_through(seed: int, size: int, inverse: bool) -> None:
-    z = random_words(seed, (size,), 20)
-    np.testing.assert_array_equal(transform(-z, inverse, 18, 30), -transform(z, inverse, 18, 30))
-
-
-@settings(max_examples=40, deadline=None)
-@given(SEED, SIZE, st.booleans(), st.integers(-3, 3))
-def test_sums_go_through_within_their_rounding(seed: int, size: int, inverse: bool, factor: int) -> None:
-    x, y = random_words(seed, (2, size), 16)
-    error = transform(factor * x + y, inverse, 30) - factor * transform(x, inverse, 30)
-    error -= transform(y, inverse, 30)
-    assert np.abs(error).max() <= (1 + abs(factor) + 1) * 4  # each transform is within 4 steps, see above
-
-
-@settings(max_examples=40, deadline=None)
-@given(SEED, SIZE)
-def test_a_real_row_has_a_conjugate_symmetric_spectrum(seed: int, size: int) -> None:
-    spectrum = transform(random_words(seed, (size,), 16).real + 0j, False, 30)
-    assert np.abs(spectrum[1:] - spectrum[:0:-1].conj()).max() <= 2 * 4
-
-
-@pytest.mark.parametrize("inverse", [False, True])
-def test_zero_gives_zero(inverse: bool) -> None:
-    assert not np.any(transform(np.zeros(16, complex), inverse, 18))

@@ -27,30 +27,9 @@ def test_model_is_the_complex_sum_and_difference(words: Any, inverse: bool, stag
     np.testing.assert_array_equal(out_re + 1j * out_im, want)
 
 
-@given(WORDS, st.booleans())
-def test_negation_goes_through(words: Any, inverse: bool) -> None:
-    re, im = np.array(words).reshape(2, 16)
-    stage = Stage(16, delay=4, rotate=True, halve=True)
-    forward, backward = (sdf_butterfly(s * re, s * im, stage, inverse, 40) for s in (1, -1))
-    np.testing.assert_array_equal(np.negative(forward), backward)
-
-
-@given(WORDS)
-def test_twice_is_twice_unless_it_halves(words: Any) -> None:
-    re, im = np.array(words).reshape(2, 16)
-    stage = Stage(16, delay=8)
-    twice = sdf_butterfly(*sdf_butterfly(re, im, stage, False, 40), stage, False, 40)
-    np.testing.assert_array_equal(twice, 2 * np.stack((re, im)))
-
-
 def test_full_scale_sums_saturate_and_halved_ones_do_not() -> None:
     full = np.full(16, 127)
     for halve, clipped in ((False, 16), (True, 0)):  # the sums of both parts; the differences are 0
         monitor = Monitor()
         sdf_butterfly(full, full, Stage(16, delay=8, halve=halve), False, 8, monitor)
         assert monitor.saturations.total() == clipped
-
-
-def test_zero_gives_zero() -> None:
-    zero = np.zeros(16, np.int64)
-    assert not np.any(sdf_butterfly(zero, zero, Stage(16, 8, rotate=True, halve=True), True, 8))

@@ -22,8 +22,3 @@ def test_rows_become_columns(makhoul_in: Any, makhoul_out: Any) -> None:
         for c, burst in enumerate(bursts):
             column = frame[:, c]
             np.testing.assert_array_equal(burst, column[order] if makhoul_out else column)
-
-
-def test_twice_is_the_frame() -> None:
-    frame = np.arange(64).reshape(8, 8)
-    np.testing.assert_array_equal(transpose(transpose(frame, False, True), True, False), frame)
