@@ -98,19 +98,9 @@ def divide_rom(size: int) -> Callable[[Path], None]:
 
 
 def thomas_roms(
-    rows: int,
-    size: int,
-    words: int,
-    width: int,
-    settled_width: int,
-    shift_width: int,
-    table: str = "down",
-    singular: bool = False,
+    rows: int, size: int, words: int, width: int, settled_width: int, shift_width: int
 ) -> Callable[[Path], None]:
-    """Tables of arbitrary contents for thomas_table.sv; square.hex: {shift, coefficient} for every row and position.
-
-    `singular`: the last coefficient of position 0 is 0, as it is in every table of a Neumann frame.
-    """
+    """Tables of arbitrary contents for thomas_table.sv; square.hex: {shift, coefficient} for every row and position."""
 
     def write(folder: Path) -> None:
         choose = random.Random(1)
@@ -119,15 +109,13 @@ def thomas_roms(
         base = [sum(settled[:position]) + position for position in range(size)]
         inner = [choose.randrange(1 << width) for _ in range(words)]
         last = [choose.randrange(1 << width) for _ in range(size)]
-        if singular:
-            last[0] = 0
         shift = [choose.randrange(1 << shift_width) for _ in range(size)]
         assert base[-1] + settled[-1] < words
-        write_words(folder / f"{table}.hex", inner, width)
+        write_words(folder / "down.hex", inner, width)
         index = [b << settled_width | s for b, s in zip(base, settled, strict=True)]
-        write_words(folder / f"{table}_index.hex", index, address_width + settled_width)
+        write_words(folder / "down_index.hex", index, address_width + settled_width)
         ends = [s << width | c for s, c in zip(shift, last, strict=True)]
-        write_words(folder / f"{table}_last.hex", ends, shift_width + width)
+        write_words(folder / "down_last.hex", ends, shift_width + width)
         square = [inner[b + min(row, s)] for row in range(rows - 1) for b, s in zip(base, settled, strict=True)]
         write_words(folder / "square.hex", square + ends, shift_width + width)
 

@@ -319,22 +319,6 @@ class Bench:
             await RisingEdge(self.dut.clk)
 
 
-async def send_apart(bench: Any, driver: Any, words: Any, gap: float, frame: int = 0) -> None:
-    """Send words (tuples) one by one, each after an idle cycle with probability `gap`.
-
-    A frame begins every `frame` words; 0: no frame begins.
-    """
-    if not gap and not frame:
-        driver.frame_start = False
-        await driver.send(words)
-        return
-    for index, word in enumerate(words):
-        while bench.random.random() < gap:
-            await bench.clocks(1)
-        driver.frame_start = bool(frame) and index % frame == 0
-        await driver.send([word])
-
-
 def check_words(got: Any, expected: Any, size: int, rows: int) -> None:
     """Compare words (count, fields) in the order in which they leave; a message names frame, row and column.
 
@@ -392,6 +376,41 @@ async def interrupt(bench: Any, send: Any, interrupts: Any, monitors: Any, quiet
             await bench.clocks(quiet)
             assert not any(monitor.starts for monitor in monitors), f"words left after a reset at {count}"
             assert bench.saturations == 0, f"clipped words were counted after a reset at {count}"
+
+
+async def send_words(
+    bench: Bench,
+    driver: StreamDriver,
+    source: StreamMonitor,
+    sink: StreamMonitor,
+    words: Sequence[Any],
+    *,
+    quiet: int,
+    frame: int = 0,
+    gap: float = 0.0,
+    interrupts: Any = (),
+    strays: int = 0,
+) -> None:
+    """Send words (tuples) one by one, each after an idle cycle with probability `gap`, and wait `quiet` cycles.
+
+    A frame begins every `frame` words; 0: no frame begins. `strays` words of an incomplete frame come right before, and
+    before them what `interrupt` sends.
+    """
+
+    async def send(count: int) -> None:
+        for index in range(count):
+            while bench.random.random() < gap:
+                await bench.clocks(1)
+            driver.frame_start = bool(frame) and index % frame == 0
+            await driver.send([words[index % len(words)]])
+
+    await bench.start()
+    await interrupt(bench, send, interrupts, (source, sink), quiet)
+    await send(strays)
+    await send(len(words))
+    await bench.clocks(quiet)
+    source.forget_but(len(words))
+    np.testing.assert_array_equal(source.words, words, "the driver sent other words than the test gave it")
 
 
 async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any:

@@ -19,40 +19,28 @@ from tb.stream import (
     check_frame_starts,
     check_maps,
     configuration,
-    interrupt,
     parametrize,
     sample,
-    send_apart,
+    send_words,
     uniform,
 )
 
 
-async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrupts: Any = (), strays: int = 0) -> Any:
-    """Send frames f (frames, rows, columns) and compare; for `interrupts` see stream.interrupt."""
+async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, strays: int = 0, **behaviour: Any) -> Any:
+    """Send frames f (frames, rows, columns) and compare; see stream.send_words."""
     config = configuration()
     pixels = config.rows * config.columns
     bench = Bench(dut, pause)
     driver = StreamDriver(dut, "in", "valid", ["data"])
     source = StreamMonitor(dut, "in", "valid", ["data"])
     sink = BeatsMonitor(dut, "out", ["data"], config.columns // config.lanes, config.lanes, lead=0)
-    await bench.start()
-    words = f.reshape(-1, 1).tolist()
     latency = sum(cycles for _, cycles in by_solver_core(config))
-
-    async def send(count: int) -> None:
-        await send_apart(bench, driver, (words * (count // len(words) + 1))[:count], gap, pixels)
-
-    await interrupt(bench, send, interrupts, (source, sink), quiet=latency + pixels)
-    await send_apart(bench, driver, words[:strays], gap, pixels)
-    await send_apart(bench, driver, words, gap, pixels)
-    await bench.clocks(latency + pixels + config.columns)
-
-    source.forget_but(len(words))
+    words = f.reshape(-1, 1).tolist()
+    behaviour |= {"frame": pixels, "gap": gap, "strays": strays, "quiet": latency + pixels + config.columns}
+    await send_words(bench, driver, source, sink, words, **behaviour)
     sink.forget_but(len(words) // config.columns)
-    np.testing.assert_array_equal(source.words, words, "the driver sent other words than the test gave it")
     monitor = Monitor()
-    z = solve(np.array(source.words).reshape(f.shape), config, monitor)
-    check_maps(sink.words, z)
+    check_maps(sink.words, solve(f, config, monitor))
     assert strays or bench.saturations == monitor.saturations.total()
     check_frame_starts([source], pixels)
     check_frame_starts([sink], config.rows)

@@ -15,11 +15,10 @@ from tb.stream import (
     check_frame_starts,
     check_maps,
     extremes,
-    interrupt,
     parameters,
     parametrize,
     raster,
-    send_apart,
+    send_words,
     uniform,
 )
 from tb.structures import ICARUS, VERILATOR, of_parameters
@@ -55,17 +54,9 @@ async def check(dut: Any, gradient: Any, gap: float = 0.0, pause: float = 0.0, i
     driver = StreamDriver(dut, "in", "valid", FIELDS)
     source = StreamMonitor(dut, "in", "valid", FIELDS, unsigned=FIELDS[2:])
     sink = StreamMonitor(dut, "out", "valid", ["data"])
-    await bench.start()
-
-    async def send(count: int) -> None:
-        await send_apart(bench, driver, pixels(gradient)[:count], gap)
-
-    await interrupt(bench, send, interrupts, (source, sink), quiet=LATENCY + 2)
-    await send_apart(bench, driver, pixels(gradient), gap)
-    await bench.clocks(LATENCY + 2)
-    sent = np.array(source.words)[:, :2].reshape(gradient.shape)
-    np.testing.assert_array_equal(sent, gradient, "the driver sent other words than the test gave it")
-    check_maps(sink.words, divergence(sent, bool(neumann)))
+    words = pixels(gradient)
+    await send_words(bench, driver, source, sink, words, gap=gap, interrupts=interrupts, quiet=LATENCY + 2)
+    check_maps(sink.words, divergence(gradient, bool(neumann)))
     assert sink.starts == [clock + LATENCY for clock in source.starts]
     check_frame_starts([sink], gradient[0, ..., 0].size)
 

@@ -51,7 +51,7 @@ PROOFS = tuple(
         f"the smallest burst that holds the loop of the recursion; each of two words; {ROUNDING}",
         {"Rows": 3, "Columns": 16, "Words": 2, "Word": word, "Neumann": neumann, "TableWords": 16},
         steps=2,
-        roms=thomas_roms(3, 8, 16, 6, 2, 2, "down"),
+        roms=thomas_roms(3, 8, 16, 6, 2, 2),
     )
     for word, neumann in ((0, 1), (1, 0))
 )

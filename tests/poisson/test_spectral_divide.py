@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.poisson.spectral_divide import reciprocal_rom, reciprocals, spectral_divide
+from tactile_depth.chip.poisson.spectral_divide import reciprocals, spectral_divide
 from tactile_depth.chip.poisson.transform.orders import bit_reversed
 from tactile_depth.depth import reference
 
@@ -58,20 +58,6 @@ def test_mantissas_are_normalised_and_at_least_one_bit_is_dropped(config: Config
     assert table.drop >= 1
     assert table.shift.min() >= 0
     assert table.shift.max() < 2**table.shift_width
-
-
-def test_rom_is_the_lower_triangle() -> None:
-    config = Configuration(columns=16)
-    table, rom = reciprocals(config), reciprocal_rom(config)
-    assert len(rom) == 16 * 17 // 2
-    np.testing.assert_array_equal(table.mantissa, table.mantissa.T)
-    np.testing.assert_array_equal(table.shift, table.shift.T)
-    for p in range(16):
-        for t in range(p + 1):
-            word = int(rom[p * (p + 1) // 2 + t])
-            assert word >> config.coefficient_width == table.shift[p, t]
-            mantissa = word & (1 << config.coefficient_width) - 1
-            assert mantissa - (1 << config.coefficient_width) == table.mantissa[p, t]
 
 
 @settings(max_examples=30, deadline=None)

@@ -16,10 +16,9 @@ from tb.stream import (
     StreamMonitor,
     check_frame_starts,
     check_words,
-    interrupt,
     parameters,
     parametrize,
-    send_apart,
+    send_words,
     uniform,
 )
 from tb.structures import ICARUS, VERILATOR, of_parameters
@@ -40,29 +39,17 @@ ROWS = 7
 FRAME = 3  # rows
 
 
-async def check(dut: Any, gap: Any = 0.0, pause: float = 0.0, interrupts: Any = (), strays: int = 0) -> None:
+async def check(dut: Any, pause: float = 0.0, **behaviour: Any) -> None:
     columns, width, paths = parameters(dut, "Columns", "Width", "Paths")
     latency, beats = LEAD + LATENCY, columns // paths
     bench = Bench(dut, pause)
     driver = StreamDriver(dut, "in", "valid", ["data"])
     source = StreamMonitor(dut, "in", "valid", ["data"])
     sink = BeatsMonitor(dut, "out", ["data"], beats, paths)
-    await bench.start()
-    data = uniform(ROWS * columns, width)
-    words = data.reshape(-1, 1).tolist()
-
-    async def send(count: int) -> None:
-        await send_apart(bench, driver, words[-count:], gap, FRAME * columns)
-
-    await interrupt(bench, send, interrupts, (source, sink), quiet=latency + 2)
-    await send_apart(bench, driver, words[:strays], gap, FRAME * columns)
-    await send_apart(bench, driver, words, gap, FRAME * columns)
-    await bench.clocks(latency + beats + 4)
-    source.forget_but(len(words))
+    rows = uniform((ROWS, columns), width)
+    behaviour |= {"frame": FRAME * columns, "quiet": latency + beats + 4}
+    await send_words(bench, driver, source, sink, rows.reshape(-1, 1).tolist(), **behaviour)
     sink.forget_but(ROWS)
-
-    assert source.words == [tuple(word) for word in words], "the driver sent other words than the test gave it"
-    rows = np.array(source.words).reshape(ROWS, columns)
     order = to_beats(row_order(rows), paths, beats.bit_length() - 1)
     check_words(np.array(sink.words), order.reshape(-1, paths), beats, FRAME)
     check_frame_starts([source], FRAME * columns)
@@ -74,7 +61,7 @@ async def check(dut: Any, gap: Any = 0.0, pause: float = 0.0, interrupts: Any = 
 @cocotb.test
 @parametrize(gap=[0.0, 0.1, 0.8], pause=[0.0, 0.3])
 async def rows(dut: Any, gap: float, pause: float) -> None:
-    await check(dut, gap, pause)
+    await check(dut, pause, gap=gap)
 
 
 @cocotb.test

@@ -17,12 +17,6 @@ def test_mode_k_meets_mode_n_minus_k_and_mode_n_is_zero(size: int) -> None:
     np.testing.assert_array_equal(mirrored, by_mode[size - k])
 
 
-@pytest.mark.parametrize("size", [8, 64, 512])
-def test_orders_are_their_own_inverses(size: int) -> None:
-    for order in (bit_reversed(size), mirror(size)):
-        np.testing.assert_array_equal(order[order], np.arange(size))
-
-
 def test_pairs_are_the_modes_of_a_complex_row() -> None:
     a, b = np.random.default_rng(1).integers(-1000, 1000, (2, 16))
     re, im = row_pairs(a, b, 27)
