@@ -57,14 +57,14 @@ def test_hardware_removes_the_tables_of_an_earlier_pipeline_and_nothing_else(
     tables = json.loads((tmp_path / "parameters.json").read_text())["tables"]
     left = sorted(path.name for path in tmp_path.iterdir())
     assert left == sorted([*tables, RECORD, "notes.txt", "other.hex", "parameters.json", FILE])
-    assert "thomas.hex" not in tables
+    assert "down.hex" not in tables
 
 
 def test_a_folder_with_the_name_of_a_table_is_not_replaced(tmp_path: Path, small: Any) -> None:
-    mine = tmp_path / "thomas.hex" / "mine.txt"
+    mine = tmp_path / "down.hex" / "mine.txt"
     mine.parent.mkdir()
     mine.write_text("mine")
-    with pytest.raises(td.InputError, match=r"cannot be written \(thomas\.hex in it is a folder\): remove it or give"):
+    with pytest.raises(td.InputError, match=r"cannot be written \(down\.hex in it is a folder\): remove it or give"):
         small.hardware(tmp_path)
     assert sorted(tmp_path.rglob("*")) == [mine.parent, mine]
 

@@ -62,14 +62,13 @@ def test_the_plan_is_the_issue_s() -> None:
     assert Counter(lanes) == Counter((columns, 1 << n) for columns in (128, 256) for n in range(1, 7))
 
 
-def test_lanes_from_2_on_change_the_cost_and_the_latency_alone() -> None:
+def test_lanes_change_the_cost_and_the_latency_alone() -> None:
     one, two, four = (SWEEP.measured(square(32, solver="tridiagonal", lanes=lanes)) for lanes in (1, 2, 4))
     config = Configuration(columns=32, solver="tridiagonal", lanes=2)
     assert two.last_pixel_to_last_depth_cycles == last_pixel_to_last_depth(config)
-    assert two.multipliers == cost(config).tiles > one.multipliers
+    assert one.multipliers == two.multipliers == cost(config).tiles < four.multipliers
     same = [name for name in SWEEP.header if name.startswith(("rms_", "max_", "true_", "sat"))]
-    assert [getattr(four, name) for name in same] == [getattr(two, name) for name in same]
-    assert two.rms_percent_mean < 1.05 * one.rms_percent_mean
+    assert [getattr(four, name) for name in same] == [getattr(one, name) for name in same]
     assert "32 x 32" not in sweep.summary([one, two])
 
     text = sweep.summary([row.but(columns=128, rows=128) for row in (one, two)])

@@ -174,7 +174,7 @@ def test_a_limit_of_the_whole_map_takes_lanes(tmp_path: Path, capsys: pytest.Cap
     ("words", "expected"),
     [
         (["TOLERANCE=1e-9"], "SOLVER=tridiagonal DATA_WIDTH=32 COEFF_WIDTH=24"),
-        (["TOLERANCE=0.001", "MAX_DSP=24"], "the nearest is SOLVER=tridiagonal DATA_WIDTH=24 COEFF_WIDTH="),
+        (["TOLERANCE=0.001", "MAX_DSP=26"], "the nearest is SOLVER=tridiagonal DATA_WIDTH=24 COEFF_WIDTH="),
         (["MAX_DSP=4"], "beyond MAX_DSP=4"),
         (["MAX_LATENCY_US=1"], "beyond MAX_LATENCY_US=1"),
         (["SOLVER=tridiagonal", "MAX_MAP_LATENCY_US=1"], "COEFF_WIDTH=10 LANES=16: beyond MAX_MAP_LATENCY_US=1"),

@@ -19,8 +19,6 @@ from tactile_depth.chip.contact.frame_flags import FrameFlags
 from tactile_depth.chip.gradient.flat_field import captured_gains
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, received
 from tactile_depth.chip.table_entries import reference_entries
-from tactile_depth.chip.tactile_depth import zeroed
-from tactile_depth.depth.twin import Twin
 from tests.device.cable import Cable
 from tests.device.conftest import Plug
 from tests.device.test_device import require_equal, singles
@@ -210,12 +208,11 @@ def test_what_a_device_says_of_its_camera(
 
 
 def test_a_device_with_lanes(pipeline: td.Pipeline, sample: td.Sample, plug: Plug) -> None:
-    """The last bits of its depth are those of its lanes."""
-    lanes = replace(pipeline.config, lanes=4)
+    """Its depth is that of one value a clock."""
     cable = plug(pipeline)
     cable.unplug()
     assert cable.setup is not None
-    cable.setup.config = lanes
+    cable.setup.config = replace(pipeline.config, lanes=4)
     cable.plug()
     with td.Device(cable.address, pipeline) as device:
         device.load()
@@ -223,11 +220,7 @@ def test_a_device_with_lanes(pipeline: td.Pipeline, sample: td.Sample, plug: Plu
         device.capture_reference([sample.reference])
         device.capture_zero([sample.reference])
         assert len(list(device.depth([sample.image]))) == 1
-    twin = Twin(pipeline.sensor, lanes)
-    ((_, picture),) = pipeline.reader.pictures(sample.image, "picture")[0]
-    expected = twin.upright(zeroed(twin.chip(picture[None])[1], lanes, zero=pipeline.zero_codes))
-    np.testing.assert_array_equal(frame.codes, expected[0])
-    assert not np.array_equal(frame.codes, pipeline(sample.image).codes)
+    np.testing.assert_array_equal(frame.codes, pipeline(sample.image).codes)
 
 
 @pytest.mark.parametrize("name", NAMES)

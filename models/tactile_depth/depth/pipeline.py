@@ -272,12 +272,10 @@ class Pipeline:
         light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
         return Stream(light, self._recorder.events(self._at_rest))
 
-    def of_device(self, lanes: int) -> Pipeline:
-        """Return a copy with the lanes of a device, on which last bits depend, and with captures of its own."""
+    def copy(self) -> Pipeline:
+        """Return a copy, with captures of its own."""
         other = copy(self)
         other._sources = copy(self._sources)
-        other._config = replace(self.config, lanes=lanes)
-        other._twin = replace(self._twin, config=other.config)
         return other
 
     def __repr__(self) -> str:

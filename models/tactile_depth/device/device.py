@@ -112,7 +112,7 @@ class Device(AbstractContextManager["Device"]):
         self._is_closed = self._is_window_checked = False
         self._is_set = False  # the settings are those of this program
         self._line: Channel | None = self._connect()
-        self._twin = pipeline.of_device(self._lanes)  # with what the device holds, by what is known
+        self._twin = pipeline.copy()  # with what the device holds, by what is known
         try:
             self._accept_captures(self._line)
         except BaseException:
@@ -142,8 +142,8 @@ class Device(AbstractContextManager["Device"]):
         DeviceError
         """
         with self._open_line() as line:
-            self._lanes = require_same(line, self.pipeline)
-            self._twin, self._tables = self.pipeline.of_device(self._lanes), held.signatures_of(self.pipeline)
+            require_same(line, self.pipeline)
+            self._twin, self._tables = self.pipeline.copy(), held.signatures_of(self.pipeline)
             self._unseen.clear()
             with Exchange(line) as exchange:
 
@@ -181,7 +181,7 @@ class Device(AbstractContextManager["Device"]):
         if pictures is None:
             self._capture_of_camera("reference", frames, largest_log2_frames(self.pipeline.config))
             return
-        twin = self._twin.of_device(self._lanes)
+        twin = self._twin.copy()
         twin.capture_reference(pictures)
         taken = twin.sensor.reference
         assert taken is not None
@@ -198,7 +198,7 @@ class Device(AbstractContextManager["Device"]):
             self._capture_of_camera("zero", frames, LARGEST_LOG2)
             return
         self._require_seen(self._unseen - {"zero"})
-        twin = self._twin.of_device(self._lanes)
+        twin = self._twin.copy()
         twin.capture_zero(pictures)
         taken = np.stack([frame for _, frame in twin.reader.pictures(pictures, PICTURES)[0]])
         gains = twin.twin.light(taken)
@@ -348,7 +348,7 @@ class Device(AbstractContextManager["Device"]):
                 problem = f", but the device has {grid}, rows and columns"
                 remedy = ("make the pipeline with ", Argument("grid", grid), ", or build the device for it")
                 raise InputError(Argument("grid", tuple(self.pipeline.grid)), problem, remedy=remedy)
-            self._lanes = require_same(line, self.pipeline)
+            require_same(line, self.pipeline)
         except BaseException:
             line.close()
             raise

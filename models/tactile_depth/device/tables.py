@@ -37,10 +37,10 @@ def build_of(pipeline: Pipeline) -> Build:
     return Build(top_parameters(pipeline.config, pipeline.pixel_pitch_mm))
 
 
-def require_same(line: Channel, pipeline: Pipeline) -> int:
+def require_same(line: Channel, pipeline: Pipeline) -> None:
     """Raise InputError, which names what differs, unless a device has the configuration of a pipeline.
 
-    The lanes may differ, and are returned. Raises DeviceError if the device is no tactile_depth, or does not answer.
+    The lanes may differ. Raises DeviceError if the device is no tactile_depth, or does not answer.
     """
     words = read_words(line, ["ID", *DESCRIPTION, ARITHMETIC])
     if words["ID"] != REGISTERS["ID"].reset:
@@ -59,7 +59,6 @@ def require_same(line: Channel, pipeline: Pipeline) -> int:
     if words[ARITHMETIC] != expected[ARITHMETIC]:
         problem = "the device computes with other numbers than the pipeline (ARITHMETIC)"
         raise InputError(problem, remedy="build the device for this calibration")
-    return REGISTERS["DEVICE"].unpack(words["DEVICE"])["lanes"]
 
 
 def window_doubt(line: Channel, pipeline: Pipeline) -> InputWarning | None:
