@@ -77,6 +77,8 @@ JOBS = (
     Job(128, "tridiagonal", True, lanes=16),
     Job(128, "tridiagonal", False, rows=100, lanes=32, gaps=0.1, stalls=0.1),
     Job(256, "tridiagonal", False, lanes=32, gaps=0.1),
+    Job(256, "tridiagonal", True, rows=99, lanes=2),
+    Job(512, "tridiagonal", True, rows=101, lanes=64, gaps=0.1, stalls=0.1),
     Job(16, "spectral", False, simulator="icarus", codes=60_000),
     Job(16, "tridiagonal", True, rows=8, simulator="icarus", codes=60_000),
     Job(16, "tridiagonal", False, rows=9, simulator="icarus", codes=60_000, lanes=2),

@@ -27,11 +27,11 @@ from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.fixed_point import Format
 from tactile_depth.chip.poisson import spectral_solver, tridiagonal_solver
-from tactile_depth.chip.poisson.elimination import elimination
+from tactile_depth.chip.poisson.elimination import coefficient_rows, elimination
 from tactile_depth.chip.poisson.frame_stack import frame_stack
 from tactile_depth.chip.poisson.spectral_divide import reciprocals
 from tactile_depth.chip.poisson.substitution import substitution
-from tactile_depth.chip.poisson.thomas_table import ahead_rows, thomas_table
+from tactile_depth.chip.poisson.thomas_table import ahead_rows
 from tactile_depth.chip.poisson.transform.orders import makhoul
 
 BLOCK_BYTES = 1 << 26  # bytes of responses held at a time
@@ -201,7 +201,8 @@ class _Survey:
         if not self.in_pairs:
             return [(row,) for row in rows]
         last = self.config.rows - 1
-        firsts = sorted({last - (last - row) // 2 * 2 for row in (*rows, self.config.rows // 2 + 1)})
+        # Row 1 is in the last whole pair, also where row 0 is alone.
+        firsts = sorted({last - (last - row) // 2 * 2 for row in (*rows, 1, self.config.rows // 2 + 1)})
         return [(first, first - 1) if first else (first,) for first in firsts]
 
     def partner(self, name: str) -> np.ndarray:
@@ -396,7 +397,8 @@ class _Tridiagonal(_Survey):
     def in_depths(self, node: str, row: int) -> np.ndarray:
         """Return the largest words over all depths: d[i] is z[i] + c[i] z[i+1], and c[i] multiplies d[i] / c[i].
 
-        With a look ahead, e[i] is z[i] - c[i] c[i+1] z[i+2].
+        With a look ahead, e[i] is z[i] - p[i] z[i+2], where p[i] is c[i] c[i+1] as the table up the rows has it. Since
+        d[i] is e[i] + c[i] d[i+1], the rounding of p in the rows below adds to it.
         """
         config = self.config
         part = node.partition(".")[2]
@@ -407,23 +409,27 @@ class _Tridiagonal(_Survey):
             return z[:1]
         if not part:
             return z
-        c, below = self.coefficients[row]
+        c, product, rounding = (values[row] for values in self.coefficients)
+        below = row < config.rows - 1
         with np.errstate(divide="ignore"):
             if part == "difference":
-                return z / np.abs(c) + z * below
+                return z * ((1 + rounding) / np.abs(c) + below)
         drop = config.elimination.fraction - config.elimination_store.fraction if part in ("store", "ahead") else 0
         if part == "ahead":
-            both = ahead_rows(config)[row] / 2.0 ** (config.coefficient.fraction) if row < config.rows - 2 else 0 * c
-            return z * (1 + np.abs(both)) / 2**drop
-        return z * (1 + np.abs(c) * below) / 2**drop
+            return z * (1 + np.abs(product)) / 2**drop
+        return z * (1 + np.abs(c) * below + rounding) / 2**drop
 
     @cached_property
-    def coefficients(self) -> list[tuple[np.ndarray, int]]:
-        """c of each row, and 1 if there is a row below, else 0."""
-        table = thomas_table(self.config)
-        scale = 2.0 ** (self.config.coefficient.fraction)
-        last = table.last * 2.0**table.last_shift / scale
-        return [(c / scale, 1) for c in table.rows(self.config.rows - 1)] + [(last, 0)]
+    def coefficients(self) -> tuple[np.ndarray, ...]:
+        """Each row's c, p, and the norm of what the rounding of p in it and below adds to d."""
+        one = 2.0**self.config.coefficient.fraction
+        c = coefficient_rows(self.config, self.config.rows) / one
+        product = np.zeros_like(c)
+        product[:-2] = -ahead_rows(self.config) / one
+        rounding = np.zeros_like(c)
+        for row in range(self.config.rows - 3, -1, -1):
+            rounding[row] = np.abs(c[row] * c[row + 1] - product[row]) + np.abs(c[row]) * rounding[row + 1]
+        return c, product, rounding
 
 
 def node_bounds(config: Configuration, progress: Callable[[float], None] = lambda share: None) -> list[Node]:

@@ -75,7 +75,9 @@ def test_zero_gives_zero() -> None:
 
 
 @pytest.mark.parametrize("neumann", [False, True])
-@pytest.mark.parametrize(("columns", "rows"), [(16, 8), (64, 9), (64, 96), (128, 127), (1024, 33)])
+@pytest.mark.parametrize(
+    ("columns", "rows"), [(16, 8), (32, 9), (64, 96), (128, 127), (256, 20), (512, 17), (1024, 33)]
+)
 def test_all_numbers_of_depths_per_clock_give_the_same_codes(columns: int, rows: int, neumann: bool) -> None:
     slopes = np.random.default_rng(1).uniform(-0.1, 0.1, (2, rows, columns, 2))
     codes = []
