@@ -30,7 +30,7 @@ package td_tables_pkg;
     logic [31:0] crc, steps[256];
     for (int n = 0; n < 256; n++) begin
       crc = n;
-      for (int b = 0; b < 8; b++) crc = crc >> 1 ^ (crc[0] ? 32'hEDB8_8320 : 32'd0);
+      for (int b = 0; b < 8; b++) crc = crc >> 1 ^ (crc[0] ? td_link_pkg::CrcPolynomial : 32'd0);
       steps[n] = crc;
     end
     crc = '1;

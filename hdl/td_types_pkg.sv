@@ -200,7 +200,7 @@ package td_types_pkg;
 
   // The signature of words, which starts with all ones, and of one word more: a multiple-input signature register.
   function automatic logic [31:0] signature_step(input logic [31:0] last, input logic [31:0] word);
-    signature_step = (last >> 1) ^ (last[0] ? 32'hEDB8_8320 : 32'd0) ^ word;
+    signature_step = (last >> 1) ^ (last[0] ? td_link_pkg::CrcPolynomial : 32'd0) ^ word;
   endfunction
 
   // The register ARITHMETIC: the signature of the numbers of a configuration that depth of a picture depends on. Icarus

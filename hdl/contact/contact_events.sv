@@ -27,7 +27,7 @@ module contact_events
   parameter int Columns     = 128,
   parameter int Lanes       = 1,  // depths in a beat
   parameter int BottomFirst = 0,  // 1: the bottom row comes first
-  localparam int Words = 15
+  localparam int Words = td_register_map_pkg::RecordWords
 ) (
   input  wire                     clk,
   input  wire                     rst,

@@ -9,7 +9,7 @@
 `default_nettype none
 
 module record_packets #(
-  parameter int Words = 15
+  parameter int Words = td_register_map_pkg::RecordWords
 ) (
   input  wire                  clk,
   input  wire                  rst,

@@ -13,6 +13,7 @@
 
 module depth_packets
   import td_link_pkg::*;
+  import td_register_map_pkg::RecordWords;
 #(
   parameter int Rows        = 128,
   parameter int Columns     = 128,  // a power of two

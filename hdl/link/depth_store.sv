@@ -14,7 +14,7 @@
 `default_nettype none
 
 module depth_store
-  import td_link_pkg::*;
+  import td_register_map_pkg::RecordWords;
 #(
   parameter int Rows      = 128,
   parameter int Columns   = 128,  // a power of two

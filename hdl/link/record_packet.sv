@@ -12,6 +12,7 @@
 
 module record_packet
   import td_link_pkg::*;
+  import td_register_map_pkg::RecordWords;
 (
   input  wire         clk,
   input  wire         rst,

@@ -24,7 +24,6 @@ package td_link_pkg;
   localparam int ValuesAPacket = 256;    // of depth
   localparam int LongestPiece = 1398;    // bytes between two delimiters
   localparam int LargestShift = 16;
-  localparam int RecordWords = 15;
 
   // CRC-32 of IEEE 802.3, reflected. The state begins with CrcStart; a CRC is the inverted state, its low byte first;
   // behind data and CRC the state is CrcResidue.
