@@ -9,9 +9,9 @@ import pytest
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.limits import most_lanes
-from tactile_depth.chip.poisson import spectral_solver
 from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.poisson.tridiagonal_solver import tridiagonal_solver
+from tactile_depth.chip.tactile_depth import solve
 from tactile_depth.depth import reference
 from tactile_depth.sensor.scenes import dome, slopes_of
 from tb.poisson.tb_tridiagonal_solver import CHOICES
@@ -24,29 +24,24 @@ def divergence_codes(slopes: np.ndarray, config: Configuration) -> tuple[Any, ..
     return f, f * config.gradient_lsb
 
 
-def error_percent(config: Any, solver: Any, slopes: np.ndarray, in_stream_order: Any) -> Any:
+def error_percent(config: Configuration, slopes: np.ndarray) -> Any:
     f, exact = divergence_codes(slopes, config)
     monitor = Monitor()
-    depth = solver(f, config, monitor) * config.depth_lsb_px
+    depth = solve(f, config, monitor) * config.depth_lsb_px
     assert not monitor.saturations
     want = reference.solve(exact, config.neumann)
-    depth = depth[..., ::-1, :] if in_stream_order else depth
+    depth = depth[..., ::-1, :] if config.solver == "tridiagonal" else depth
     return 100 * np.sqrt(((depth - want) ** 2).mean(axis=(1, 2))) / want.max(axis=(1, 2))
 
 
 # Bars: 0.005 % at 128 with 24-bit words; with 27 bits 0.001 % at 128, 0.01 % at 512; Neumann twice that.
 @pytest.mark.parametrize("neumann", [False, True])
+@pytest.mark.parametrize("solver", ["tridiagonal", "spectral"])
 @pytest.mark.parametrize(("size", "data_width", "mean"), [(64, 24, 0.002), (128, 24, 0.005), (128, 27, 0.001)])
-def test_depth_is_near_the_reference(size: int, data_width: int, mean: bool, neumann: bool) -> None:
+def test_depth_is_near_the_reference(size: int, data_width: int, mean: float, solver: str, neumann: bool) -> None:
     slopes = np.stack([slopes_of(dome(size, share * size)) for share in PEAKS])
-    choices: dict[str, Any] = {"columns": size, "data_width": data_width, "neumann": neumann}
-    bound = mean * (2 if neumann else 1)
-    config = Configuration(**choices, solver="tridiagonal")
-    error = error_percent(config, tridiagonal_solver, slopes, True)
-    assert error.mean() < bound
-    assert error.max() < 3 * bound
-    config = Configuration(**choices)
-    error = error_percent(config, spectral_solver.spectral_solver, slopes, False)
+    config = Configuration(columns=size, data_width=data_width, solver=solver, neumann=neumann)
+    error, bound = error_percent(config, slopes), mean * (2 if neumann else 1)
     assert error.mean() < bound
     assert error.max() < 3 * bound
 
@@ -57,7 +52,7 @@ def test_rectangles(columns: int, rows: int, neumann: bool) -> None:
     config = Configuration(columns=columns, rows=rows, solver="tridiagonal", neumann=neumann)
     size = max(columns, rows)
     height = dome(2 * size, size / 16)[size - rows // 2 :, size - columns // 2 :][:rows, :columns]
-    error = error_percent(config, tridiagonal_solver, slopes_of(height)[None], True)
+    error = error_percent(config, slopes_of(height)[None])
     assert error.max() < 0.02
 
 
