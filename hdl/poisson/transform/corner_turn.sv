@@ -4,14 +4,15 @@
 // Stream in: bursts of Beats = Size / Paths beats, Paths = Lanes / 2, or 1; path l has in beat t the words of rows a
 // and b at position l Beats + t in Makhoul order (0, 2, 4, .., 5, 3, 1); starts come 2 cycles before the first beat.
 // in_alone: row b does not count. Stream out: row a, then row b (in_alone: not), each a burst of Size / Lanes beats of
-// Lanes words in natural order, the first word in the lowest bits; starts come with the first beat. Bursts come at
-// least as slowly.
+// Lanes words in natural order, the first word in the lowest bits; starts come with the first beat. Bursts come no
+// faster than their rows leave.
 // Latency: Beats + 4 cycles from in_start to row a; bursts may have pauses between them; en low: nothing moves.
 //
-// Even words of a row are the first half of its positions, odd words are the second half from its end. Each half has a
-// memory for each of its words in a beat, which are 2 rows x Paths / 2 paths. Word w of these at beat t (counted from
-// the end in the second half) is in memory w ^ t, or w ^ (Paths / Beats) t if there are fewer beats than paths. So the
-// Paths words of one row that leave in a cycle are in Paths memories. Two bursts of memory, written and read in turn.
+// Even words of a row are the first half of its positions, odd words are the second half from its end. With one path
+// each half has a memory for each row. With more it has one for each of its words in a beat, 2 rows x Paths / 2.
+// Word w of these at beat t (counted from the end in the second half) is in memory w ^ t, or w ^ (Paths / Beats) t
+// if there are fewer beats than paths. So the Paths words of one row that leave in a cycle are in Paths memories.
+// Two bursts of memory, written and read in turn.
 // Bit-accurate model: models/tactile_depth/chip/poisson/transform/corner_turn.py.
 
 `default_nettype none

@@ -53,7 +53,7 @@ def ahead(d: np.ndarray, config: Configuration, monitor: Monitor | None) -> np.n
     drop = config.elimination.fraction - config.elimination_store.fraction
     e = np.empty_like(d)
     inner = coefficient_rows(config, d.shape[-2])[:-1]
-    one = 2 ** (config.coefficient.fraction)
+    one = 2**config.coefficient.fraction
     exact = d[..., :-1, :] * one - inner * d[..., 1:, :]
     shift = config.coefficient.fraction + drop
     e[..., :-1, :] = round_saturate(exact, shift, config.elimination_store.width, monitor, "elimination.ahead")

@@ -273,7 +273,7 @@ def dst_forward(
 def dst_inverse(
     modes: np.ndarray, formats: Transform, monitor: Monitor | None = None, node: str = "dst_inverse"
 ) -> np.ndarray:
-    """Model poisson/transform/dst_inverse.py."""
+    """Model poisson/transform/dst_inverse.py; no word is clipped to 63 bits."""
     return _inverse_rows(modes[..., None, :], 63, formats, monitor, node)[..., 0, :]
 
 

@@ -43,7 +43,7 @@ def reciprocals(config: Configuration) -> Reciprocals:
     factor = ~singular / np.where(singular, 1, total) / config.transform_gain / config.depth_limit_px
     scaled = factor * 2.0 ** (config.column_inverse.fraction - config.column_forward.fraction)
     fraction, exponent = np.frexp(scaled)
-    mantissa = np.rint(fraction * 2 ** (config.coefficient.fraction)).astype(np.int64)
+    mantissa = np.rint(fraction * 2**config.coefficient.fraction).astype(np.int64)
     lowest = min(int(exponent[~singular].min()), config.coefficient.width - 2)  # at least one bit is dropped
     shift = np.where(singular, 0, exponent.astype(np.int64) - lowest)
     return Reciprocals(mantissa, shift, config.coefficient.fraction - lowest, max(1, int(shift.max()).bit_length()))

@@ -95,7 +95,7 @@ def _exact(config: Configuration) -> tuple[np.ndarray, np.ndarray]:
 
 def _codes(values: np.ndarray, config: Configuration) -> np.ndarray:
     """Return negative values down to -1 as words of the coefficient width; the smallest is -1 code."""
-    scale = 2 ** (config.coefficient.fraction)
+    scale = 2**config.coefficient.fraction
     return np.clip(np.rint(values * scale), -scale, -1).astype(np.int64)
 
 
@@ -114,7 +114,7 @@ def thomas_table(config: Configuration) -> ThomasTable:
     base = np.concatenate(([0], np.cumsum(settled + 1)[:-1]))
     words = np.concatenate([codes[: settled[p] + 1, p] for p in range(config.columns)])
     shift = np.maximum(np.frexp(last)[1], 0).astype(np.int64)
-    scale = 2 ** (config.coefficient.fraction)
+    scale = 2**config.coefficient.fraction
     return ThomasTable(words, base, settled, np.rint(last * scale / 2.0**shift).astype(np.int64), shift)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from tactile_depth.chip.poisson.transform.orders import read_only
 
-LEAD = 2  # cycles from a start to the first words of its burst, in all cores with several paths
+LEAD = 2  # cycles from a start to the first words of its burst, in all cores of bursts
 
 
 @cache
