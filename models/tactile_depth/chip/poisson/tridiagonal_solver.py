@@ -42,8 +42,8 @@ def solver_parameters(config: Configuration) -> dict[str, int]:
         # Slopes have the unit `unit_px`.
         "RowForwardOut": config.row_forward.fraction + config.depth_limit_log2 - config.elimination.fraction,
         "StoreDrop": config.elimination.fraction - config.elimination_store.fraction,
-        "RowInverseIn": row_inverse_drops(config)[0],
-        "RowInverseOut": row_inverse_drops(config)[1],
+        "RowInverseIn": config.elimination.fraction - config.row_inverse.fraction,
+        "RowInverseOut": config.row_inverse.fraction - config.depth.fraction,
         "DownWords": config.down_words,
         "DownTableWords": len(down.words),
         "DownSettledWidth": down.settled_width,
@@ -56,14 +56,6 @@ def solver_parameters(config: Configuration) -> dict[str, int]:
         "StoreStyle": config.store_style,
         "WordsPerRow": config.words_per_row,
     }
-
-
-def row_inverse_drops(config: Configuration) -> tuple[int, int]:
-    """Return the fraction bits that the inverse row transform drops at its input and at its output."""
-    return (
-        config.elimination.fraction - config.row_inverse.fraction,
-        config.row_inverse.fraction - config.depth.fraction,
-    )
 
 
 def tridiagonal_solver(
