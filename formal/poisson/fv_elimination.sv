@@ -88,7 +88,7 @@ always_ff @(posedge clk) begin
       singular <= Neumann != 0 && Word == 0 && column == '0 && last_row;
     end
     if (old[1]) f <= in_data[Word*Width+:Width];
-    if (old[2]) difference_q <= difference;
+    if (old[3]) difference_q <= difference;
     if (old[4]) product <= difference_q * c;
     if (old[5]) shifted <= (Width + CoeffWidth + 1)'(product) <<< by;
     if (old[6]) begin
@@ -130,10 +130,10 @@ always_comb begin
   for (int node = 0; node < 4 * Words; node++) total = total + CountWidth'(dut.clipped[node]);
 end
 always_ff @(posedge clk) begin
-  decided <= {4{en & ~rst}} & {old[9], old[9], old[6], old[2]};
+  decided <= {4{en & ~rst}} & {old[9], old[9], old[6], old[3]};
   due <= clipped & {row_d == RowWidth'(Rows - 1), row_d != '0, 2'b11};
   none <= ~({4{en & ~rst}}
-      & {active_q[9] & ends_q[9][1], active_q[9] & ~ends_q[9][0], active_q[6], active_q[2]});
+      & {active_q[9] & ends_q[9][1], active_q[9] & ~ends_q[9][0], active_q[6], active_q[3]});
   total_q <= rst ? '0 : total;
 end
 
@@ -283,11 +283,12 @@ if (1) begin : g_steps
       end
 
       // The difference, the product, d.
-      if (old[2]) data: assert (dut.g_word[Word].data_q == f);
+      if (old[2]) data: assert (dut.g_word[Word].data_q[0] == f);
       if (old[2]) read_above: assert (row_q == '0 || (d_read[Word*Width+:Width] == d
           && c_read[Word*CoeffWidth+:CoeffWidth] == c_d));
-      if (old[3]) difference: assert (dut.g_word[Word].difference_q[0] == difference_q);
-      if (old[4]) difference_kept: assert (dut.g_word[Word].difference_q[1] == difference_q);
+      if (old[3]) operands: assert (dut.g_word[Word].data_q[1] == f
+          && dut.g_word[Word].above == (row_q == '0 ? '0 : d));
+      if (old[4]) difference: assert (dut.g_word[Word].difference_q == difference_q);
       if (old[5]) multiplied: assert (dut.g_word[Word].product == product);
       if (old[6]) aligned: assert (dut.g_word[Word].shifted == shifted);
       if (old[6:0] != '0) of_mean: assert (singular == (Neumann != 0 && Word == 0 && column == '0 && last));

@@ -95,9 +95,7 @@ module elimination #(
   logic [Words*CoeffWidth-1:0] above_c;
   logic [2:0][Words*CoeffWidth-1:0] coefficients_q;
   always_ff @(posedge clk) if (en) coefficients_q <= {coefficients_q[1:0], coefficients};
-  td_ram #(
-    .Width(Words * Width), .Depth(Clocks), .Style(Words * Width * Clocks > td_memory_pkg::LateBits ? 1 : 0)
-  ) u_d_above (
+  td_ram #(.Width(Words * Width), .Depth(Clocks)) u_d_above (
     .clk,
     .write_en     (en & active_q[ToState-1]),
     .write_address(position_q[ToState-1]),
@@ -134,17 +132,16 @@ module elimination #(
   logic [4*Words-1:0] clipped;
   for (genvar word = 0; word < Words; word++) begin : g_word
     // Difference, product, shift, rounding.
-    logic signed [Width-1:0] data_q, above, difference, rounded;
-    logic [1:0][Width-1:0] difference_q;
+    logic [1:0][Width-1:0] data_q;
+    logic signed [Width-1:0] above, difference, difference_q, rounded;
     logic signed [ProductWidth-1:0] product;
     logic signed [ShiftedWidth-1:0] shifted;
     logic [3:0] clipped_now;
-    assign above = first_q[2] ? '0 : above_d[word*Width+:Width];
     td_round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
-      .in((Width + 1)'(data_q) - (Width + 1)'(above)), .out(difference), .clipped(clipped_now[0])
+      .in((Width + 1)'($signed(data_q[1])) - (Width + 1)'(above)), .out(difference), .clipped(clipped_now[0])
     );
     td_multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
-      .clk, .en, .a(difference_q[1]), .b(coefficients[word*CoeffWidth+:CoeffWidth]), .product
+      .clk, .en, .a(difference_q), .b(coefficients[word*CoeffWidth+:CoeffWidth]), .product
     );
     td_round_saturate #(.InWidth(ShiftedWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_state (
       .in(shifted), .out(rounded), .clipped(clipped_now[1])
@@ -171,8 +168,9 @@ module elimination #(
     );
     always_ff @(posedge clk) begin
       if (en) begin
-        data_q <= in_data[word*Width+:Width];
-        difference_q <= {difference_q[0], difference};
+        data_q <= {data_q[0], in_data[word*Width+:Width]};
+        above <= first_q[2] ? '0 : above_d[word*Width+:Width];
+        difference_q <= difference;
         shifted <= ShiftedWidth'(product) <<< shifts_q[word*LastShiftWidth+:LastShiftWidth];
         d[word*Width+:Width] <= singular ? mean : rounded;
         above_q <= {above_q[AboveClocks-2:0], above_d[word*Width+:Width]};
@@ -184,7 +182,7 @@ module elimination #(
         out_ahead[word*OutWidth+:OutWidth] <= ahead_rounded;
       end
       clipped[4*word+:4] <= clipped_now & {
-        active_q[ToEnd-1] & last_q[ToEnd-1], active_q[ToEnd-1] & ~first_q[ToEnd-1], active_q[ToState-2], active_q[2]
+        active_q[ToEnd-1] & last_q[ToEnd-1], active_q[ToEnd-1] & ~first_q[ToEnd-1], active_q[ToState-2], active_q[3]
       } & {4{en}};
       if (rst) clipped[4*word+:4] <= '0;
     end

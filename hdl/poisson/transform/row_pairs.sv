@@ -70,12 +70,10 @@ module row_pairs #(
   for (genvar word = 0; word < 2 * Paths; word++) begin : g_word
     logic [Width-1:0] in;
     assign in = word < Paths ? in_a[word%Paths*Width+:Width] : in_b[word%Paths*Width+:Width];
-    td_delay_line #(.Width(Width), .Delay(Beats / 2 + 1)) u_beat (
+    td_delay_line #(.Width(Width), .Delay(Beats / 2 + 2)) u_beat (
       .clk, .rst, .en, .in, .out(beat[word*Width+:Width])
     );
-    td_ram #(
-      .Width(Width), .Depth(Beats), .Style(Width * Beats > td_memory_pkg::LateBits ? 1 : 0)
-    ) u_mirrored (
+    td_ram #(.Width(Width), .Depth(Beats)) u_mirrored (
       .clk,
       .write_en     (en & active_q[1]),
       .write_address(position_q[1]),
@@ -97,9 +95,8 @@ module row_pairs #(
     logic signed [Width:0] sum_re, sum_im;
     assign a = beat[l*Width+:Width];
     assign b = beat[(Paths+l)*Width+:Width];
-    assign a_mirrored = !first ? mirrored[Later*Width+:Width] : None ? '0 : mirrored[First*Width+:Width];
-    assign b_mirrored = !first ? mirrored[(Paths+Later)*Width+:Width]
-        : None ? '0 : mirrored[(Paths+First)*Width+:Width];
+    assign sum_re = (Width + 1)'(a_mirrored) - (Width + 1)'(b);
+    assign sum_im = (Width + 1)'(a) + (Width + 1)'(b_mirrored);
     td_round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_re (
       .in(sum_re), .out(re), .clipped(clipped[2*l])
     );
@@ -108,8 +105,9 @@ module row_pairs #(
     );
     always_ff @(posedge clk) begin
       if (en) begin
-        sum_re <= (Width + 1)'(a_mirrored) - (Width + 1)'(b);
-        sum_im <= (Width + 1)'(a) + (Width + 1)'(b_mirrored);
+        a_mirrored <= !first ? mirrored[Later*Width+:Width] : None ? '0 : mirrored[First*Width+:Width];
+        b_mirrored <= !first ? mirrored[(Paths+Later)*Width+:Width]
+            : None ? '0 : mirrored[(Paths+First)*Width+:Width];
         out_re[l*Width+:Width] <= re;
         out_im[l*Width+:Width] <= im;
       end

@@ -8,7 +8,7 @@ import numpy as np
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.thomas_table import PackedTable, packed_table, table_parts, thomas_table
-from tactile_depth.chip.resources import Memory, Multiplier, Parts, Words, late_style, products, rom
+from tactile_depth.chip.resources import Memory, Multiplier, Parts, Words, products, rom
 
 LATENCY = 9  # from the first modes of a row to its first d, with which e of the row above leaves
 
@@ -94,11 +94,11 @@ def table(config: Configuration) -> PackedTable:
 
 def parts(config: Configuration) -> Parts:
     down, coefficient = config.down_words, config.coefficient.width
-    clocks, state = config.columns // down, down * config.arithmetic_width
+    clocks = config.columns // down
     return [
         Words(down * config.depth.width),
         *products(config, 2 * down),
-        Memory("row buffers", state, clocks, late_style(state * clocks)),
+        Memory("row buffers", down * config.arithmetic_width, clocks),
         Memory("row buffers", down * coefficient, clocks),
         *table_parts(table(config), down * coefficient),
         rom(down * (thomas_table(config).last_shift_width + coefficient), clocks),

@@ -15,7 +15,7 @@ from tactile_depth.chip.poisson.transform.row_pairs import mode_pairs, row_pairs
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle import LATENCY as TWIDDLE
 from tactile_depth.chip.poisson.transform.twiddle import factors_rom, phase_factors, twiddle
-from tactile_depth.chip.resources import Memory, Multiplier, Parts, Sizes, Words, delay_line, late_style
+from tactile_depth.chip.resources import Memory, Multiplier, Parts, Sizes, Words, delay_line
 
 SIGN = 2  # cycles of sign and rounding
 
@@ -86,11 +86,11 @@ def parts(config: Sizes) -> Parts:
     size, paths, found = config.columns, config.up_paths, Parts()
     widths = [config.arithmetic_width, config.depth.width]
     for width in widths if config.solver == "spectral" else widths[:1]:
-        beats, waits = size // paths, size // paths // 2 + 1
+        beats, waits = size // paths, size // paths // 2 + 2
         found += [
             Words(paths * config.depth.width),
             *delay_line(width, waits) * (2 * paths),
-            *[Memory("row buffers", width, beats, late_style(width * beats))] * (2 * paths),
+            *[Memory("row buffers", width, beats)] * (2 * paths),
             *[Multiplier(width, config.coefficient.width)] * (4 * paths),
             factors_rom(config, paths, size),
             *fft_parts(config, paths, True),
