@@ -15,7 +15,7 @@ from commands.cost.parts import parts
 from tactile_depth.base.errors import Argument, one_of
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
-from tactile_depth.chip.resources import Memory, Multiplier
+from tactile_depth.chip.resources import Memory, Multiplier, Words
 
 __all__ = ["ECP5", "KINDS", "XCZU7EV", "CameraCost", "Cost", "camera_cost", "cost"]
 
@@ -89,15 +89,26 @@ class Cost:
     @cached_property
     def power_mw(self) -> float:
         """Power at 45 nm and 166 MHz, without wires and clock tree, in mW; see LOGIC_UW."""
-        product_bits = sum(multiplier.a * multiplier.b for multiplier in self.multipliers)
-        logic_uw = PRODUCT_UW * product_bits + LUT_UW * self.luts_of(XCZU7EV)
-        return (logic_uw + ACCESS_PJ / WORD_BITS * CLOCK_MHZ * self.accessed_bits) / 1e3
+        product_bits = sum(each.a * each.b * self.work[each.core] for each in self.multipliers)
+        return power_mw(product_bits, self.luts_of(XCZU7EV), self.accessed_bits)
+
+    @cached_property
+    def work(self) -> dict[str, float]:
+        """Share of the clocks in which each core takes words."""
+        return {part.core: part.work for part in parts(self.config) if isinstance(part, Words)}
 
     @cached_property
     def accessed_bits(self) -> float:
-        """Bits that memories of more than a kilobit read and write per clock; of two banks of a table one is read."""
-        large = [memory for memory in self.memories if memory.bits > MACRO_BITS]
-        return sum(memory.width * (1 if memory.rom else 0.5 if memory.banked else 2) for memory in large)
+        """Bits that memories of more than a kilobit read and write per clock; of two banks of a table one is read.
+
+        Tables and delay lines are read in every clock, other memories when their core takes words.
+        """
+        accessed = 0.0
+        for memory in self.memories:
+            always = memory.rom or memory.kind == "delay lines"
+            each = memory.width * (1 if memory.rom else 0.5 if memory.banked else 2)
+            accessed += (memory.bits > MACRO_BITS) * each * (1 if always else self.work[memory.core])
+        return accessed
 
     @cached_property
     def memory_bits(self) -> int:
@@ -116,6 +127,12 @@ class Cost:
             elif isinstance(part, Memory):
                 counts[part.core] = tiles, bits + part.bits
         return counts
+
+
+def power_mw(product_bits: float, luts: float, accessed_bits: float) -> float:
+    """Return the power of products of so many bits in each clock, of LUTs and of memories, in mW."""
+    logic_uw = PRODUCT_UW * product_bits + LUT_UW * luts
+    return (logic_uw + ACCESS_PJ / WORD_BITS * CLOCK_MHZ * accessed_bits) / 1e3
 
 
 @lru_cache(maxsize=4096)  # a search asks for the same ones again and again

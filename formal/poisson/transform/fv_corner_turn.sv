@@ -157,16 +157,15 @@ if (1) begin : g_steps
   logic [PathWidth-1:0] memory;
   assign entry = Paths == 1 ? entries[second_half][follows_b][0] : entries[second_half][0][memory];
   if (Paths == 1) begin : g_single
-    localparam int AddressWidth = $clog2(OutBeats);  // in a bank
     assign memory = '0;
     for (genvar half = 0; half < 2; half++) begin : g_entry
       for (genvar r = 0; r < 2; r++) begin : g_row
-        assign entries[half][r] = dut.g_single.g_lane[half%Lanes].g_row[r].u_ram.g_distributed
-            .words[{in_bank, AddressWidth'(of_sample / Lanes)}];
+        assign entries[half][r] = dut.g_single.g_half[half].g_row[r].u_ram.g_distributed
+            .words[{in_bank, write_beat[BeatWidth-2:0]}];
         for (genvar n = 2; n < Longest; n++) begin : g_age
           for (genvar b = half * Beats / 2; b < (half + 1) * Beats / 2 && b < n - 1; b++) begin : g_beat
-            localparam logic [AddressWidth-1:0] At = AddressWidth'((half == 0 ? 2 * b : 2 * (Beats - b) - 1) / Lanes);
-            always_comb if (started && starts[n]) was_written: assert (dut.g_single.g_lane[half%Lanes]
+            localparam logic [BeatWidth-2:0] At = (BeatWidth - 1)'(half == 0 ? b : Beats - 1 - b);
+            always_comb if (started && starts[n]) was_written: assert (dut.g_single.g_half[half]
                 .g_row[r].u_ram.u_check.written[{banks[n], At}]);
           end
         end

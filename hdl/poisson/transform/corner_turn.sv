@@ -9,10 +9,10 @@
 // Latency: Beats + 4 cycles from in_start to row a; bursts may have pauses between them; en low: nothing moves.
 //
 // Even words of a row are the first half of its positions, odd words are the second half from its end. With one path
-// each row has a memory, and with two lanes one for each half. With more paths each half has one for each of its words
-// in a beat, 2 rows x Paths / 2. Word w of these at beat t (counted from the end in the second half) is in memory w ^ t,
-// or w ^ (Paths / Beats) t if there are fewer beats than paths. So the Paths words of one row that leave in a cycle are
-// in Paths memories. Two bursts of memory, written and read in turn.
+// each half has a memory for each row. With more it has one for each of its words in a beat, 2 rows x Paths / 2.
+// Word w of these at beat t (counted from the end in the second half) is in memory w ^ t, or w ^ (Paths / Beats) t
+// if there are fewer beats than paths. So the Paths words of one row that leave in a cycle are in Paths memories.
+// Two bursts of memory, written and read in turn.
 // Bit-accurate model: models/tactile_depth/chip/poisson/transform/corner_turn.py.
 
 `default_nettype none
@@ -60,27 +60,24 @@ module corner_turn #(
   assign row = read_beat[ReadWidth-1];
   assign row_start = read_active & (read_beat[ReadWidth-2:0] == '0) & ~(row & read_alone);
 
-  logic [Lanes*Width-1:0] leaves;
+  logic [1:0][Paths*Width-1:0] read;  // in each half the words that leave
   if (Paths == 1) begin : g_single
-    logic row_q, odd;
-    logic [BeatWidth-1:0] natural;  // position of the words present
-    assign odd = beat[BeatWidth-1];
-    assign natural = {beat[BeatWidth-2:0] ^ {(BeatWidth - 1){odd}}, odd};
+    logic row_q;
     always_ff @(posedge clk) if (en) row_q <= row;
-    for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
+    for (genvar half = 0; half < 2; half++) begin : g_half
       logic [1:0][Width-1:0] words;
       for (genvar r = 0; r < 2; r++) begin : g_row
-        td_ram #(.Width(Width), .Depth(Reads)) u_ram (
+        td_ram #(.Width(Width), .Depth(Beats)) u_ram (
           .clk,
-          .write_en     (en & active_q[1] & (Lanes == 1 || odd == 1'(lane))),
-          .write_address({write_bank_q, natural[BeatWidth-1-:ReadWidth-1]}),
+          .write_en     (en & active_q[1] & (beat[BeatWidth-1] == 1'(half))),
+          .write_address({write_bank_q, beat[BeatWidth-2:0] ^ {(BeatWidth - 1){1'(half)}}}),
           .write_data   (r == 0 ? in_a : in_b),
           .read_en      (en & read_active & (row == 1'(r))),
-          .read_address ({read_bank, read_beat[ReadWidth-2:0]}),
+          .read_address ({read_bank, read_beat[ReadWidth-2-:BeatWidth-1]}),
           .read_data    (words[r])
         );
       end
-      assign leaves[lane*Width+:Width] = words[row_q];
+      assign read[half] = words[row_q];
     end
   end else begin : g_paths
     localparam int Turned = BeatWidth < PathWidth ? BeatWidth : PathWidth;  // bits of the beat in a memory's number
@@ -100,7 +97,6 @@ module corner_turn #(
       end
     endfunction
 
-    logic [1:0][Paths*Width-1:0] read;  // in each half the words that leave
     // First position of the words that leave, with their row on top: path number, then beat.
     logic [BeatWidth+PathWidth-1:0] place;
     logic [PathWidth-1:0] turn, turn_q;
@@ -135,6 +131,14 @@ module corner_turn #(
         assign read[half][w*Width+:Width] = turned[Source*Width+:Width];
       end
     end
+  end
+
+  logic [Lanes*Width-1:0] leaves;
+  if (Lanes == 1) begin : g_one_lane
+    logic odd_q;
+    always_ff @(posedge clk) if (en) odd_q <= read_beat[0];
+    assign leaves = read[odd_q];
+  end else begin : g_lanes
     for (genvar w = 0; w < Paths; w++) begin : g_pair
       assign leaves[2*w*Width+:2*Width] = {read[1][w*Width+:Width], read[0][w*Width+:Width]};
     end

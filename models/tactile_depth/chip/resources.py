@@ -46,10 +46,14 @@ class Sizes(Protocol):
 
 @dataclass(frozen=True)
 class Words:
-    """An instance of a core, and the bits of the words that it takes in a clock."""
+    """An instance of a core, and the bits of the words that it takes in a clock.
+
+    `work` is the share of the clocks in which it takes words, while frames follow each other without a pause.
+    """
 
     bits: int
     core: str = ""
+    work: float = 1.0
 
 
 @dataclass(frozen=True)

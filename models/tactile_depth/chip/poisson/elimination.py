@@ -96,7 +96,7 @@ def parts(config: Configuration) -> Parts:
     down, coefficient = config.down_words, config.coefficient.width
     clocks = config.columns // down
     return [
-        Words(down * config.depth.width),
+        Words(down * config.depth.width, work=1 / down),
         *products(config, 2 * down),
         Memory("row buffers", down * config.arithmetic_width, clocks),
         Memory("row buffers", down * coefficient, clocks),

@@ -27,4 +27,4 @@ def parts(config: Configuration) -> Parts:
     burst = -(-config.columns // words)
     slots = ((config.rows - 1) // 2, (config.rows - 2) // 2)  # lower and upper rows of pairs
     stores = [Memory("frame stores", words * data, count * burst, config.store_style) for count in slots]
-    return [Words(2 * paths * data), *[row] * (2 if config.down_words < paths else 0), *stores]
+    return [Words(2 * paths * data, work=1 / (2 * paths)), *[row] * (2 if config.down_words < paths else 0), *stores]

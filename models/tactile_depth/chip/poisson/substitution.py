@@ -57,7 +57,7 @@ def table(config: Configuration) -> PackedTable:
 def parts(config: Configuration) -> Parts:
     words, beats = 2 * config.up_paths, config.columns // config.up_paths
     return [
-        Words(words * config.depth.width),
+        Words(words * config.depth.width, work=1 / words),
         *products(config, words),
         *[Memory("row buffers", config.arithmetic_width, beats)] * (words if beats > LOOP else 0),
         *table_parts(table(config), words * config.coefficient.width),

@@ -21,8 +21,8 @@ def latency(size: int, paths: int) -> int:
 
 
 def parts(config: Configuration) -> Parts:
-    """Return two bursts of memory for two rows."""
-    paths, data, lanes = config.up_paths, config.depth.width, config.lanes
-    memories = 2 * lanes if paths == 1 else lanes
-    turned = Memory("row buffers", data, 4 * config.columns // memories)
-    return [Words(2 * paths * data), *[turned] * memories]
+    """Return two bursts of memory for each word of a beat and half of the positions."""
+    paths, data = config.up_paths, config.depth.width
+    beats = config.columns // paths
+    turned = Memory("row buffers", data, beats if paths == 1 else 2 * beats)
+    return [Words(2 * paths * data, work=1 / (2 * paths)), *[turned] * (4 if paths == 1 else 2 * paths)]

@@ -60,7 +60,7 @@ def parts(config: Sizes) -> Parts:
     words = config.down_words
     factors = factors_rom(config, words, config.columns)
     instance = [
-        Words(words * config.depth.width),
+        Words(words * config.depth.width, work=1 / words),
         *fft_parts(config, words, False),
         *products(config, 2 * words),
         factors,

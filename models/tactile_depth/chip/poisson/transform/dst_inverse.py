@@ -84,11 +84,13 @@ def latency(size: int, paths: int) -> int:
 def parts(config: Sizes) -> Parts:
     """Return those of the words of the arithmetic, and of the stored words of the spectral solver; with row_pairs."""
     size, paths, found = config.columns, config.up_paths, Parts()
-    widths = [config.arithmetic_width, config.depth.width]
-    for width in widths if config.solver == "spectral" else widths[:1]:
+    widths, rows_at_once = [config.arithmetic_width, config.depth.width], 1
+    if config.solver == "tridiagonal":
+        widths, rows_at_once = widths[:1], 2
+    for width in widths:
         beats, waits = size // paths, size // paths // 2 + 2
         found += [
-            Words(paths * config.depth.width),
+            Words(paths * config.depth.width, work=1 / rows_at_once / paths),
             *delay_line(width, waits) * (2 * paths),
             *[Memory("row buffers", width, beats)] * (2 * paths),
             *[Multiplier(width, config.coefficient.width)] * (4 * paths),
