@@ -25,6 +25,8 @@ class BurstCore:
         Takes the device, and returns the cycles from a start to its start out.
     width : str
         Parameter with the bits of a word going in.
+    fields : sequence of str
+        Of the words going in; out go the same, unless `ports` say others.
     ports : mapping
         Arguments of `check_bursts`.
     frame : callable
