@@ -68,7 +68,7 @@ module frame_stack #(
   logic [RowWidth-1:0] begun, begun_q;
   logic [ClockWidth-1:0] position;
   logic active, begins;  // begins: the reader
-  logic down;  // the way of the writer through the memories: up from row 0, or down
+  logic down;  // the way of the writer through the memories, up from row 0 or down; behind begins that of the reader
   td_burst_counter #(.Words(Clocks)) u_clocks (
     .clk, .rst, .en, .start(in_start), .position, .active
   );
@@ -120,7 +120,7 @@ module frame_stack #(
   logic [BeatWidth-1:0] read_time;
   logic [ToRead-1:0] read_start_q, frame_start_q, alone_q;
   logic [ServeWidth-1:0] serve, serve_q;
-  logic first_pair, first_pair_q, alone, alone_now, reads_down;
+  logic first_pair, first_pair_q, alone, alone_now;
   td_burst_counter #(.Words(Period)) u_starts (
     .clk, .rst, .en, .start(out_start), .position(start_time), .active(starts_active)
   );
@@ -142,7 +142,6 @@ module frame_stack #(
       out_alone <= Rows % 2 != 0 && !begins && pair == PairWidth'(1);
       if (begins) pair <= PairWidth'(Pairs - 1);
       else if (pair_end && pair != '0) pair <= pair - PairWidth'(1);
-      if (begins) reads_down <= ~down;
       read_start_q <= {read_start_q[ToRead-2:0], out_start};
       frame_start_q <= {frame_start_q[ToRead-2:0], out_frame_start};
       alone_q <= {alone_q[ToRead-2:0], out_alone};
@@ -169,9 +168,9 @@ module frame_stack #(
     localparam logic [AddressWidth-1:0] Top = AddressWidth'(Depth - Burst);
 
     function automatic logic [AddressWidth-1:0] address_after(
-      input logic [AddressWidth-1:0] address, input logic last_of_burst, input logic downwards
+      input logic [AddressWidth-1:0] address, input logic last_of_burst
     );
-      address_after = address + (last_of_burst & downwards ? AddressWidth'(1 - 2 * Burst) : AddressWidth'(1));
+      address_after = address + (last_of_burst & down ? AddressWidth'(1 - 2 * Burst) : AddressWidth'(1));
     endfunction
 
     // The words of the row above, which comes with the row after it.
@@ -193,11 +192,11 @@ module frame_stack #(
       if (en) begin
         if (write_start && written == RowWidth'(1)) write_address <= down ? Top : '0;
         else if (write_now) begin
-          write_address <= address_after(write_address, write_position == ClockWidth'(Clocks - 1), down);
+          write_address <= address_after(write_address, write_position == ClockWidth'(Clocks - 1));
         end
-        // A frame that was written upwards is read from the top down.
-        if (read_start && first_pair) read_address <= reads_down ? Top : '0;
-        else if (read_now) read_address <= address_after(read_address, read_last, reads_down);
+        // A frame that was written upwards is read from the top down; its last burst needs no address behind it.
+        if (read_start && first_pair) read_address <= down ? Top : '0;
+        else if (read_now) read_address <= address_after(read_address, read_last);
       end
     end
 
@@ -217,7 +216,7 @@ module frame_stack #(
       end
       td_ram #(.Width(RowWords * Width), .Depth(Beats), .Style(0)) u_row (
         .clk,
-        .write_en     (en & write_row & (written == RowWidth'(Rows))),
+        .write_en     (en & write_row),
         .write_address(write_position[ClockWidth-1-:BeatWidth]),
         .write_data   (row_words),
         .read_en      (en & read_active & first_pair),

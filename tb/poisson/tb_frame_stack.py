@@ -29,11 +29,12 @@ STRUCTURES = (
 )
 PROOFS = tuple(
     Proof(
-        "rows and beats are only counted; memories with the words of a clock and of several; an even and "
-        f"an odd number of rows; {WORD_FREE}",
+        "rows and beats are only counted; memories with the words of a clock and of several; words as fast as they "
+        f"leave and slower; an even and an odd number of rows; {WORD_FREE}",
         {"Rows": rows, "Columns": columns, "InWords": in_words, "Lanes": lanes, "WordsPerRow": words},
+        steps=1,
     )
-    for rows, columns, in_words, lanes, words in ((5, 8, 1, 1, 3), (4, 8, 1, 2, 1), (4, 16, 2, 8, 4))
+    for rows, columns, in_words, lanes, words in ((5, 8, 1, 1, 3), (4, 8, 1, 2, 1), (4, 16, 2, 4, 1), (5, 16, 2, 8, 4))
 )
 
 
