@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from formal.entries import ONE_ORDER, Proof
+from formal.entries import ONE_ORDER, ROUNDING, Proof
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.commutator import from_beats, to_beats
 from tactile_depth.chip.poisson.transform.row_pairs import latency as row_pairs_latency
@@ -25,10 +25,11 @@ STRUCTURES = (
 PROTOCOL = {"protocol_beats": {"Beats": "Size / Paths"}}
 PROOFS = tuple(
     Proof(
-        f"{ONE_ORDER}; sums are linear but for saturation, which is proven of td_round_saturate",
+        f"{ONE_ORDER}; {ROUNDING}",
         {"Size": size, "Paths": paths},
+        steps=1,
     )
-    for size, paths in ((8, 2), (4, 1))
+    for size, paths in ((8, 2), (8, 1), (16, 4))
 )
 
 
