@@ -68,7 +68,12 @@ module tactile_depth
   input  wire register_answer_t   register_answer    // ignored without a camera in Config
 );
 
-  logic en;  // the whole pipeline moves, or none of it: low while the output is full
+  // The whole pipeline moves, or none of it: low while the output is full. Each unit has a register of it.
+  logic en_next, video_en, gradient_en, poisson_en, depth_en;
+  td_enable u_video_en (.clk, .rst, .en_next, .en(video_en));
+  td_enable u_gradient_en (.clk, .rst, .en_next, .en(gradient_en));
+  td_enable u_poisson_en (.clk, .rst, .en_next, .en(poisson_en));
+  td_enable u_depth_en (.clk, .rst, .en_next, .en(depth_en));
   events_t events;
   levels_t levels;
   logic [31:0] timeout, now, frame_time, depth_time, first_depth_latency;
@@ -76,7 +81,7 @@ module tactile_depth
   logic [23:0] pixel_data;
   position_t pixel_position;
   video_unit #(.Config(Config)) u_video (
-    .clk, .rst, .en, .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
+    .clk, .rst, .en(video_en), .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
     .self_test, .timeout, .faults(events.faults), .hunting(levels.hunting), .arrived_columns(levels.arrived_columns),
     .arrived_rows(levels.arrived_rows), .busy(video_busy), .pixel_valid, .pixel_data, .pixel_position,
     .pixel_frame_start, .pixel_frame_end, .pixel_bad, .pixel_test, .resumed, .now, .frame_time
@@ -95,10 +100,11 @@ module tactile_depth
   position_t slope_position;
   logic signed [GradientWidth-1:0] slope_gx, slope_gy;
   gradient_unit #(.TableFolder(TableFolder), .Config(Config)) u_gradient (
-    .clk, .rst, .en, .table_command, .table_answer(slope_answer), .table_bank, .table_in_use(slope_in_use), .dark_level,
-    .slope_limit, .capture_command(reference_command), .capture_status(reference_status), .dark(events.dark),
-    .light_command, .light_gains, .saturations(slope_saturations), .pixel_valid, .pixel_data, .pixel_position,
-    .pixel_bad, .resumed, .slope_valid, .slope_position, .slope_gx, .slope_gy, .slope_flags_valid, .slope_flags
+    .clk, .rst, .en(gradient_en), .table_command, .table_answer(slope_answer), .table_bank,
+    .table_in_use(slope_in_use), .dark_level, .slope_limit, .capture_command(reference_command),
+    .capture_status(reference_status), .dark(events.dark), .light_command, .light_gains,
+    .saturations(slope_saturations), .pixel_valid, .pixel_data, .pixel_position, .pixel_bad, .resumed,
+    .slope_valid, .slope_position, .slope_gx, .slope_gy, .slope_flags_valid, .slope_flags
   );
 
   logic burst_start, solved_frame_start;
@@ -106,7 +112,7 @@ module tactile_depth
   logic [7+$clog2(Lanes):0] solver_saturations;
   logic [$clog2(Lanes):0] depth_saturations;
   poisson_unit #(.TableFolder(TableFolder), .Config(Config)) u_poisson (
-    .clk, .rst, .en, .slope_valid, .slope_position, .slope_gx, .slope_gy,
+    .clk, .rst, .en(poisson_en), .slope_valid, .slope_position, .slope_gx, .slope_gy,
     .burst_start, .depth_frame_start(solved_frame_start), .depth_data(solved_data), .saturations(solver_saturations)
   );
 
@@ -114,7 +120,7 @@ module tactile_depth
   depth_position_t depth_position;
   logic [Lanes*DataWidth-1:0] depth_data;
   depth_unit #(.TableFolder(TableFolder), .Config(Config)) u_depth (
-    .clk, .rst, .en, .table_command, .table_answer(zero_answer), .table_bank, .table_in_use(zero_in_use),
+    .clk, .rst, .en(depth_en), .table_command, .table_answer(zero_answer), .table_bank, .table_in_use(zero_in_use),
     .capture_command(zero_command), .capture_status(zero_status), .saturations(depth_saturations), .out_of_step,
     .busy(depth_busy), .pixel_frame_start, .pixel_frame_end, .pixel_bad, .pixel_test, .frame_time, .slope_flags_valid,
     .slope_flags, .burst_start, .solved_frame_start, .solved_data, .solver_clipped(solver_saturations != '0),
@@ -125,7 +131,7 @@ module tactile_depth
   logic first_depth_latency_valid;
   logic [32*RecordWords-1:0] record;
   contact_unit #(.Config(Config)) u_contact (
-    .clk, .rst, .en, .settings(contact_settings), .now, .frame_leaves(events.frame_out),
+    .clk, .rst, .en_next, .settings(contact_settings), .now, .frame_leaves(events.frame_out),
     .depth_dropped(events.depth_dropped), .stalled(levels.stalled), .record_valid(events.record_valid),
     .record_lost(events.record_lost), .touching(levels.touching), .record, .first_depth_latency,
     .first_depth_latency_valid, .depth_valid, .depth_position, .depth_data, .depth_time, .depth_flags, .m_axis_tdata,
@@ -133,8 +139,8 @@ module tactile_depth
     .m_event_tready, .m_event_tlast
   );
 
-  assign events.out_of_step = en & out_of_step;
-  assign events.frame_in = en & pixel_frame_end & ~pixel_bad;
+  assign events.out_of_step = depth_en & out_of_step;
+  assign events.frame_in = video_en & pixel_frame_end & ~pixel_bad;
   assign events.saturations = 14'(solver_saturations) + 14'(slope_saturations) + 14'(depth_saturations);
   assign levels.busy = video_busy | depth_busy | m_axis_tvalid;
   assign levels.contact = contact;
@@ -143,7 +149,7 @@ module tactile_depth
     .s_axil_wstrb, .s_axil_wvalid, .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr,
     .s_axil_arprot, .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready,
     .irq, .events, .levels, .first_depth_latency, .first_depth_latency_valid, .record, .contact_settings, .timeout,
-    .self_test, .dark_level, .slope_limit, .light_command, .light_gains, .frame_start(en & pixel_frame_start),
+    .self_test, .dark_level, .slope_limit, .light_command, .light_gains, .frame_start(video_en & pixel_frame_start),
     .table_command, .table_answer(slope_answer | zero_answer), .table_bank, .table_in_use(slope_in_use | zero_in_use),
     .reference_command, .reference_status, .zero_command, .zero_status, .register_command, .register_answer
   );

@@ -23,13 +23,14 @@ assign word = {in_position, in_data};
 assign sent = {m_position, m_data};
 assign tapped = {tap_position, tap_data};
 
-logic drops_q, came_dropping, follows_out, follows_tap, waits, forced;
+logic en_told, drops_q, came_dropping, follows_out, follows_tap, waits, forced;
 logic [1:0] ahead_out, ahead_tap;  // words before the one followed
 logic leaves_now, tapped_now;
 assign leaves_now = follows_out & (ahead_out == 2'd0) & leaves;
 assign tapped_now = follows_tap & (ahead_tap == 2'd0) & tap_valid;
 always_ff @(posedge clk) begin
   fresh <= rst;
+  en_told <= en_next & ~rst;
   if (moves) refused <= ~given;
   if (!in_valid || (moves && in_position.frame_end)) drops <= drop_frames;
   drops_q <= drops;
@@ -65,6 +66,7 @@ assign forced = waits & drops;  // it has waited, but what comes now does not
 offer_stays u_m_ (.*);
 always_comb begin
   if (started) begin
+    enable_as_told: assert (en == en_told);
     enable_is_room: assert (dut.en == (dut.dropping ? dut.tap_room : dut.room));
     offered: assert (m_valid == (held != 2'd0));
     if (follows_out && ahead_out == 2'd0) in_place: assert (sent == value);

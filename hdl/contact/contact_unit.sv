@@ -5,8 +5,8 @@
 //                 \-> threshold_comparator --> contact
 //                 \-> contact_events --> m_event, record
 //
-// Stream in: depth codes of whole frames under `en`, Lanes neighbours in a beat; this unit makes `en`, low while the
-// output is full. Streams out: AXI4-Stream, each depth sign-extended to whole bytes, the first in the lowest bits; a
+// Stream in: depth codes of whole frames, Lanes neighbours in a beat, under the enable, which this unit makes: low while
+// the output is full. Streams out: AXI4-Stream, each depth sign-extended to whole bytes, the first in the lowest bits; a
 // packet of words for each frame. Latency: 1 cycle to m_axis, 2 to contact.
 // Models: models/tactile_depth/chip/contact/depth_gate.py, models/tactile_depth/chip/contact/.
 
@@ -27,7 +27,7 @@ module contact_unit
 ) (
   input  wire                         clk,
   input  wire                         rst,
-  output logic                        en,  // the whole pipeline moves
+  output logic                        en_next,  // whether the whole pipeline moves in the next clock
 
   input  wire contact_settings_t      settings,
   input  wire  [31:0]                 now,
@@ -61,13 +61,13 @@ module contact_unit
   output logic                        m_event_tlast
 );
 
-  logic tap_valid;
+  logic en, tap_valid;
   depth_position_t m_position, tap_position;
   logic [Lanes*DataWidth-1:0] m_data, tap_data;
   depth_gate #(.Width(Lanes * DataWidth)) u_gate (
-    .clk, .rst, .drop_frames(settings.drop_frames), .en, .in_valid(depth_valid), .in_position(depth_position),
-    .in_data(depth_data), .event_dropped(depth_dropped), .stalled, .m_valid(m_axis_tvalid), .m_ready(m_axis_tready),
-    .m_position, .m_data, .tap_valid, .tap_position, .tap_data
+    .clk, .rst, .drop_frames(settings.drop_frames), .en, .en_next, .in_valid(depth_valid),
+    .in_position(depth_position), .in_data(depth_data), .event_dropped(depth_dropped), .stalled,
+    .m_valid(m_axis_tvalid), .m_ready(m_axis_tready), .m_position, .m_data, .tap_valid, .tap_position, .tap_data
   );
   assign m_axis_tuser = m_position.frame_start;
   assign m_axis_tlast = m_position.row_end;

@@ -25,7 +25,8 @@ module depth_gate
   input  wire                  clk,
   input  wire                  rst,
   input  wire                  drop_frames,
-  output logic                 en,
+  output logic                 en,             // of this unit
+  output logic                 en_next,        // of all: `en` in the next clock, unless a reset comes
   input  wire                  in_valid,
   input  wire depth_position_t in_position,
   input  wire  [Width-1:0]     in_data,        // depth code
@@ -64,21 +65,21 @@ module depth_gate
   );
   assign tap_valid = tap_waits & tap_taken;
 
-  // en is `dropping ? tap_room : room`, worked out a cycle ahead: it goes everywhere, so it comes from a register.
+  // en is `dropping ? tap_room : room`, worked out a cycle ahead: it goes everywhere, so it comes from registers.
   logic dropping_next, room_next, tap_room_next;
   assign dropping_next = !in_valid || (en && in_position.frame_end) ? drop_frames : dropping;
   assign room_next = ~m_valid | m_ready | (room & ~(en & in_valid & kept));
   assign tap_room_next = ~tap_waits | tap_taken | (tap_room & ~(en & in_valid));
+  assign en_next = dropping_next ? tap_room_next : room_next;
+  td_enable u_en (.clk, .rst, .en_next, .en);
 
   always_ff @(posedge clk) begin
     if (en && in_valid) given_up <= ~(kept & room);
     dropping <= dropping_next;
-    en <= dropping_next ? tap_room_next : room_next;
     ahead <= ahead + 2'(tap_valid & tap_kept) - 2'(leaves);
     if (rst) begin
       given_up <= 1'b0;
       dropping <= 1'b0;
-      en <= 1'b0;
       ahead <= '0;
     end
   end

@@ -77,4 +77,5 @@ class DepthGate:
             self.sending.clear()
             self.tapping.clear()
             self.tapped, self.dropping, self.given_up, self.inside = 0, False, False, False
+        out["en_next"] = None if rst else len(self.tapping if self.dropping else self.sending) < CAPACITY
         return out
