@@ -394,7 +394,7 @@ async def send_words(
     """Send words (tuples) one by one, each after an idle cycle with probability `gap`, and wait `quiet` cycles.
 
     A frame begins every `frame` words; 0: no frame begins. `strays` words of an incomplete frame come right before, and
-    before them what `interrupt` sends.
+    before them what `interrupt` sends: the last words, so that others stand in memories.
     """
 
     async def send(count: int) -> None:
@@ -402,7 +402,7 @@ async def send_words(
             while bench.random.random() < gap:
                 await bench.clocks(1)
             driver.frame_start = bool(frame) and index % frame == 0
-            await driver.send([words[index % len(words)]])
+            await driver.send([words[(index - count) % len(words)]])
 
     await bench.start()
     await interrupt(bench, send, interrupts, (source, sink), quiet)
