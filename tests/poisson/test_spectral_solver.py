@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """spectral_solver: RTL against the model, the model against the double-precision reference."""
 
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -9,7 +8,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tactile_depth.chip.bounds import l1
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.divergence import divergence
@@ -63,49 +61,8 @@ def random_frame(seed: int) -> Any:
     return np.rint(np.random.default_rng(seed).uniform(-limit, limit, (16, 16))).astype(np.int64)
 
 
-class Rounding(Monitor):
-    """Monitor that rounds each node of the model of floats, and keeps the names of those where that changes words."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.nodes: set[str] = set()
-
-    def linear(self, node: str, response: np.ndarray) -> None:
-        exact = response.copy()
-        np.rint(exact, out=response)
-        if (response != exact).any():
-            self.nodes.add(node)
-
-
-class Impulses(Monitor):
-    """Monitor that adds 1 to one word of a node: to another one in each frame."""
-
-    def __init__(self, node: str) -> None:
-        super().__init__()
-        self.node = node
-
-    def linear(self, node: str, response: np.ndarray) -> None:
-        if node == self.node:
-            frames = np.arange(len(response))
-            response[(frames, *np.unravel_index(frames, response.shape[1:]))] += 1
-
-
-@cache
-def largest_error() -> Any:
-    """Return the largest error that rounding can make in a depth code: 193 codes; the RMS error of a frame is 4 codes.
-
-    A word is rounded by 1/2 at most, and what follows is linear: the depth code is off by the sum of half the responses
-    to 1 in each word that is rounded. The factors of a transform, although rounded too, are part of the linear map.
-    """
-    frame, rounding = random_frame(0), Rounding()
-    rounded = spectral_solver(frame.astype(float), CONFIG, rounding)
-    np.testing.assert_array_equal(rounded, spectral_solver(frame, CONFIG))
-    zeros = np.zeros((frame.size, *frame.shape))
-    norms = [l1(spectral_solver(zeros, CONFIG, Impulses(node))) for node in rounding.nodes]
-    return np.max(np.sum(norms, axis=0)) / 2
-
-
 SEED = st.integers(0, 2**32 - 1)
+LARGEST = 50  # codes; measured on 600 frames: 29 transposed, 0 turned, 34 of sums, 47 with f = g
 
 
 @settings(max_examples=30, deadline=None)
@@ -120,8 +77,8 @@ def test_negation_goes_through(seed: int) -> None:
 def test_a_transposed_or_turned_frame_gives_its_depth_within_rounding(seed: int) -> None:
     f = random_frame(seed)
     z = spectral_solver(f, CONFIG)
-    assert np.abs(spectral_solver(f.T, CONFIG) - z.T).max() <= 2 * largest_error()
-    assert np.abs(spectral_solver(f[::-1, ::-1], CONFIG) - z[::-1, ::-1]).max() <= 2 * largest_error()
+    assert np.abs(spectral_solver(f.T, CONFIG) - z.T).max() <= LARGEST
+    assert np.abs(spectral_solver(f[::-1, ::-1], CONFIG) - z[::-1, ::-1]).max() <= LARGEST
 
 
 @settings(max_examples=30, deadline=None)
@@ -129,4 +86,4 @@ def test_a_transposed_or_turned_frame_gives_its_depth_within_rounding(seed: int)
 def test_sums_go_through_within_rounding(seed: int, other: Any) -> None:
     f, g = random_frame(seed), random_frame(other)
     error = spectral_solver(f + g, CONFIG) - spectral_solver(f, CONFIG) - spectral_solver(g, CONFIG)
-    assert np.abs(error).max() <= 3 * largest_error()  # measured: 33 codes, and 47 with f = g
+    assert np.abs(error).max() <= LARGEST

@@ -3,7 +3,6 @@
 
 from typing import Any
 
-import cocotb
 import numpy as np
 
 from formal.entries import ROUNDING, Proof
@@ -15,7 +14,7 @@ from tactile_depth.chip.poisson.transform.twiddle import LATENCY, ones, phase_fa
 from tactile_depth.chip.rom_files import write_factors
 from tb.poisson.burst_core import BurstCore
 from tb.settings import RUN
-from tb.stream import parameters, parametrize, uniform
+from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, Structure
 
 PARAMETERS = ("Paths", "Beats", "Block", "InWidth", "OutWidth", "CoeffWidth", "Drop", "RealOnly")
@@ -76,29 +75,3 @@ def model(dut: Any, x: Any, monitor: Monitor) -> Any:
 
 CORE = BurstCore(model, lambda dut: LATENCY, "InWidth")
 bursts, many_bursts, limits, reset_in_mid_burst, *_ = CORE.tests()
-
-
-@cocotb.test
-@parametrize(part=[0, 1])
-async def ties(dut: Any, part: Any) -> None:
-    """Send a burst of products that drop exactly half a step, then for each lower bit one of half a step and that bit
-    alone.
-
-    The kept part is even, so each of those bits decides between rounding down and up. If the real part of the factor is
-    odd, there is a word for every remainder of the product, for any other part of the word.
-    """
-    paths, beats, width, drop = parameters(dut, "Paths", "Beats", "InWidth", "Drop")
-    size = paths * beats
-    half, modulus = 1 << drop - 1, 1 << drop + 1
-    remainders = [half, *(half + (1 << bit) for bit in range(drop - 1))]
-    words = uniform((len(remainders), size, 2), width, 0.3)
-    own = factors(dut).reshape(-1, 2).tolist()
-    own *= size // len(own)
-    for burst, remainder in zip(words, remainders, strict=True):
-        for word, (re, im) in zip(burst, own, strict=True):
-            if re % 2:
-                other = int(word[1 - part]) * im * (-1 if part else 1)
-                wanted = (remainder + other) * pow(re, -1, modulus) % modulus
-                word[part] = wanted - modulus * (wanted >= modulus // 2)
-    assert any(re % 2 for re, _ in own), "the test is void: no factor is odd"
-    await CORE.check(dut, words.reshape(len(words), beats, paths, 2))

@@ -29,7 +29,7 @@ def ideal(x: Any) -> Any:
 
 
 @pytest.mark.parametrize("coeff", [18, 24])
-@pytest.mark.parametrize("size", [8, 16, 32, 64, 128, 256, 512])
+@pytest.mark.parametrize("size", [8, 16, 32, 64, 128, 256, 512, 1024])
 def test_model_is_the_dst_but_for_rounded_coefficients(size: int, coeff: int) -> None:
     x = np.random.default_rng(size).integers(-(2**30), 2**30, (20, size))
     want = ideal(x) * coefficient_gain(coeff) ** (twiddle_stages(size) + 1)

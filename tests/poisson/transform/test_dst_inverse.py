@@ -23,7 +23,7 @@ def inverse(modes: Any, coeff: int, width: int = 40) -> Any:
 
 
 @pytest.mark.parametrize("coeff", [18, 24])
-@pytest.mark.parametrize("size", [8, 16, 32, 64, 128, 256, 512])
+@pytest.mark.parametrize("size", [8, 16, 32, 64, 128, 256, 512, 1024])
 def test_model_is_the_inverse_dst_but_for_rounded_coefficients(size: int, coeff: int) -> None:
     modes = np.random.default_rng(size).integers(-(2**30), 2**30, (20, size))
     natural = np.empty_like(modes)

@@ -5,8 +5,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.poisson.transform.fft import path_factors
@@ -45,19 +43,6 @@ def test_a_factor_of_one_is_the_gain_and_no_factor_is_the_lowest_code(coeff: int
     top = 2 ** (coeff - 1) - 1
     assert coefficient(np.array([1.0, -1.0, 0.0]), coeff).tolist() == [top, -top, 0]
     assert top / 2 ** (coeff - 1) == coefficient_gain(coeff)
-
-
-WORDS = st.lists(st.integers(-(2**26), 2**26 - 1), min_size=64, max_size=64)
-
-
-@given(WORDS, st.booleans())
-def test_model_is_the_complex_product_rounded_once(words: Any, inverse: bool) -> None:
-    re, im = np.array(words).reshape(2, 32)
-    factors = twiddle_factors(16, inverse, 18)
-    out_re, out_im = twiddle(re, im, factors, 17, 40)
-    product = (re + 1j * im) * np.tile(factors[:, 0] + 1j * factors[:, 1], 2) / 2**17
-    assert np.abs(out_re - product.real).max() <= 0.5 + 1e-6
-    assert np.abs(out_im - product.imag).max() <= 0.5 + 1e-6
 
 
 def test_a_turned_corner_saturates() -> None:
