@@ -79,7 +79,7 @@ class Registers:
         return out | {"setup_restart": restarts}
 
 
-@cocotb.test()
+@cocotb.test
 async def registers(dut: Any) -> None:
     chance, bus = random.Random(cocotb.RANDOM_SEED), Bus(dut, *CAMERA_REGISTERS)
     bits = [1 << bit for bit in range(len(dut.faults))]

@@ -66,7 +66,7 @@ REFUSED = {
 PROOFS = (Proof("a list with every kind of entry", {"Bus": 0}, roms=camera_list, free=("sent", "caught")),)
 
 
-@cocotb.test()
+@cocotb.test
 async def lists(dut: Any) -> None:
     address_bytes, device_id, quarter, millisecond, attempts, half = parameters(dut, *COUNTS)
     entries = LISTS[RUN.device["list"]]

@@ -39,7 +39,7 @@ PROOFS = tuple(
 )
 
 
-@cocotb.test()
+@cocotb.test
 async def pictures(dut: Any) -> None:
     width, height, words, pairs, bits = parameters(
         dut, "WindowColumns", "WindowRows", "WordsPerPixel", "PixelPairs", "CountWidth"

@@ -48,7 +48,7 @@ PROOFS = (
 )
 
 
-@cocotb.test()
+@cocotb.test
 async def pixels(dut: Any) -> None:
     chance = random.Random(cocotb.RANDOM_SEED)
     marks = ("inside", "odd_row", "odd_column", "row_start", "frame_start")

@@ -30,7 +30,7 @@ PROOFS = (
 )
 
 
-@cocotb.test()
+@cocotb.test
 @parametrize(pause=[0.0, 0.3])
 async def means(dut: Any, pause: float) -> None:
     total_width, weight_width, drop = parameters(dut, "TotalWidth", "WeightWidth", "Drop")

@@ -88,7 +88,7 @@ async def rows(dut: Any, gap: float, pause: float) -> None:
                 assert int(pins["out_red_columns"][after]) == red_columns(columns, *args)[-1]
 
 
-@cocotb.test()
+@cocotb.test
 async def a_reset_forgets_what_is_inside(dut: Any) -> None:
     """Reset in a row: blocks end in every cycle before the reset, and none after it."""
     slots = Slots({"in_samples": len(dut.in_samples), "in_blue_column": 1}, ("in_valid", "in_row_start", "rst"))

@@ -45,7 +45,7 @@ def legal(table: BankedTable, pins: Pins) -> None:
     pins["free_read"] &= not (pins["free_write"] and pins["free_read_address"] == pins["free_write_address"])
 
 
-@cocotb.test()
+@cocotb.test
 async def frames_and_bus(dut: Any) -> None:
     (depth,) = parameters(dut, "Depth")
     words = [int(line, 16) for line in Path("table.hex").read_text().split()]

@@ -48,7 +48,7 @@ def legal(model: BlockSum, pins: Pins) -> None:
         pins["in_frame_start"] = model.place == 0
 
 
-@cocotb.test()
+@cocotb.test
 async def sums(dut: Any) -> None:
     bits = dict.fromkeys(("in_valid", "in_frame_start", "in_first_frame", "in_last_frame"), 1.0)
     model = BlockSum(**dict(zip(NAMES, parameters(dut, *NAMES), strict=True)))

@@ -36,7 +36,7 @@ PROOFS = tuple(
 )
 
 
-@cocotb.test()
+@cocotb.test
 @parametrize(pause=[0.0, 0.3], before=[0, 7])
 async def shift(dut: Any, pause: float, before: Any) -> None:
     width, delay = parameters(dut, "Width", "Delay")

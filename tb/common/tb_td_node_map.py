@@ -86,7 +86,7 @@ PROOFS = tuple(
 )
 
 
-@cocotb.test()
+@cocotb.test
 async def frames(dut: Any) -> None:
     grid, names = Grid.of(dut), ("Select", "Channels", "Lanes", "Signed")
     select, channels, lanes, signed = parameters(dut, *names)

@@ -48,7 +48,7 @@ PROTOCOL = {
 PROOFS = tuple(Proof(WORD_FREE, {"Style": style}) for style in (0, 1, 2))
 
 
-@cocotb.test()
+@cocotb.test
 async def reads_and_writes(dut: Any) -> None:
     width, depth = parameters(dut, "Width", "Depth")
     chance = random.Random(cocotb.RANDOM_SEED)

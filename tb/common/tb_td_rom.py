@@ -35,7 +35,7 @@ PROTOCOL = {"holds": "32'(address) < Depth", "settled": {}, "counts": "settled"}
 NO_PROOF = "one read register and no other state; its contents and addresses are proven of those that use it"
 
 
-@cocotb.test()
+@cocotb.test
 @parametrize(pause=[0.0, 0.3])
 async def every_word(dut: Any, pause: float) -> None:
     (depth,) = parameters(dut, "Depth")

@@ -38,7 +38,7 @@ PROOFS = tuple(
 )
 
 
-@cocotb.test()
+@cocotb.test
 async def accesses(dut: Any) -> None:
     select, *sizes = parameters(dut, "Select", "IndexWidth", "Width", "Words", "Entries", "Signed")
     choices = {**table_bus.choices(select), "free_word": WORD}

@@ -41,7 +41,7 @@ PROOFS = (
 )
 
 
-@cocotb.test()
+@cocotb.test
 async def records(dut: Any) -> None:
     chance, frames = random.Random(cocotb.RANDOM_SEED), Frames(dut)
     width, rows, columns, lanes, _ = given = parameters(dut, *NAMES)

@@ -51,7 +51,7 @@ PROOFS = proofs(
 )
 
 
-@cocotb.test()
+@cocotb.test
 async def peaks(dut: Any) -> None:
     width, lanes = parameters(dut, "Width", "Lanes")
     bits = {"in_valid": 1.0, "interrupts": 0.02, "touching": 1.0}

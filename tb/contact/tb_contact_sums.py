@@ -20,7 +20,7 @@ PROOFS = proofs(
 )
 
 
-@cocotb.test()
+@cocotb.test
 async def sums(dut: Any) -> None:
     width, lanes = parameters(dut, "Width", "Lanes")
     lowest, highest = (joined([code] * lanes, width) for code in (-1 << width - 1, ~(-1 << width - 1)))

@@ -15,7 +15,7 @@ PROTOCOL = {"counts": "live"}
 PROOFS = (Proof(FULL_WIDTH),)
 
 
-@cocotb.test()
+@cocotb.test
 async def flags(dut: Any) -> None:
     choices = {"en": 1.0, "frame_start": 0.2, "solver_clipped": 0.2, "in_flags": WORD, "marked": 0.5}
     choices |= {"zero_clipped": 0.2, "depth_starts": 0.3, "depth_ends": 0.3}

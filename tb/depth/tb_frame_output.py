@@ -26,7 +26,7 @@ def legal(model: FrameOutput, pins: Pins) -> None:
     pins["in_frame_start"] ^= pins["in_due"]
 
 
-@cocotb.test()
+@cocotb.test
 async def frames(dut: Any) -> None:
     choices = {"en": 1.0, "in_start": 0.3, "in_frame_start": 0.3, "in_data": WORD, "in_due": 0.1, "in_bad": 1.0}
     await play(dut, FrameOutput(*parameters(dut, "Rows", "Columns")), choices, legal)

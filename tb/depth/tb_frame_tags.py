@@ -30,7 +30,7 @@ PROOFS = tuple(
 )
 
 
-@cocotb.test()
+@cocotb.test
 async def tags(dut: Any) -> None:
     latency, keep, pixels = parameters(dut, "Latency", "Keep", "Pixels")
 

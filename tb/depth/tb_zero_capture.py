@@ -66,7 +66,7 @@ def legal(capture: ZeroCapture, pins: Pins) -> None:
     pins["request"] = again or (pins["request"] and not capture.busy)
 
 
-@cocotb.test()
+@cocotb.test
 async def captures(dut: Any) -> None:
     numbers = parameters(dut, "Rows", "Columns", "BlockLog2", "Width", "MaxLog2", "Lanes")
     *_, width, _, lanes = numbers

@@ -80,7 +80,7 @@ def legal(model: ZeroOffset, pins: Pins) -> None:
         del pins[name]
 
 
-@cocotb.test()
+@cocotb.test
 async def frames(dut: Any) -> None:
     grid, (lanes,) = Grid.of(dut), parameters(dut, "Lanes")
     rows, columns = grid.reference_nodes

@@ -33,7 +33,7 @@ def legal(model: CobsDecode, pins: Pins) -> None:
     pins["in_valid"] &= not pins["in_broken"]
 
 
-@cocotb.test()
+@cocotb.test
 async def pieces(dut: Any) -> None:
     (longest,) = parameters(dut, "Longest")
     codes = [1, RUN + 1, *(code ^ (1 << bit) for code in (0, RUN + 1) for bit in range(8))]

@@ -18,7 +18,7 @@ PROTOCOL = {"counts": "live & ~reset", "out_data": "counts & out_valid"}
 PROOFS = tuple(Proof("COBS; runs that traces show; any byte is followed", {"Run": run}, steps=2) for run in (254, 3, 2))
 
 
-@cocotb.test()
+@cocotb.test
 async def packets(dut: Any) -> None:
     choices = {"in_valid": 1.0, "in_data": WORD, "in_last": 0.3, "out_ready": 1.0}
     await play(dut, CobsEncode(*parameters(dut, "Run")), choices, offers=["in"])

@@ -40,7 +40,7 @@ class CrcAppend:
         return out
 
 
-@cocotb.test()
+@cocotb.test
 async def packets(dut: Any) -> None:
     choices = {"in_valid": 1.0, "in_data": WORD, "in_last": 0.3, "out_ready": 1.0}
     await play(dut, CrcAppend(), choices, offers=["in"], clocks=4_000)  # a CRC is slow in Icarus

@@ -31,7 +31,7 @@ PROOFS = tuple(
 )
 
 
-@cocotb.test()
+@cocotb.test
 async def frames(dut: Any) -> None:
     chance = random.Random(cocotb.RANDOM_SEED)
     rows, columns, width, lanes = parameters(dut, "Rows", "Columns", "DataWidth", "Lanes")

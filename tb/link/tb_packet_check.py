@@ -52,7 +52,7 @@ class Line:
         pins["in_valid"] &= not pins["in_end"]
 
 
-@cocotb.test()
+@cocotb.test
 async def packets(dut: Any) -> None:
     wrong = [GOOD, AT_ONCE, AT_ONCE, *range(8 * CRC_BYTES)]
     choices = {"in_valid": 1.0, "in_data": WORD, "in_end": 0.4, "in_bad": 0.3, "wrong": wrong}

@@ -95,7 +95,7 @@ def legal(model: Decode, pins: Pins) -> None:
     pins["in_length_mod3"] = pins["in_length"] % 3
 
 
-@cocotb.test()
+@cocotb.test
 async def packets(dut: Any) -> None:
     shortest = dict(zip(TO_DEVICE, SHORTEST, strict=True))
     odd = [(kind ^ (1 << bit), length) for kind, length in shortest.items() for bit in range(8)]

@@ -31,7 +31,7 @@ def legal(model: PacketStore, pins: Pins) -> None:
     pins["in_good"] &= bool(model.packet)
 
 
-@cocotb.test()
+@cocotb.test
 @cocotb.parametrize(ends=[0.2, 0.003])
 async def packets(dut: Any, ends: float) -> None:
     choices = {"rst": ends / 20, "in_valid": 1.0, "in_data": WORD, "in_end": ends, "in_good": 1.0, "out_ready": 1.0}

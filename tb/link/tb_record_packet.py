@@ -61,7 +61,7 @@ def legal(model: Packets, pins: Pins) -> None:
         pins["s_event_tlast"] = len(model.words) == WORDS - 1
 
 
-@cocotb.test()
+@cocotb.test
 async def packets(dut: Any) -> None:
     choices = {"s_event_tvalid": 1.0, "s_event_tdata": WORD, "s_event_tlast": 1.0, "record_ready": 1.0}
     await play(dut, Packets(), choices, legal)

@@ -35,6 +35,6 @@ class StatusPacket:
         return {"status_valid": 1, "status_data": packet[0], "status_last": len(packet) == 1}
 
 
-@cocotb.test()
+@cocotb.test
 async def packets(dut: Any) -> None:
     await play(dut, StatusPacket(), {"request": 0.1, "fields": WORD, "status_ready": 1.0})

@@ -100,13 +100,13 @@ async def check(
     assert np.all(apart == 2 * columns // lanes), "a frame leaves with a pause between two pairs"
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.test
 @parametrize((("gap", "pause"), sample([(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)])))
 async def frames(dut: Any, gap: int, pause: float) -> None:
     await check(dut, gap=gap, pause=pause)
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.test
 @parametrize(halves=[1, 3, 5])
 async def reset_in_mid_frame(dut: Any, halves: int) -> None:
     columns, rows, words = parameters(dut, "Columns", "Rows", "InWords")
@@ -114,7 +114,7 @@ async def reset_in_mid_frame(dut: Any, halves: int) -> None:
     await check(dut, 2, interrupts=[halves * clocks * rows // 2 + clocks // 2])
 
 
-@cocotb.test(timeout_time=4, timeout_unit="ms")
+@cocotb.test
 async def resets_as_a_frame_begins_to_leave(dut: Any) -> None:
     """Reset in each cycle around the end of a frame's last row, where each register of the reading side is set."""
     columns, rows, words, lanes = parameters(dut, "Columns", "Rows", "InWords", "Lanes")
@@ -123,7 +123,7 @@ async def resets_as_a_frame_begins_to_leave(dut: Any) -> None:
     await check(dut, 2, interrupts=[(rows - 1) * clocks + clock for clock in around])
 
 
-@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.test
 @parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """Start a frame after part of another one, and after more than one without a start of frame in between."""

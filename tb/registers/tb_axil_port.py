@@ -17,7 +17,7 @@ PROTOCOL = CLIENT | {"counts": "live"}
 PROOFS = (Proof(FULL_WIDTH),)
 
 
-@cocotb.test()
+@cocotb.test
 async def transactions(dut: Any) -> None:
     answers: dict[str, Any] = {"read_data": WORD, "late_data": WORD}
     answers |= dict.fromkeys(("write_refused", "read_refused", "read_late", "late_refused"), 0.6)

@@ -199,7 +199,7 @@ class Registers:
         return out
 
 
-@cocotb.test()
+@cocotb.test
 async def registers(dut: Any) -> None:
     numbers = codes(int(dut.Config.value), len(default_parameters()), 32)
     model = Registers(Build(dict(zip(default_parameters(), numbers, strict=True))))

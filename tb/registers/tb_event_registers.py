@@ -57,7 +57,7 @@ class Registers:
         return out
 
 
-@cocotb.test()
+@cocotb.test
 async def registers(dut: Any) -> None:
     chance, bits = random.Random(cocotb.RANDOM_SEED), len(dut.events)
     bus = Bus(dut, "STATUS", "INTERRUPT_STATUS", "CONTROL", "ARRIVED", SELF_TEST, LATENCY, *COUNTERS)

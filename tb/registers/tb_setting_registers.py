@@ -30,7 +30,7 @@ class Registers(SettingRegisters):
         return out
 
 
-@cocotb.test()
+@cocotb.test
 async def registers(dut: Any) -> None:
     resets = int(dut.Resets.value)
     model = Registers({name: resets >> 32 * n & WORD for n, name in enumerate(SETTINGS)})

@@ -72,7 +72,7 @@ class Access:
         return out
 
 
-@cocotb.test()
+@cocotb.test
 async def accesses(dut: Any) -> None:
     sizes = {code: int(getattr(dut, PARAMETERS[name]).value) for name, code in TABLES.items()}
     bus = Bus(dut, INDEX, HIGH, LOW, LOW, SIZE)

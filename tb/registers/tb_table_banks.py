@@ -51,7 +51,7 @@ class Banks:
         return out
 
 
-@cocotb.test()
+@cocotb.test
 async def banks(dut: Any) -> None:
     bus = Bus(dut, COMMIT.name, *(register.name for register in CAPTURES.values()))
     status = [structs.pack("capture_status_t", {"busy": busy, "done": done}) for busy, done in ((0, 0), (1, 0), (1, 1))]

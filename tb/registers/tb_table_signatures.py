@@ -121,7 +121,7 @@ class Writers:
             pins["read_offset"] = OFFSET["TABLE_SIGNATURE"] ^ (chance.random() < 0.2) << chance.randrange(2, 32)
 
 
-@cocotb.test()
+@cocotb.test
 async def signatures(dut: Any) -> None:
     chance, own = random.Random(cocotb.RANDOM_SEED), [OFFSET[name] for name in NAMES]
     writers = Writers(chance)

@@ -30,7 +30,7 @@ PROOFS = tuple(
 )
 
 
-@cocotb.test()
+@cocotb.test
 async def words(dut: Any) -> None:
     chance = random.Random(cocotb.RANDOM_SEED)
     pins = {"en": 1.0, "s_valid": 1.0, "s_data": WORD, "timeout": [5, 0, 1, 2, 8]}

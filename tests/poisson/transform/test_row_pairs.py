@@ -2,19 +2,9 @@
 """row_pairs: RTL against the model, the model against complex rows."""
 
 import numpy as np
-import pytest
 
-from tactile_depth.chip.poisson.transform.orders import bit_reversed, mirror
-from tactile_depth.chip.poisson.transform.row_pairs import mode_pairs, row_pairs
-
-
-@pytest.mark.parametrize("size", [8, 16, 128, 512])
-def test_mode_k_meets_mode_n_minus_k_and_mode_n_is_zero(size: int) -> None:
-    by_mode = np.append(np.arange(1, size + 1), 0)  # mode k holds k + 1, and mode N nothing
-    k = bit_reversed(size)
-    mode, mirrored = mode_pairs(by_mode[k])
-    np.testing.assert_array_equal(mode, by_mode[k])
-    np.testing.assert_array_equal(mirrored, by_mode[size - k])
+from tactile_depth.chip.poisson.transform.orders import mirror
+from tactile_depth.chip.poisson.transform.row_pairs import row_pairs
 
 
 def test_pairs_are_the_modes_of_a_complex_row() -> None:
