@@ -6,7 +6,7 @@
 // In a second part (Moves 1), with deviations of any value in place of those of the ratios: the move that the last
 // pixel takes off is the rule of the header, applied to all rows of that frame but the last, whatever the gaps.
 
-parameter int Moves = 0, Rows = 2, Columns = 8, RatioWidth = 4, RatioFraction = 2, GainWidth = 5, OutWidth = 6,
+parameter int Moves = 0, Rows = 2, Columns = 10, RatioWidth = 4, RatioFraction = 2, GainWidth = 5, OutWidth = 6,
     OutFraction = 4;
 
 wire [15:0] row = u_protocol.row, column = u_protocol.column;
@@ -106,13 +106,12 @@ end else begin : g_moves
   bind dut light_gains_move #(
     .Rows(Rows), .Columns(Columns), .GainWidth(GainWidth), .OutWidth(OutWidth), .OutFraction(OutFraction)
   ) u_move (
-    .*, .nets({g_colour[2].net, g_colour[1].net, g_colour[0].net}),
-    .sums({g_colour[2].sum, g_colour[1].sum, g_colour[0].sum}),
-    .deviations_q({g_colour[2].counted_deviation, g_colour[1].counted_deviation, g_colour[0].counted_deviation}),
-    .slowed({g_colour[2].slowed, g_colour[1].slowed, g_colour[0].slowed}),
-    .up({g_colour[2].up, g_colour[1].up, g_colour[0].up}),
-    .down({g_colour[2].down, g_colour[1].down, g_colour[0].down}),
-    .moved({g_colour[2].move, g_colour[1].move, g_colour[0].move}),
+    .*, .above_q({g_colour[2].is_above, g_colour[1].is_above, g_colour[0].is_above}),
+    .below_q({g_colour[2].is_below, g_colour[1].is_below, g_colour[0].is_below}),
+    .deviations_q({g_colour[2].near_deviation, g_colour[1].near_deviation, g_colour[0].near_deviation}),
+    .few_sums({g_colour[2].few_sum_q, g_colour[1].few_sum_q, g_colour[0].few_sum_q}),
+    .few_nets({g_colour[2].few_net_q, g_colour[1].few_net_q, g_colour[0].few_net_q}),
+    .moved({g_colour[2].move_q, g_colour[1].move_q, g_colour[0].move_q}),
     .row(fv_light_gains.row), .column(fv_light_gains.column)
   );
 end

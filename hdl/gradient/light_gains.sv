@@ -10,9 +10,10 @@
 //   else                                                           a large contact: the gain is held
 //
 // and 1/2 <= gain < 2; slow is rate, and 1 more if the frame used a gain below 7/8: in more light a gain moves less, or
-// it would swing. A frame uses the gains as they stood when its first pixel came, and moves them as its last pixel
-// comes, if `follow` is high and `in_bad` was not. `write` of a colour replaces its gain by write_gain, and wins; less
-// than 1/2 counts as 1/2. `moves`, with a frame's last pixel: a gain moves by more than 1/32, or by 1/32 down.
+// it would swing. A frame uses gains and rate as they stood when its first pixel came, and moves the gains as its last
+// pixel comes, if `follow` is high and `in_bad` was not. `write` of a colour replaces its gain by write_gain, and wins;
+// less than 1/2 counts as 1/2. `moves`, with a frame's last pixel: a gain moves by more than 1/32, or by 1/32 down. The
+// move is computed while the last row comes, which has 10 pixels or more.
 // Stream in: colours relative to the reference, raster order. Stream out: deviations, I gain / reference - 1.
 // Latency: 2 cycles; a gap in, a gap out. Bit-accurate model: models/tactile_depth/chip/gradient/light_gains.py.
 
@@ -65,6 +66,10 @@ module light_gains
   localparam int SumWidth = OutFraction - NearLog2 + CountWidth + 1;
   localparam int SumLog2 = $clog2((2 * Pixels + 2) / 3);  // so that a gain moves by 3/16 to 3/2 of the mean
   localparam int SumDrop = SumLog2 + OutFraction - GainFraction;
+  localparam int Colours = 3;
+  localparam int FewLog2 = $clog2(Colours);  // of the pixels between two turns of a colour
+  localparam int NearWidth = OutFraction - NearLog2 + 1;
+  localparam int HighWidth = SumWidth - SumDrop + 1;  // of a sum: its mean, and one bit to round by
   localparam int MoveWidth = GainWidth + 1;
   localparam int QuietLog2 = 5;  // -log2 of the move from which the gains do not fit the light
   localparam int QuietWidth = GainFraction > QuietLog2 ? GainFraction - QuietLog2 : 0;  // bits of a smaller one
@@ -76,7 +81,7 @@ module light_gains
   logic in_frame, bad, ends, commits, free;
   assign ends = in_valid & in_position.last_row & in_position.last_column;
   assign commits = en & ends & follow & ~bad & ~in_bad;
-  assign free = en & in_valid ? ends : ~in_frame;  // the next pixel is the first of a frame
+  assign free = rst | (en & in_valid ? ends : ~in_frame);  // the next pixel is the first of a frame
   always_ff @(posedge clk) begin
     if (en & in_valid) in_frame <= ~ends;
     if (en) bad <= (bad | in_bad) & ~ends;
@@ -85,79 +90,134 @@ module light_gains
 
   // Pixels, 2 cycles; then they are counted.
 
-  logic valid_q, blank_q, counts, restart;
+  logic valid_q, blank_q, begins, counts, is_near, near;
   position_t position_q;
-  logic [2:0] clipped;
-  logic [2:0][RatioWidth-1:0] ratios;
-  logic [2:0][OutWidth-1:0] deviations, out;
+  logic [Colours-1:0] clipped, above, below;
+  logic [Colours-1:0][RatioWidth-1:0] ratios;
+  logic [Colours-1:0][OutWidth-1:0] deviations, out;
   assign ratios = {in_blue, in_green, in_red};
   assign {out_blue, out_green, out_red} = out;
+  assign begins = out_valid & out_position.first_row & out_position.first_column;
+  assign counts = out_valid & ~out_position.last_row;
+  assign is_near = counts & {above, below} == '0;
   always_ff @(posedge clk) begin
     if (en) begin
       {out_valid, valid_q} <= {valid_q, in_valid};
       {out_position, position_q} <= {position_q, in_position};
       blank_q <= ratios == '0;
-      counts <= out_valid & ~out_position.last_row;
-      restart <= out_position.first_row & out_position.first_column;
+      near <= is_near;
     end
     saturations <= en & valid_q & ~blank_q ? 2'(clipped[0]) + 2'(clipped[1]) + 2'(clipped[2]) : '0;
-    if (rst) {out_valid, valid_q, counts, saturations} <= '0;
+    if (rst) {out_valid, valid_q, saturations} <= '0;
   end
 
   // Pixels without contact, and whether they are enough.
 
-  logic [2:0] above, below, moves_far;
   logic [CountWidth-1:0] near_count;
   logic near_enough;
   always_ff @(posedge clk) begin
-    if (en & counts) near_count <= (restart ? '0 : near_count) + CountWidth'({above, below} == '0);
-    near_enough <= {near_count, 2'b00} >= (CountWidth + 2)'($unsigned(Pixels));
+    if (en) begin
+      near_count <= begins ? '0 : near_count + CountWidth'(near);
+      near_enough <= {near_count, 2'b00} >= (CountWidth + 2)'($unsigned(Pixels));
+    end
   end
 
-  assign moves = |moves_far;
-  for (genvar c = 0; c < 3; c++) begin : g_colour
+  // In turn a colour adds its few pixels since its last turn to its sum and to its pixels above less those below. These
+  // go round: 2 clocks behind its turn they are in the lowest word. A frame's first pixel clears all.
+
+  logic [Colours-1:0] turn, clears;  // one is high; of the words on top in the next clocks
+  logic [Colours-1:0][NearWidth+FewLog2-1:0] few_sum;
+  logic [Colours-1:0][FewLog2:0] few_net;
+  logic signed [NearWidth+FewLog2-1:0] sum_in_turn;
+  logic signed [FewLog2:0] net_in_turn;
+  logic [Colours-1:0][SumWidth-1:0] sums;
+  logic [Colours-1:0][CountWidth:0] nets;
+  always_ff @(posedge clk) begin
+    if (en) begin
+      turn <= {turn[1:0], turn[2]};
+      clears <= {clears[1:0], begins};
+      sum_in_turn <= $signed(turn[0] ? few_sum[0] : turn[1] ? few_sum[1] : few_sum[2]);
+      net_in_turn <= $signed(turn[0] ? few_net[0] : turn[1] ? few_net[1] : few_net[2]);
+      sums <= {clears != '0 ? SumWidth'(0) : sums[1], sums[0], sums[2] + SumWidth'(sum_in_turn)};
+      nets <= {clears != '0 ? (CountWidth + 1)'(0) : nets[1], nets[0], nets[2] + (CountWidth + 1)'(net_in_turn)};
+    end
+    if (rst) turn <= Colours'(1);
+  end
+
+  // Its move: the sum without its lowest `slow` bits is rounded by the bit below the mean, and whether others are 1.
+
+  logic [Colours-1:0] slower, moves_far;
+  logic [2:0] rate_q;
+  logic [3:0] slow, slow_q;
+  logic [1:0] slow_qq;  // a quarter of it
+  logic [SumWidth-1:0] sum, from_slow;  // the bits that stay
+  logic signed [HighWidth-1:0] high, high_q, high_qq;
+  logic rest_q, rest_qq, up_q, up_qq, down_q, down_qq;
+  logic signed [MoveWidth-1:0] mean, move;
+  assign slow = 4'(rate_q) + 4'((turn & {slower[1:0], slower[2]}) != '0);
+  td_round_saturate #(.InWidth(HighWidth + 1), .Drop(2), .OutWidth(MoveWidth)) u_mean (
+    .in($signed({high_qq, rest_qq})), .out(mean), .clipped()
+  );
+  assign sum = sums[0];
+  assign high = sum[SumWidth-1-:HighWidth];
+  assign move = up_qq ? -Step : down_qq ? Step : near_enough ? mean : '0;
+  assign moves = moves_far != '0;
+  always_ff @(posedge clk) begin
+    if (free) rate_q <= rate;
+    if (en) begin
+      {slow_qq, slow_q} <= {slow_q[3:2], slow};
+      from_slow <= '1 << slow;
+      rest_q <= (sum & from_slow & ~(from_slow << (SumDrop - 1))) != '0;
+      high_q <= high >>> slow_q[1:0];
+      high_qq <= high_q >>> {slow_qq, 2'b00};
+      up_q <= 8 * (CountWidth + 4)'($signed(nets[0])) <= -(CountWidth + 4)'(3 * Pixels);
+      down_q <= 8 * (CountWidth + 4)'($signed(nets[0])) >= (CountWidth + 4)'(3 * Pixels);
+      {rest_qq, up_qq, down_qq} <= {rest_q, up_q, down_q};
+    end
+  end
+
+  logic [GainWidth-1:0] least_write;
+  assign least_write = write_gain[GainWidth-1-:2] == '0 ? One >> 1 : write_gain;
+  for (genvar c = 0; c < Colours; c++) begin : g_colour
     logic signed [ProductWidth-1:0] product, difference;
     td_multiply #(.AWidth(RatioWidth + 1), .BWidth(GainWidth + 1)) u_product (
       .clk, .en, .a({1'b0, ratios[c]}), .b({1'b0, used[c]}), .product
     );
     assign difference = product - (ProductWidth'(1) <<< (RatioFraction + GainFraction));
-    logic signed [OutWidth-1:0] counted_deviation;
     td_round_saturate #(.InWidth(ProductWidth), .Drop(Drop), .OutWidth(OutWidth)) u_deviation (
       .in(difference), .out(deviations[c]), .clipped(clipped[c])
     );
+    assign above[c] = $signed(out[c]) >= OutWidth'(Near);
+    assign below[c] = $signed(out[c]) <= -OutWidth'(Near);
 
-    logic signed [CountWidth:0] net;  // pixels above less pixels below
-    logic signed [SumWidth-1:0] sum, slowed;
-    logic up, down;
-    logic signed [MoveWidth-1:0] mean, move, moved;
-    logic [GainWidth-1:0] kept, chosen, next;
-    td_round_saturate #(.InWidth(SumWidth), .Drop(SumDrop), .OutWidth(MoveWidth)) u_mean (
-      .in(slowed), .out(mean), .clipped()
-    );
-    assign moved = $signed({1'b0, gains[c]}) - move;
-    assign moves_far[c] = move[MoveWidth-1:QuietWidth] != {(MoveWidth - QuietWidth) {move[MoveWidth-1]}};
-    assign kept = moved[GainWidth] ? '1 : moved[GainWidth-1:0];  // no move takes a gain of 1/2 below 0
-    assign chosen = write[c] ? write_gain : commits ? kept : gains[c];
-    logic [3:0] slow;
-    assign slow = {1'b0, rate} + 4'(used[c] < One - GainWidth'(Step));
-    assign next = chosen[GainWidth-1-:2] == '0 ? One >> 1 : chosen;
+    logic signed [NearWidth-1:0] near_deviation;
+    logic is_above, is_below;
+    logic [NearWidth+FewLog2-1:0] few_sum_q;
+    logic [FewLog2:0] few_net_q;
+    assign few_sum[c] = few_sum_q + (NearWidth + FewLog2)'(near_deviation);
+    assign few_net[c] = few_net_q + (FewLog2 + 1)'(is_above) - (FewLog2 + 1)'(is_below);
+
+    logic signed [MoveWidth-1:0] move_q, moved;
+    logic [GainWidth-1:0] kept, next;
+    logic sets;
+    assign moved = $signed({1'b0, gains[c]}) - move_q;  // no move takes a gain of 1/2 below 0
+    assign kept = moved[GainWidth] ? '1 : moved[GainWidth-1-:2] == '0 ? One >> 1 : moved[GainWidth-1:0];
+    assign sets = write[c] | commits;
+    assign next = write[c] ? least_write : kept;
+    assign slower[c] = used[c] < One - GainWidth'(Step);
     always_ff @(posedge clk) begin
       if (en) begin
         out[c] <= blank_q ? '0 : deviations[c];
-        counted_deviation <= $signed(out[c]);
-        above[c] <= $signed(out[c]) >= OutWidth'(Near);
-        below[c] <= $signed(out[c]) <= -OutWidth'(Near);
-        if (counts) begin
-          net <= (restart ? '0 : net) + (CountWidth + 1)'(above[c]) - (CountWidth + 1)'(below[c]);
-          sum <= (restart ? '0 : sum) + ({above, below} == '0 ? SumWidth'(counted_deviation) : '0);
+        near_deviation <= is_near ? NearWidth'(out[c]) : '0;
+        {is_above, is_below} <= counts ? {above[c], below[c]} : '0;
+        {few_sum_q, few_net_q} <= turn[c] | begins ? '0 : {few_sum[c], few_net[c]};
+        if (turn[(c+4)%Colours]) begin
+          move_q <= move;
+          moves_far[c] <= move[MoveWidth-1:QuietWidth] != {(MoveWidth - QuietWidth) {move[MoveWidth-1]}};
         end
       end
-      slowed <= sum >>> slow;
-      up <= 8 * (CountWidth + 4)'(net) <= -(CountWidth + 4)'(3 * Pixels);
-      down <= 8 * (CountWidth + 4)'(net) >= (CountWidth + 4)'(3 * Pixels);
-      move <= up ? -Step : down ? Step : near_enough ? mean : '0;
-      gains[c] <= next;
-      if (free) used[c] <= next;
+      if (sets) gains[c] <= next;
+      if (free) used[c] <= sets ? next : gains[c];
       if (rst) begin
         gains[c] <= One;
         used[c] <= One;

@@ -21,7 +21,7 @@ def built(rows: int, columns: int, *widths: Any, **runs: Any) -> Structure:
 SMALL = 8, 6, 8, Format(7, 5)
 STRUCTURES = (
     built(8, 16, on=VERILATOR),
-    built(3, 8, *SMALL, on=ICARUS, mutants=ICARUS),
+    built(3, 10, *SMALL, on=ICARUS, mutants=ICARUS),
     built(9, 32),
     built(2, 11, *SMALL),
 )
@@ -42,7 +42,7 @@ PROOFS = (
     Proof(
         "sums are exact at any width; the shortest row leaves the least time; deviations of any value",
         {"Moves": 1},
-        steps=20,
+        steps=3,
         free=("deviations",),
     ),
 )

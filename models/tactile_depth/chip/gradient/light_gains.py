@@ -212,7 +212,7 @@ class LightGains:
     """
 
     def __init__(self, light: Light) -> None:
-        self.light, self._rates = light, [0, 0]
+        self.light, self._rate = light, 0
         self._clear()
 
     def _clear(self) -> None:
@@ -238,7 +238,7 @@ class LightGains:
             out[name] = joined(gains.tolist(), self.light.gain_width)
         last = pins["in_valid"] and len(self.frame) == self.light.rows * self.light.columns - 1
         if last:
-            move = self.light.move(np.array(self.frame[: self.light.pixels]), self.used, self._rates[1])
+            move = self.light.move(np.array(self.frame[: self.light.pixels]), self.used, self._rate)
             out["moves"] = self.light.is_far(move)
         if valid:
             out |= zip(("out_position", "out_red", "out_green", "out_blue"), (position, *deviations), strict=True)
@@ -255,11 +255,10 @@ class LightGains:
                 self.frame, self._bad = [], 0
         written = self.light.limited(np.array(write_gain))
         self._gains = np.where([write >> c & 1 for c in range(3)], written, self._gains)
-        if not self.frame:
-            self.used = self._gains
-        self._rates = [rate, self._rates[0]]
         if rst:
             self._clear()
+        if not self.frame:
+            self.used, self._rate = self._gains, rate
         return out
 
 
