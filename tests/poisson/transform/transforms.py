@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters and error bounds that the tests of the FFT and of both sine transforms share."""
+"""Error bound that the tests of both sine transforms share."""
 
 from typing import Any
 
