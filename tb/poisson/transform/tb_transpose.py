@@ -23,7 +23,7 @@ STRUCTURES = (
 )
 PROTOCOL = {"protocol_beats": {"Beats": "Columns", "Rows": "Columns"}}
 PROOFS = tuple(
-    Proof(f"{ONE_ORDER}; {WORD_FREE}", {"Columns": 4, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out})
+    Proof(f"{ONE_ORDER}; {WORD_FREE}", {"Columns": 4, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out}, steps=1)
     for makhoul_in, makhoul_out in ((0, 1), (1, 0))
 )
 
