@@ -17,8 +17,8 @@ protocol_bursts #(.Columns(Columns), .Rows(Columns)) u_protocol (
   .row(coming_row), .last_row(coming_last), .holds(allowed)
 );
 
-// Words come 2 enabled clocks behind all this, and leave so behind their starts. starts[n]: the last row of a frame began
-// n + 1 enabled clocks ago.
+// Words come 2 enabled clocks behind all this, and leave so behind their starts. starts[n]: the last row of a frame
+// began n + 1 enabled clocks ago.
 logic [Longest-1:0] starts;
 logic [1:0] active_q;
 logic [1:0][IndexWidth-1:0] position_q;
