@@ -22,7 +22,8 @@ from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
 from tactile_depth.sensor.synthetic import synthetic
 
 DEVICES = {device.name: device for device in (XCZU7EV, ECP5)}
-FITTED, CHECKED = 0.035, 0.06  # largest difference of LUTs of logic
+FITTED, CHECKED = 0.02, 0.035  # largest difference of LUTs of logic
+NEAR = 16  # LUTs of memories: the tools leave out zeros, and build a deep one of a bit in another way
 
 CASES = [
     {"columns": 16, "bits_per_channel": 2},
@@ -192,19 +193,12 @@ def test_a_device_builds_memories_of_luts_up_to_the_size_in_its_package(device: 
     assert numbers == {"DistributedBits": device.distributed_bits, "LateBits": LATE_BITS}
 
 
-@pytest.mark.parametrize(
-    ("device", "luts"), [(XCZU7EV, 340), (ECP5, 524)], ids=lambda value: getattr(value, "name", "")
-)
-def test_small_memories_are_as_many_luts_as_the_tools_give_them(device: Device, luts: int) -> None:
-    """The figures are "memory" in the report of `make synth PRESET=published N=32 SOLVER=tridiagonal`."""
-    assert memories(Configuration(columns=32, solver="tridiagonal"), device) == luts
-
-
 @pytest.mark.parametrize("run", json.loads(RUNS.read_text()), ids=lambda run: f"{run['device']}-{run['variables']}")
 def test_the_model_is_near_the_recorded_runs(run: dict[str, Any]) -> None:
     """Bounds: a little above the largest differences in docs/hardware.md, for runs fitted and not fitted."""
     device, count = DEVICES[run["device"]], cost(Configuration(**run["configuration"]))
     assert count.blocks_of(device) == run["blocks"]
+    assert memories(count.config, device) == pytest.approx(run["memories"], abs=NEAR)
     assert count.multipliers_of(device) == pytest.approx(run["multipliers"], abs=2)  # products by constants
     error = sum(logic(count.config, device).values()) / sum(run["logic"].values()) - 1
     assert abs(error) <= (FITTED if run["fitted"] else CHECKED)

@@ -27,7 +27,7 @@ class Device:
         Words and bits of an UltraRAM.
     lut_inputs : int
     lut_rams : tuple of (int, int, int)
-        Words, bits and LUTs of a memory built of LUTs, the smallest first.
+        Words, bits and LUTs of memories built of LUTs; an array takes those that are the fewest LUTs.
     distributed_bits : int
         Of the largest memory that is built of LUTs by its size: `DistributedBits` of td_memory_pkg.sv.
     halves : bool
@@ -79,7 +79,7 @@ class Device:
 SLICED_WORDS = 2048  # of an ECP5: a RAM of more words is built of slices
 
 BRAM36 = ((512, 72), (1024, 36), (2048, 18), (4096, 9), (8192, 4), (16384, 2), (32768, 1))
-LUT6_RAMS = ((32, 6, 4), (64, 3, 4))
+LUT6_RAMS = ((32, 6, 4), (64, 3, 4), (128, 1, 4))
 XCZU7EV = Device("XCZU7EV", "DSP48E2", (27, 18), 1, "BRAM36", BRAM36, (4096, 72), 6, LUT6_RAMS)
 XC7A35T, XC7A100T, XC7Z020 = (
     Device(name, "DSP48E1", (25, 18), 1, "BRAM36", BRAM36, None, 6, LUT6_RAMS)

@@ -30,6 +30,7 @@ REST = "small cores"
 RIDGE = 0.1
 SMALLEST = 100  # LUTs: smaller cores have no more weight in the fit
 OPTIONS = ("flat_field", "light_gains", "polynomials", "zero_offset")  # each with registers
+SEVERAL = " of several words"  # in a clock: other butterflies, and cores without a constant
 TABLES = "bits of tables"  # one LUT each, which is not fitted
 PROPORTIONAL = ("flat", "reference", "spectral", "zero")  # beginnings of names: cores without a constant
 
@@ -103,13 +104,15 @@ def terms(config: Configuration, device: Device) -> Terms:
             elif _of_luts(part, device):
                 core["choice"] += part.width * (_tiles(part, device)[0] - 1)
         else:
-            if not name.startswith(PROPORTIONAL):
+            several = SEVERAL if config.up_paths > 1 and part.work < 1 else ""
+            if not name.startswith(PROPORTIONAL) and not several:
                 core[name] += 1
             if not name.endswith("dst_forward"):
-                core[f"{name}, bits"] += part.bits
+                core[f"{name}, bits{several}"] += part.bits
             if name.startswith("dst"):
-                butterflies = sum(stage.delay > 0 for stage in stages(config.columns, "inverse" in name))
-                core[f"{name.rpartition('_')[0]}, butterflies"] += butterflies * part.bits
+                for stage in stages(config.columns, "inverse" in name):
+                    core[f"butterflies{several}"] += (stage.delay > 0) * part.bits
+                    core[f"rotations{several}"] += stage.rotate * part.bits
     for name in (REST, "contact_events"):
         counted[name][f"{name}, positions"] += (config.rows * config.columns).bit_length()
     counted[REST]["options"] += sum(getattr(config, option) for option in OPTIONS)
@@ -125,5 +128,5 @@ def _of_luts(memory: Memory, device: Device) -> bool:
 
 def _tiles(memory: Memory, device: Device) -> tuple[int, int, int]:
     """Return rows and columns of LUT memories in a RAM, and the LUTs of one of them."""
-    deep, wide, each = next((ram for ram in device.lut_rams if memory.words <= ram[0]), device.lut_rams[-1])
-    return math.ceil(memory.words / deep), math.ceil(memory.width / wide), each
+    shapes = [(math.ceil(memory.words / deep), math.ceil(memory.width / wide), n) for deep, wide, n in device.lut_rams]
+    return min(shapes, key=lambda tiles: (math.prod(tiles), tiles))

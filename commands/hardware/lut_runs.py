@@ -16,7 +16,7 @@ from typing import Any
 from commands.common import variables
 from commands.common.tabular import Table
 from commands.cost.cost import cost
-from commands.cost.luts import RUNS, grouped, logic, memories
+from commands.cost.luts import REST, RUNS, grouped, logic, memories
 from commands.hardware import synth, synthesis, targets
 from commands.hardware.targets import MEMORY
 from tactile_depth.chip.configuration import Configuration
@@ -37,8 +37,10 @@ def runs_of(report: Path, fitted: bool) -> list[dict[str, Any]]:
         chosen = [word for word in words if not word.startswith("GRIDS=")]
         chosen += [f"N={each.columns}", f"SOLVER={each.solver}"] if of.grids else []
         found: Counter[str] = Counter()
+        of_luts: Counter[str] = Counter()
         for core in design["cores"]:
             found[core["name"]] += int(core["counts"]["LUT"] - core["counts"][MEMORY])
+            of_luts[core["name"]] += int(core["counts"][MEMORY])
         runs.append(
             {
                 "device": device.name,
@@ -48,7 +50,7 @@ def runs_of(report: Path, fitted: bool) -> list[dict[str, Any]]:
                 "configuration": {name: value for name, value in asdict(config).items() if value != default[name]},
                 "multipliers": design["totals"][device.multiplier],
                 "blocks": design["totals"][device.block],
-                "memories": int(design["details"][MEMORY]),
+                "memories": of_luts.total() - int(grouped(of_luts, config).get(REST, 0)),
                 "logic": grouped(found, config),
             }
         )
