@@ -26,11 +26,6 @@ def test_two_bits_more_hold_every_result() -> None:
     assert out.min() == -2 * (127 + 128)
 
 
-def test_frames_do_not_mix() -> None:
-    gradient = np.random.default_rng(1).integers(-100, 100, (2, 4, 4, 2))
-    np.testing.assert_array_equal(divergence(gradient), [divergence(frame) for frame in gradient])
-
-
 def test_neumann_gives_a_divergence_without_sum() -> None:
     gradient = np.random.default_rng(1).integers(-100, 100, (3, 5, 7, 2))
     assert not np.any(divergence(gradient, neumann=True).sum(axis=(1, 2)))

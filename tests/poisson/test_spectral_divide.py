@@ -5,8 +5,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
@@ -58,13 +56,3 @@ def test_mantissas_are_normalised_and_at_least_one_bit_is_dropped(config: Config
     assert table.drop >= 1
     assert table.shift.min() >= 0
     assert table.shift.max() < 2**table.shift_width
-
-
-@settings(max_examples=30, deadline=None)
-@given(st.integers(0, 2**32 - 1))
-def test_negation_and_transposition_go_through(seed: int) -> None:
-    config = Configuration(columns=16)
-    modes = np.random.default_rng(seed).integers(-(2**20), 2**20, (16, 16))
-    out = spectral_divide(modes, config)
-    np.testing.assert_array_equal(spectral_divide(-modes, config), -out)
-    np.testing.assert_array_equal(spectral_divide(modes.T, config), out.T)

@@ -60,10 +60,3 @@ def test_rows_of_a_pair_are_those_alone_within_steps(size: int, largest: int) ->
     modes = np.random.default_rng(size).integers(-(2**12), 2**12, (100, 2, size))
     pairs = dst_inverse_pairs(modes, Transform(0, 30, 30, 0, 30))
     assert np.abs(pairs - dst_inverse(modes, Transform(0, 30, 30, 0, 30))).max() <= largest
-
-
-def test_an_odd_row_is_one_beside_zeros() -> None:
-    modes = np.random.default_rng(1).integers(-1000, 1000, (3, 16))
-    rows = dst_inverse_pairs(modes, Transform(0, 27, 18, 0, 27))
-    beside = np.stack((modes[2], np.zeros(16, np.int64)))
-    np.testing.assert_array_equal(rows[2], dst_inverse_pairs(beside, Transform(0, 27, 18, 0, 27))[0])
