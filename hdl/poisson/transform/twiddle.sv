@@ -50,13 +50,21 @@ module twiddle #(
     .clk, .rst, .en, .start(in_start), .position(beat), .active
   );
 
-  logic [Paths*FactorWidth-1:0] factors;
-  td_rom #(
-    .Width(Paths * FactorWidth), .Depth(Block), .File(File),
-    .Style(Paths == 1 ? 3 : FactorWidth * Block > td_memory_pkg::LateBits ? 1 : 0)
-  ) u_rom (
-    .clk, .en, .address(beat[BlockWidth-1:0]), .data(factors)
+  // A block memory takes long to give a word, a distributed one has the longer way to its words.
+  localparam int InBlockAbove = Paths == 1 ? td_memory_pkg::DistributedBits : td_memory_pkg::LateBits;
+  localparam int InBlock = FactorWidth * Block > InBlockAbove ? 1 : 0;
+  logic [BlockWidth-1:0] address;
+  logic [Paths*FactorWidth-1:0] read, factors;
+  td_rom #(.Width(Paths * FactorWidth), .Depth(Block), .File(File), .Style(InBlock)) u_rom (
+    .clk, .en, .address, .data(read)
   );
+  if (InBlock != 0) begin : g_register_behind
+    assign address = beat[BlockWidth-1:0];
+    always_ff @(posedge clk) if (en) factors <= read;
+  end else begin : g_register_in_front
+    always_ff @(posedge clk) if (en) address <= beat[BlockWidth-1:0];
+    assign factors = read;
+  end
 
   logic [2*Paths-1:0] clipped;  // real part, imaginary part of each path
   for (genvar path = 0; path < Paths; path++) begin : g_path
@@ -82,7 +90,7 @@ module twiddle #(
     end else begin : g_product
       logic signed [CoeffWidth-1:0] w_re, w_im, w_minus_im;
       logic [1:0][SumWidth-1:0] sum;
-      always_ff @(posedge clk) if (en) {w_minus_im, w_im, w_re} <= factors[path*FactorWidth+:FactorWidth];
+      assign {w_minus_im, w_im, w_re} = factors[path*FactorWidth+:FactorWidth];
       td_dot_product #(.AWidth(InWidth), .BWidth(CoeffWidth)) u_re (
         .clk, .en, .a0(word[0]), .b0(w_re), .a1(word[1]), .b1(w_minus_im), .sum(sum[0])
       );
