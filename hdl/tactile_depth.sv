@@ -68,12 +68,8 @@ module tactile_depth
   input  wire register_answer_t   register_answer    // ignored without a camera in Config
 );
 
-  // The whole pipeline moves, or none of it: low while the output is full. Each unit has a register of it.
-  logic en_next, video_en, gradient_en, poisson_en, depth_en;
-  td_enable u_video_en (.clk, .rst, .en_next, .en(video_en));
-  td_enable u_gradient_en (.clk, .rst, .en_next, .en(gradient_en));
-  td_enable u_poisson_en (.clk, .rst, .en_next, .en(poisson_en));
-  td_enable u_depth_en (.clk, .rst, .en_next, .en(depth_en));
+  logic en_next, video_en, gradient_en, poisson_en, depth_en;  // the whole moves; low while the output is full
+  td_enable u_en [3:0] (.clk, .rst, .en_next, .en({video_en, gradient_en, poisson_en, depth_en}));  // one a unit
   events_t events;
   levels_t levels;
   logic [31:0] timeout, now, frame_time, depth_time, first_depth_latency;
@@ -81,8 +77,8 @@ module tactile_depth
   logic [23:0] pixel_data;
   position_t pixel_position;
   video_unit #(.Config(Config)) u_video (
-    .clk, .rst, .en(video_en), .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
-    .self_test, .timeout, .faults(events.faults), .hunting(levels.hunting), .arrived_columns(levels.arrived_columns),
+    .clk, .rst, .en(video_en), .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser, .self_test,
+    .timeout, .faults(events.faults), .hunting(levels.hunting), .arrived_columns(levels.arrived_columns),
     .arrived_rows(levels.arrived_rows), .busy(video_busy), .pixel_valid, .pixel_data, .pixel_position,
     .pixel_frame_start, .pixel_frame_end, .pixel_bad, .pixel_test, .resumed, .now, .frame_time
   );
@@ -100,14 +96,14 @@ module tactile_depth
   position_t slope_position;
   logic signed [GradientWidth-1:0] slope_gx, slope_gy;
   gradient_unit #(.TableFolder(TableFolder), .Config(Config)) u_gradient (
-    .clk, .rst, .en(gradient_en), .table_command, .table_answer(slope_answer), .table_bank,
-    .table_in_use(slope_in_use), .dark_level, .slope_limit, .capture_command(reference_command),
-    .capture_status(reference_status), .dark(events.dark), .light_command, .light_gains,
-    .saturations(slope_saturations), .pixel_valid, .pixel_data, .pixel_position, .pixel_bad, .resumed,
-    .slope_valid, .slope_position, .slope_gx, .slope_gy, .slope_flags_valid, .slope_flags
+    .clk, .rst, .en(gradient_en), .table_command, .table_answer(slope_answer), .table_bank, .table_in_use(slope_in_use),
+    .dark_level, .slope_limit, .capture_command(reference_command), .capture_status(reference_status),
+    .dark(events.dark), .light_command, .light_gains, .saturations(slope_saturations), .pixel_valid, .pixel_data,
+    .pixel_position, .pixel_bad, .resumed, .slope_valid, .slope_position, .slope_gx, .slope_gy, .slope_flags_valid,
+    .slope_flags
   );
 
-  logic burst_start, solved_frame_start;
+  logic burst_start, solved_frame_start, out_of_step, depth_busy, depth_valid, first_depth_latency_valid;
   logic [Lanes*DataWidth-1:0] solved_data;
   logic [7+$clog2(Lanes):0] solver_saturations;
   logic [$clog2(Lanes):0] depth_saturations;
@@ -116,7 +112,6 @@ module tactile_depth
     .burst_start, .depth_frame_start(solved_frame_start), .depth_data(solved_data), .saturations(solver_saturations)
   );
 
-  logic out_of_step, depth_busy, depth_valid;
   depth_position_t depth_position;
   logic [Lanes*DataWidth-1:0] depth_data;
   depth_unit #(.TableFolder(TableFolder), .Config(Config)) u_depth (
@@ -128,7 +123,6 @@ module tactile_depth
   );
 
   contact_settings_t contact_settings;
-  logic first_depth_latency_valid;
   logic [32*RecordWords-1:0] record;
   contact_unit #(.Config(Config)) u_contact (
     .clk, .rst, .en_next, .settings(contact_settings), .now, .frame_leaves(events.frame_out),

@@ -5,8 +5,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
@@ -61,29 +59,23 @@ def random_frame(seed: int) -> Any:
     return np.rint(np.random.default_rng(seed).uniform(-limit, limit, (16, 16))).astype(np.int64)
 
 
-SEED = st.integers(0, 2**32 - 1)
+FRAMES = [random_frame(seed) for seed in range(30)]
 LARGEST = 50  # codes; measured on 600 frames: 29 transposed, 0 turned, 34 of sums, 47 with f = g
 
 
-@settings(max_examples=30, deadline=None)
-@given(SEED)
-def test_negation_goes_through(seed: int) -> None:
-    f = random_frame(seed)
+@pytest.mark.parametrize("f", FRAMES)
+def test_negation_goes_through(f: Any) -> None:
     np.testing.assert_array_equal(spectral_solver(-f, CONFIG), -spectral_solver(f, CONFIG))
 
 
-@settings(max_examples=30, deadline=None)
-@given(SEED)
-def test_a_transposed_or_turned_frame_gives_its_depth_within_rounding(seed: int) -> None:
-    f = random_frame(seed)
+@pytest.mark.parametrize("f", FRAMES)
+def test_a_transposed_or_turned_frame_gives_its_depth_within_rounding(f: Any) -> None:
     z = spectral_solver(f, CONFIG)
     assert np.abs(spectral_solver(f.T, CONFIG) - z.T).max() <= LARGEST
     assert np.abs(spectral_solver(f[::-1, ::-1], CONFIG) - z[::-1, ::-1]).max() <= LARGEST
 
 
-@settings(max_examples=30, deadline=None)
-@given(SEED, SEED)
-def test_sums_go_through_within_rounding(seed: int, other: Any) -> None:
-    f, g = random_frame(seed), random_frame(other)
+@pytest.mark.parametrize(("f", "g"), zip(FRAMES, FRAMES[1:] + FRAMES[-1:], strict=True))
+def test_sums_go_through_within_rounding(f: Any, g: Any) -> None:
     error = spectral_solver(f + g, CONFIG) - spectral_solver(f, CONFIG) - spectral_solver(g, CONFIG)
     assert np.abs(error).max() <= LARGEST
