@@ -96,6 +96,7 @@ def script(proof: Proof, mode: str, written: Sequence[Path]) -> str:
         *(["opt_clean"] if proof.free else []),
         f"select -assert-min 1 t:$check r:FLAVOR={flavor} %i",
         "select -clear",
+        *(["chformal -assert -remove", "opt_clean"] if mode == "cover" else []),  # and what is there for them alone
         "[files]",
         *map(str, files),
     ]

@@ -5,15 +5,11 @@
 // `touching` takes any value in any clock; thresholds stay the same within a frame.
 
 parameter int Width = 2, Rows = 2, Columns = 3, Lanes = 1, BottomFirst = 0;
-input logic signed [Width:0] on_level, off_level;
 input logic [3:0] chosen;
 
 localparam int Pixels = Rows * Columns;
 localparam int ToPeak = 3 + $clog2(Lanes);  // clocks from the last beat of a frame
 localparam int Behind = ToPeak - 2;         // clocks from the count to the peak
-
-assign on_threshold = 32'(on_level);
-assign off_threshold = 32'(off_level);
 
 wire [$clog2(Pixels/Lanes)-1:0] beat = u_protocol.u_depth_frames.place;
 logic [3:0] place;  // of the first depth of a beat
@@ -53,7 +49,7 @@ assign {total_q, held_q, depth_q} = later[(Behind-1)*(CountWidth+1+Width)+:Count
 
 always_ff @(posedge clk) begin
   if (!started) watched <= chosen;
-  if (in_valid) {on_q, off_q} <= {on_level, off_level};
+  if (in_valid) {on_q, off_q} <= {on_threshold, off_threshold};
   valid_q <= in_valid & ~rst;
   first_q <= in_position.frame_start;
   data_q <= in_data;

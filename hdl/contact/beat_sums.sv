@@ -17,7 +17,6 @@ module beat_sums #(
   localparam int MomentWidth = WeightWidth + OffsetWidth
 ) (
   input  wire                    clk,
-  input  wire  [Lanes-1:0]       above,
   input  wire  [Lanes*Width-1:0] weights,        // depth codes, unsigned; 0 where not above
   output logic [OffsetWidth:0]   count,          // depths above
   output logic [WeightWidth-1:0] weight,         // sum
@@ -36,8 +35,8 @@ module beat_sums #(
     logic [OffsetWidth-1:0] first, left_first, right_first, last, left_last, right_last;
     if (2 * n >= Lanes) begin : g_depths
       localparam int Left = 2 * n - Lanes;
-      assign left_total = (OffsetWidth + 1)'(above[Left]);
-      assign right_total = (OffsetWidth + 1)'(above[Left+1]);
+      assign left_total = (OffsetWidth + 1)'(weights[Left*Width+:Width] != '0);
+      assign right_total = (OffsetWidth + 1)'(weights[(Left+1)*Width+:Width] != '0);
       assign left_sum = WeightWidth'(weights[Left*Width+:Width]);
       assign right_sum = WeightWidth'(weights[(Left+1)*Width+:Width]);
       assign {left_turn, right_turn} = '0;

@@ -58,12 +58,17 @@ module contact_events
   localparam int Delay = $clog2(Lanes) + 6;  // until the first beat of a frame finds the area threshold
   localparam int PositionBits = $bits(depth_position_t);
 
+  // A code in one bit more than a depth has; a code beyond those of depths stays beyond them.
+  function automatic logic signed [Width:0] held(input logic signed [31:0] code);
+    return {code[31], code[31:Width-1] == {(33 - Width) {code[31]}} ? code[31] : ~code[31], code[Width-2:0]};
+  endfunction
+
   // Settings and time: of the frame that comes in (_q: since its first beat), and of the last frame (last_).
 
-  logic signed [31:0] on, on_q, off, off_q, area_limit;
+  logic signed [Width:0] on, on_q, off, off_q, area_limit;
   logic [31:0] minimum, last_minimum, start_time, last_time, frame;
   logic [7:0] frames_needed, last_frames_needed;
-  assign {on, off} = in_position.frame_start ? {on_threshold, off_threshold} : {on_q, off_q};
+  assign {on, off} = in_position.frame_start ? {held(on_threshold), held(off_threshold)} : {on_q, off_q};
 
   frame_flags_t last_flags;
   logic touching_next, count_valid, peak_valid, any_above, last_any, began, ended;
@@ -83,16 +88,16 @@ module contact_events
 
   // Area threshold. The delayed frame takes it Delay cycles after its first beat, when the peak of the last is known.
 
-  logic signed [31:0] in_force, half_peak, wanted, least_wanted;  // a register behind each choice
+  logic signed [Width:0] in_force, half_peak, wanted, least_wanted;  // a register behind each choice
   logic signed [Width-1:0] level, level_of_frame, last_level;
-  assign half_peak = 32'(last_peak >>> 1);
+  assign half_peak = (Width + 1)'(last_peak >>> 1);
   always_ff @(posedge clk) begin
     in_force <= touching ? off_q : on_q;
     wanted <= last_any && half_peak < area_limit ? half_peak : area_limit;
     least_wanted <= wanted > in_force ? wanted : in_force;
     level <= least_wanted[Width-1:0];
-    if (least_wanted[31:Width-1] != {(33 - Width) {least_wanted[31]}}) begin
-      level <= {least_wanted[31], {(Width - 1) {~least_wanted[31]}}};
+    if (least_wanted[Width] != least_wanted[Width-1]) begin
+      level <= {least_wanted[Width], {(Width - 1) {~least_wanted[Width]}}};
     end
   end
 
@@ -100,7 +105,7 @@ module contact_events
   depth_position_t late_position;
   logic [Lanes*Width-1:0] late_data;
   logic late_valid, sums_valid, sums_held;
-  contact_sums_t sums, last_sums;
+  contact_sums_t sums;
   td_delay_line #(.Width(PositionBits + Lanes * Width), .Delay(Delay)) u_delay (
     .clk, .rst, .en(1'b1), .in({in_position, in_data}), .out({late_position, late_data})
   );
@@ -119,22 +124,22 @@ module contact_events
 
   logic centroid_valid, no_area;
   logic [PositionWidth+3:0] mean_column, mean_row;
-  logic [31:0] middle, least, greatest, peak_position;
+  logic [31:0] middle, least, last_least, greatest, last_greatest, peak_position;
   centroid #(.PositionWidth(PositionWidth), .WeightWidth(WeightWidth)) u_centroid (
-    .clk, .rst, .start(sums_held), .column_moment(MomentWidth'(last_sums.column_moment)),
-    .row_moment(MomentWidth'(last_sums.row_moment)), .weight(WeightWidth'(last_sums.weight)), .done(centroid_valid),
+    .clk, .rst, .start(sums_held), .column_moment(MomentWidth'(sums.column_moment)),
+    .row_moment(MomentWidth'(sums.row_moment)), .weight(WeightWidth'(sums.weight)), .done(centroid_valid),
     .column(mean_column), .row(mean_row)
   );
-  assign no_area = last_sums.area == '0;
+  assign no_area = sums.area == '0;
   assign peak_position = {last_peak_row, last_peak_column};
   assign middle = no_area ? peak_position << 4
       : {BottomFirst != 0 ? 16'(mean_row) : LastRow - 16'(mean_row), LastColumn - 16'(mean_column)};
-  assign least = no_area ? peak_position : {last_sums.least_row, last_sums.least_column};
-  assign greatest = no_area ? peak_position : {last_sums.greatest_row, last_sums.greatest_column};
+  assign least = no_area ? peak_position : last_least;
+  assign greatest = no_area ? peak_position : last_greatest;
 
   record_packets #(.Words(Words)) u_packets (
     .clk, .rst, .new_valid(centroid_valid),
-    .new_record({last_flags, middle, last_sums.weight, greatest, least, last_sums.area, 32'(last_level), peak_position,
+    .new_record({last_flags, middle, sums.weight, greatest, least, sums.area, 32'(last_level), peak_position,
       32'(last_peak), last_time, frame, 29'd0, ended, began, touching}),
     .record_valid, .record, .record_lost, .m_event_tdata, .m_event_tvalid, .m_event_tready, .m_event_tlast
   );
@@ -142,7 +147,7 @@ module contact_events
   always_ff @(posedge clk) begin
     if (in_valid && in_position.frame_start) begin
       {on_q, off_q} <= {on, off};
-      area_limit <= area_threshold;
+      area_limit <= held(area_threshold);
       minimum <= minimum_area;
       frames_needed <= debounce;
       start_time <= in_time;
@@ -161,7 +166,10 @@ module contact_events
     valid_delayed <= Delay'({valid_delayed, in_valid});
     if (late_valid && late_position.frame_start) level_of_frame <= level;
     if (late_valid && late_position.frame_end) last_level <= level_of_frame;
-    if (sums_valid) last_sums <= sums;
+    if (sums_valid) begin
+      last_least <= {sums.least_row, sums.least_column};
+      last_greatest <= {sums.greatest_row, sums.greatest_column};
+    end
     sums_held <= sums_valid;
     if (rst) {frame, last_any, sums_held, valid_delayed} <= '0;
   end

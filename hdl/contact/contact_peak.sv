@@ -27,8 +27,8 @@ module contact_peak
   input  wire                     in_valid,
   input  wire depth_position_t    in_position,
   input  wire  [Lanes*Width-1:0]  in_data,        // depth codes, signed
-  input  wire  signed [31:0]      on_threshold,   // depth code
-  input  wire  signed [31:0]      off_threshold,  // depth code
+  input  wire  signed [Width:0]   on_threshold,   // depth code
+  input  wire  signed [Width:0]   off_threshold,  // depth code
   input  wire                     touching,       // the threshold in force is off_threshold
   output logic                    count_valid,
   output logic [CountWidth-1:0]   count,          // depths above
@@ -79,31 +79,29 @@ module contact_peak
     logic signed [Width-1:0] depth;
     assign depth = in_data[lane*Width+:Width];
     always_ff @(posedge clk) begin
-      above_on[lane] <= 32'(depth) > on_threshold;
-      above_off[lane] <= 32'(depth) > off_threshold;
+      above_on[lane] <= (Width + 1)'(depth) > on_threshold;
+      above_off[lane] <= (Width + 1)'(depth) > off_threshold;
     end
   end
 
   // Count. The first beat of the next frame may be here in the cycle of count_valid. `touching` comes late, from the
   // count itself: it chooses behind the sums.
 
-  logic [Lanes-1:0] above, above_q;
   logic [CountWidth-1:0] count_before, count_on, count_off;
-  logic [PeakDelay-1:0] valid_delayed, start_delayed, end_delayed;
+  logic [PeakDelay-1:0] valid_delayed, start_delayed, end_delayed, above_delayed;  // a depth is above
   logic [PeakDelay-1:0][ColumnWidth-1:0] column_delayed;
   logic [PeakDelay-1:0][RowWidth-1:0] row_delayed;
-  assign above = touching ? above_off : above_on;
   assign count_before = frame_start_q ? '0 : count;
   assign count_on = count_before + CountWidth'(ones(above_on));
   assign count_off = count_before + CountWidth'(ones(above_off));
   always_ff @(posedge clk) begin
     if (valid_q) count <= touching ? count_off : count_on;
-    above_q <= above;
     column_delayed <= (PeakDelay * ColumnWidth)'({column_delayed, column_q});
     row_delayed <= (PeakDelay * RowWidth)'({row_delayed, row_q});
     valid_delayed <= PeakDelay'({valid_delayed, valid_q});
     start_delayed <= PeakDelay'({start_delayed, frame_start_q});
     end_delayed <= PeakDelay'({end_delayed, valid_q & frame_end_q});
+    above_delayed <= PeakDelay'({above_delayed, touching ? above_off != '0 : above_on != '0});
     peak_valid <= end_delayed[PeakDelay-1];
     if (rst) begin
       valid_delayed <= '0;
@@ -113,20 +111,20 @@ module contact_peak
   end
   assign count_valid = end_delayed[0];
 
-  // Peak of a beat: for one lane its depth.
+  // Peak of a beat: for one lane its depth. It is above if any depth of the beat is.
 
   logic any_in_beat;
   logic signed [Width-1:0] highest_in_beat;
   logic [ColumnWidth-1:0] first_column, column_in_beat;
+  assign any_in_beat = above_delayed[PeakDelay-1];
   assign first_column = column_delayed[PeakDelay-1];
   if (Lanes == 1) begin : g_one_lane
-    assign any_in_beat = above_q;
     assign highest_in_beat = data_q[1];
     assign column_in_beat = first_column;
   end else begin : g_lanes
     logic [OffsetWidth-1:0] peak_offset;
     beat_peak #(.Width(Width), .Lanes(Lanes)) u_beat (
-      .clk, .above(above_q), .data(data_q[1]), .any(any_in_beat), .peak(highest_in_beat), .peak_offset
+      .clk, .data(data_q[1]), .peak(highest_in_beat), .peak_offset
     );
     assign column_in_beat = first_column + ColumnWidth'(peak_offset);
   end

@@ -7,8 +7,9 @@
 // No multiplier: the weight so far, added at the end of each row, makes the moment of rows; within a row the same makes
 // that of columns. Stream in: depth codes that are never held back, Lanes neighbours in a beat with the first in the
 // lowest bits. The last row is the last to come. A frame that begins inside another begins afresh. The threshold is
-// taken with a frame's first beat. Latency: sums_valid comes 2 + log2(Lanes) cycles after the last beat of a frame;
-// `sums` are those of the frame in that cycle alone. Gaps change nothing.
+// taken with a frame's first beat. A row has two beats or more. Latency: sums_valid comes 2 + log2(Lanes) cycles after
+// the last beat of a frame; `sums` are those of the frame from that cycle until the next, limits in that cycle alone.
+// Gaps change nothing.
 // Bit-accurate model: models/tactile_depth/chip/contact/contact_sums.py.
 
 `default_nettype none
@@ -57,22 +58,17 @@ module contact_sums
   assign row = ~frame_start ? next_row : BottomFirst != 0 ? RowWidth'(Rows - 1) : '0;
   assign threshold_now = frame_start ? threshold : threshold_q;
 
-  logic [Lanes-1:0] above;
-  logic [Lanes*Width-1:0] weights;
+  logic [Lanes*Width-1:0] weights;  // 0 where not above
   for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
     logic signed [Width-1:0] depth;
     logic signed [Width:0] excess;
-    logic is_above;
     assign depth = in_data[lane*Width+:Width];
     assign excess = (Width + 1)'(depth) - (Width + 1)'(threshold_now);
-    assign is_above = excess > 0;
-    always_ff @(posedge clk) begin
-      above[lane] <= is_above;
-      weights[lane*Width+:Width] <= is_above ? excess[Width-1:0] : '0;
-    end
+    always_ff @(posedge clk) weights[lane*Width+:Width] <= excess[Width] ? '0 : excess[Width-1:0];
   end
 
-  logic valid, starts;  // of the beat whose sums these are
+  logic valid, ends;  // of the beat whose sums these are
+  logic clears, clears_row;  // the next beat is the first of a frame, of a row
   logic [Delay-1:0] valid_delayed, start_delayed, end_delayed;
   logic [Delay-1:0][ColumnWidth-1:0] column_delayed;
   logic [Delay-1:0][RowWidth-1:0] row_delayed;
@@ -85,7 +81,7 @@ module contact_sums
     column_delayed <= (Delay * ColumnWidth)'({column_delayed, column});
     row_delayed <= (Delay * RowWidth)'({row_delayed, row});
     valid_delayed <= Delay'({valid_delayed, in_valid});
-    start_delayed <= Delay'({start_delayed, frame_start});
+    start_delayed <= Delay'({start_delayed, in_valid & frame_start});
     end_delayed <= Delay'({end_delayed, in_valid & in_position.frame_end});
     sums_valid <= end_delayed[Delay-1];
     if (rst) begin
@@ -95,7 +91,7 @@ module contact_sums
     end
   end
   assign valid = valid_delayed[Delay-1];
-  assign starts = start_delayed[Delay-1];
+  assign ends = end_delayed[Delay-1];
 
   // Sums of a beat: for one lane those of its depth.
 
@@ -107,55 +103,61 @@ module contact_sums
   assign first_column = column_delayed[Delay-1];
   assign beat_row = row_delayed[Delay-1];
   if (Lanes == 1) begin : g_one_lane
-    assign {beat_count, beat_weight, beat_moment} = {above, weights, Width'(0)};
+    assign {beat_count, beat_weight, beat_moment} = {weights != '0, weights, Width'(0)};
     assign {beat_least, beat_greatest} = {2{first_column}};
+    assign {clears, clears_row} = {in_valid & frame_start, in_valid & column == '0};
   end else begin : g_lanes
     logic [OffsetWidth-1:0] least_offset, greatest_offset;
     beat_sums #(.Width(Width), .Lanes(Lanes)) u_beat (
-      .clk, .above, .weights, .count(beat_count), .weight(beat_weight), .moment(beat_moment), .least_offset,
-      .greatest_offset
+      .clk, .weights, .count(beat_count), .weight(beat_weight), .moment(beat_moment), .least_offset, .greatest_offset
     );
     assign beat_least = first_column + ColumnWidth'(least_offset);
+    assign {clears, clears_row} = {start_delayed[Delay-2], valid_delayed[Delay-2] & column_delayed[Delay-2] == '0};
     assign beat_greatest = first_column + ColumnWidth'(greatest_offset);
   end
 
-  // Sums and limits of the frame. Of a frame's first beat the sums so far are 0, as is the weight of a row's.
+  // Sums and limits of the frame. Sums are cleared in the cycle before its first beat, those of a row before its first.
 
-  logic none_so_far, row_starts;
-  logic [AreaWidth-1:0] area, area_so_far;
-  logic [WeightWidth-1:0] weight, weight_so_far;
-  logic [RowWeightWidth-1:0] row_weight, row_weight_so_far;
-  logic [RowMomentWidth-1:0] row_moment, row_moment_so_far;
-  logic [ColumnMomentWidth-1:0] column_moment, column_moment_so_far;
+  logic row_starts;
+  logic [AreaWidth-1:0] area, next_area, last_area;  // last_: of the last frame
+  logic [WeightWidth-1:0] weight, next_weight, last_weight;
+  logic [RowWeightWidth-1:0] row_weight;
+  logic [RowMomentWidth-1:0] row_moment, last_row_moment;
+  logic [ColumnMomentWidth-1:0] column_moment, next_column_moment, last_column_moment;
   logic [RowWidth-1:0] first_row, last_row, least_row, greatest_row;
   logic [ColumnWidth-1:0] least_column, greatest_column;
   assign row_starts = first_column == '0;
-  assign {area_so_far, weight_so_far} = starts ? '0 : {area, weight};
-  assign {row_moment_so_far, column_moment_so_far} = starts ? '0 : {row_moment, column_moment};
-  assign row_weight_so_far = row_starts ? '0 : row_weight;
-  assign none_so_far = area_so_far == '0;
+  assign next_area = area + AreaWidth'(beat_count);
+  assign next_weight = weight + WeightWidth'(beat_weight);
+  assign next_column_moment = column_moment + ColumnMomentWidth'(beat_moment)
+      + (ColumnMomentWidth'(row_weight) << LanesLog2);
   always_ff @(posedge clk) begin
     if (valid) begin
-      area <= area_so_far + AreaWidth'(beat_count);
-      weight <= weight_so_far + WeightWidth'(beat_weight);
-      row_weight <= row_weight_so_far + RowWeightWidth'(beat_weight);
-      row_moment <= row_moment_so_far + (row_starts ? RowMomentWidth'(weight_so_far) : '0);
-      column_moment <= column_moment_so_far + ColumnMomentWidth'(beat_moment)
-          + (ColumnMomentWidth'(row_weight_so_far) << LanesLog2);
+      area <= next_area;
+      weight <= next_weight;
+      row_weight <= row_weight + RowWeightWidth'(beat_weight);
+      if (row_starts) row_moment <= row_moment + RowMomentWidth'(weight);
+      column_moment <= next_column_moment;
       if (beat_count != '0) begin
         last_row <= beat_row;
-        if (none_so_far) first_row <= beat_row;
-        if (none_so_far || beat_least < least_column) least_column <= beat_least;
-        if (none_so_far || beat_greatest > greatest_column) greatest_column <= beat_greatest;
+        if (area == '0) first_row <= beat_row;
+        if (area == '0 || beat_least < least_column) least_column <= beat_least;
+        if (area == '0 || beat_greatest > greatest_column) greatest_column <= beat_greatest;
       end
+    end
+    if (clears) {area, weight, row_moment, column_moment} <= '0;
+    if (clears_row) row_weight <= '0;
+    if (ends) begin
+      {last_area, last_weight} <= {next_area, next_weight};
+      {last_row_moment, last_column_moment} <= {row_moment, next_column_moment};
     end
   end
   assign least_row = BottomFirst != 0 ? last_row : first_row;
   assign greatest_row = BottomFirst != 0 ? first_row : last_row;
-  assign sums.area = 32'(area);
-  assign sums.weight = 64'(weight);
-  assign sums.row_moment = 64'(row_moment);
-  assign sums.column_moment = 64'(column_moment);
+  assign sums.area = 32'(last_area);
+  assign sums.weight = 64'(last_weight);
+  assign sums.row_moment = 64'(last_row_moment);
+  assign sums.column_moment = 64'(last_column_moment);
   assign {sums.least_row, sums.least_column} = {16'(least_row), 16'(least_column)};
   assign {sums.greatest_row, sums.greatest_column} = {16'(greatest_row), 16'(greatest_column)};
 

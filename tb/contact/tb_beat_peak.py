@@ -8,7 +8,7 @@ import cocotb
 from formal.entries import Proof
 from tactile_depth.chip.contact.beat_peak import BeatPeak
 from tb.contact.beats import beats
-from tb.lockstep import WORD, play
+from tb.lockstep import play
 from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
@@ -20,13 +20,10 @@ STRUCTURES = (
     built(32, 32),
     built(12, 16),
 )
-
-
-PROTOCOL = {"peak peak_offset": "any"}
 PROOFS = (Proof("comparisons are exact at any width"),)
 
 
 @cocotb.test()
 async def depths(dut: Any) -> None:
     width, lanes = parameters(dut, "Width", "Lanes")
-    await play(dut, BeatPeak(width, lanes), {"above": WORD, "data": beats(width, lanes)})
+    await play(dut, BeatPeak(width, lanes), {"data": beats(width, lanes)})

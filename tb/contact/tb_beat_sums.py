@@ -7,23 +7,24 @@ import cocotb
 
 from formal.entries import Proof
 from tactile_depth.chip.contact.beat_sums import SumsOfBeats
-from tactile_depth.chip.fixed_point import joined, split
+from tactile_depth.chip.fixed_point import joined
 from tb.contact.beats import beats
 from tb.contact.tb_beat_peak import STRUCTURES as STRUCTURES
-from tb.lockstep import WORD, Pins, play
+from tb.lockstep import Pins, play
 from tb.stream import parameters
 
+PROTOCOL = {"least_offset greatest_offset": "count != '0"}
 PROOFS = (Proof("sums are exact at any width"),)
 
 
 def legal(model: SumsOfBeats, pins: Pins) -> None:
-    """Weigh what is above, and nothing else."""
-    weights = split(pins["weights"], model.lanes, model.width)
-    above = split(pins["above"], model.lanes, 1)
-    pins["weights"] = joined([(weight or 1) * bit for weight, bit in zip(weights, above, strict=True)], model.width)
+    """Leave weights of some depths alone."""
+    some = pins.pop("some")
+    pins["weights"] &= joined([-(some >> lane & 1) for lane in range(model.lanes)], model.width)
 
 
 @cocotb.test()
 async def weights(dut: Any) -> None:
     width, lanes = parameters(dut, "Width", "Lanes")
-    await play(dut, SumsOfBeats(width, lanes), {"above": WORD, "weights": beats(width, lanes)}, legal)
+    some = [(1 << lanes) - 1, *range(1 << min(lanes, 12))]
+    await play(dut, SumsOfBeats(width, lanes), {"some": some, "weights": beats(width, lanes)}, legal)

@@ -36,7 +36,8 @@ PROOFS = (
     Proof(
         "rows and columns are only counted; whatever count, peak, sums and centroid come out: these have proofs",
         {"Rows": 4, "Columns": 8, "Latency": latency(4, 8)},
-        free=("sums", "count", "peak", "middle"),
+        steps=2,
+        free=("sums", "count", "peak", "middle", "late_position"),
     ),
 )
 

@@ -55,6 +55,6 @@ PROOFS = proofs(
 async def peaks(dut: Any) -> None:
     width, lanes = parameters(dut, "Width", "Lanes")
     bits = {"in_valid": 1.0, "interrupts": 0.02, "touching": 1.0}
-    thresholds = {"on_threshold": levels(width, 32), "off_threshold": levels(width, 32)}
+    thresholds = dict.fromkeys(("on_threshold", "off_threshold"), levels(width, width + 1))
     model = PeakByClock(*parameters(dut, *NAMES))
     await play(dut, model, {**bits, **thresholds, "in_data": beats(width, lanes)}, Frames(dut), clocks=3 * CLOCKS)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 
-from tactile_depth.chip.fixed_point import codes, split
+from tactile_depth.chip.fixed_point import codes
 
 
 def latency(lanes: int) -> int:
@@ -14,24 +14,21 @@ def latency(lanes: int) -> int:
     return lanes.bit_length() - 1
 
 
-def beat_peak(above: Sequence[bool], depths: Sequence[int]) -> tuple[int, int] | None:
-    """Return the peak of the depths that are above and its place in the beat, of equal ones the first; else None."""
-    offsets = [offset for offset, is_above in enumerate(above) if is_above]
-    if not offsets:
-        return None
-    first = max(offsets, key=lambda offset: (depths[offset], -offset))
-    return depths[first], first
+def beat_peak(depths: Sequence[int]) -> tuple[int, int]:
+    """Return the peak of the depths and its place in the beat, of equal ones the first."""
+    peak = max(depths)
+    return peak, depths.index(peak)
 
 
 class BeatPeak:
-    """Peaks on their way, of a core that has seen beats of nothing above."""
+    """Peaks on their way, of a core that has seen beats of depths 0."""
 
     def __init__(self, width: int, lanes: int) -> None:
         self.width, self.lanes = width, lanes
-        self._late: deque[tuple[int, int] | None] = deque([None] * latency(lanes))
+        self._late = deque([(0, 0)] * latency(lanes))
 
-    def clock(self, *, above: int, data: int) -> dict[str, int | None]:
-        """Advance by one clock edge; return the outputs before it, None where one does not count."""
-        peak = self._late.popleft()
-        self._late.append(beat_peak(list(map(bool, split(above, self.lanes, 1))), codes(data, self.lanes, self.width)))
-        return {"any": 0} if peak is None else {"any": 1, "peak": peak[0], "peak_offset": peak[1]}
+    def clock(self, *, data: int) -> dict[str, int]:
+        """Advance by one clock edge; return the outputs before it."""
+        peak, offset = self._late.popleft()
+        self._late.append(beat_peak(codes(data, self.lanes, self.width)))
+        return {"peak": peak, "peak_offset": offset}

@@ -26,9 +26,9 @@ def latency(lanes: int) -> int:
     return lanes.bit_length() - 1
 
 
-def beat_sums(above: Sequence[bool], weights: Sequence[int]) -> BeatSums:
+def beat_sums(weights: Sequence[int]) -> BeatSums:
     """Return the sums of the depths that are above; the weight of the others is 0."""
-    offsets = [offset for offset, is_above in enumerate(above) if is_above]
+    offsets = [offset for offset, weight in enumerate(weights) if weight]
     moment = sum(weight * (len(weights) - 1 - offset) for offset, weight in enumerate(weights))
     first, last = (offsets[0], offsets[-1]) if offsets else (None, None)
     return BeatSums(len(offsets), sum(weights), moment, first, last)
@@ -39,10 +39,10 @@ class SumsOfBeats:
 
     def __init__(self, width: int, lanes: int) -> None:
         self.width, self.lanes = width, lanes
-        self._late = deque([beat_sums([False] * lanes, [0] * lanes)] * latency(lanes))
+        self._late = deque([beat_sums([0] * lanes)] * latency(lanes))
 
-    def clock(self, *, above: int, weights: int) -> dict[str, int | None]:
+    def clock(self, *, weights: int) -> dict[str, int | None]:
         """Advance by one clock edge; return the outputs before it, None where one does not count."""
-        sums, bits = self._late.popleft(), split(above, self.lanes, 1)
-        self._late.append(beat_sums(list(map(bool, bits)), split(weights, self.lanes, self.width)))
+        sums = self._late.popleft()
+        self._late.append(beat_sums(split(weights, self.lanes, self.width)))
         return asdict(sums)

@@ -120,7 +120,7 @@ class PeakByClock:
             row, column = peak.position
             out |= {"any_above": bool(peak.above), "peak": peak.peak, "peak_row": row, "peak_column": column}
         self._late.append(self._judged(touching, *self._beat) if self._beat else None)
-        on, off = (*codes(on_threshold, 1, 32), *codes(off_threshold, 1, 32))
+        on, off = (codes(level, 1, self.width + 1)[0] for level in (on_threshold, off_threshold))
         self._beat = (in_data, in_position, on, off) if in_valid else None
         if rst:
             self._clear()

@@ -101,6 +101,7 @@ class SumsByClock:
     def __init__(self, width: int, rows: int, columns: int, lanes: int, bottom_first: int) -> None:
         self.width, self.lanes, self.sums = width, lanes, ContactSums(rows, columns, bool(bottom_first))
         self._late: deque[Sums | None] = deque([None] * cycles_to_sums(lanes))
+        self._numbers = ""  # of the last frame, as bits
 
     def clock(
         self, *, rst: int, in_valid: int, in_position: int, in_data: int, threshold: int
@@ -108,14 +109,15 @@ class SumsByClock:
         """Advance by one clock edge; return the outputs before it. Limits have no meaning without area."""
         sums, ended = self._late.popleft(), None
         out: dict[str, int | str | None] = {"sums_valid": sums is not None}
+        limits = ""
         if sums is not None:
-            numbers = f"{sums.area:032b}{sums.weight:064b}{sums.row_moment:064b}{sums.column_moment:064b}"
-            limits = "".join(f"{place:016b}" for place in (*sums.greatest, *sums.least))
-            out["sums"] = numbers + limits * bool(sums.area)
+            self._numbers = f"{sums.area:032b}{sums.weight:064b}{sums.row_moment:064b}{sums.column_moment:064b}"
+            limits = "".join(f"{place:016b}" for place in (*sums.greatest, *sums.least)) * bool(sums.area)
+        out["sums"] = self._numbers + limits
         if in_valid:
             for depth, start, _, end in marked(in_data, in_position, self.lanes, self.width):
                 ended = self.sums.beat(depth, start, end, *codes(threshold, 1, self.width))
         self._late.append(ended)
         if rst:
-            self._late = deque([None] * len(self._late))
+            self._late, self._numbers = deque([None] * len(self._late)), ""
         return out
