@@ -223,6 +223,17 @@ def test_a_device_with_lanes(pipeline: td.Pipeline, sample: td.Sample, plug: Plu
     np.testing.assert_array_equal(frame.codes, pipeline(sample.image).codes)
 
 
+def test_a_second_depth_waits_for_the_end_of_the_first(pipeline: td.Pipeline, sample: td.Sample, plug: Plug) -> None:
+    with td.Device(plug(pipeline).address, pipeline) as device:
+        device.load()
+        first = device.depth(iter([sample.image] * 3))
+        next(first)
+        with pytest.raises(td.InputError, match=r"another depth\(\) of this device has not ended: end its loop"):
+            next(device.depth([sample.image]))
+        assert len(list(first)) == 2
+        assert len(list(device.depth([sample.image]))) == 1
+
+
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("bottom_first", [True, False])
 def test_codes_that_are_received_are_those_of_words_in_each_format(name: DepthFormatName, bottom_first: bool) -> None:

@@ -110,6 +110,7 @@ class Device(AbstractContextManager["Device"]):
         self._tables = held.signatures_of(pipeline)  # that the device is to use
         self._unseen: set[str] = set()  # those of a capture whose pictures this program did not send
         self._is_closed = self._is_window_checked = False
+        self._gives_depth = False
         self._is_set = False  # the settings are those of this program
         self._line: Channel | None = self._connect()
         self._twin = pipeline.copy()  # with what the device holds, by what is known
@@ -269,7 +270,8 @@ class Device(AbstractContextManager["Device"]):
         Raises
         ------
         InputError
-            A picture is not accepted. A stream leaves out and counts one that gives no right depth.
+            A picture is not accepted, or another `depth` has not ended. A stream leaves out and counts a picture that
+            gives no right depth.
         DeviceError
             The device has other tables or settings than the pipeline, or computes another depth: it needs `load`; or it
         does not answer.
@@ -283,7 +285,7 @@ class Device(AbstractContextManager["Device"]):
             require_flag(Argument("stream", stream))
         if pictures is None and stream is False:
             raise InputError(Argument("stream", stream), ": without pictures", remedy="give pictures")
-        with self._open_line() as line:
+        with self._only_depth(), self._open_line() as line:
             held.require_tables(line, self._tables)
             light = self._require_settings(line)
             if pictures is None:
@@ -338,6 +340,17 @@ class Device(AbstractContextManager["Device"]):
         )
 
     # The line.
+
+    @contextmanager
+    def _only_depth(self) -> Iterator[None]:
+        """Raise InputError while another `depth` gives frames: each would take those of the other."""
+        if self._gives_depth:
+            raise InputError("another depth() of this device has not ended", remedy="end its loop, or close() it")
+        self._gives_depth = True
+        try:
+            yield
+        finally:
+            self._gives_depth = False
 
     def _connect(self) -> Channel:
         """Open the line, and compare the device with the pipeline."""
