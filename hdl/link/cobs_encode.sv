@@ -47,7 +47,7 @@ module cobs_encode #(
   assign out_valid = state != Collect;
   assign out_data = state == Code ? 8'(count) + 8'd1 : state == Bytes ? stored : '0;
 
-  td_ram #(.Width(8), .Depth(1 << PlaceWidth)) u_piece (
+  td_ram #(.Width(8), .Depth(1 << PlaceWidth), .Style((8 << PlaceWidth) > td_memory_pkg::LateBits ? 1 : 0)) u_piece (
     .clk, .write_en(in_valid & in_ready), .write_address(PlaceWidth'(count)), .write_data(in_data),
     .read_en(reads), .read_address(PlaceWidth'(place)), .read_data(stored)
   );

@@ -107,7 +107,7 @@ module register_access
     endcase
   end
 
-  td_ram #(.Width(32), .Depth(Accesses)) u_values (
+  td_ram #(.Width(32), .Depth(Accesses), .Style(32 * Accesses > td_memory_pkg::LateBits ? 1 : 0)) u_values (
     .clk, .write_en(m_axil_rready & m_axil_rvalid), .write_address(done[WordWidth-1:0]), .write_data(m_axil_rdata),
     .read_en(leaves & (sent[1:0] == 2'd2) & ~reply_last), .read_address(sent[WordWidth+1:2]), .read_data(word)
   );
