@@ -5,9 +5,9 @@
 //                 \-> threshold_comparator --> contact
 //                 \-> contact_events --> m_event, record
 //
-// Stream in: depth codes of whole frames, Lanes neighbours in a beat, under the enable, which this unit makes: low while
-// the output is full. Streams out: AXI4-Stream, each depth sign-extended to whole bytes, the first in the lowest bits; a
-// packet of words for each frame. Latency: 1 cycle to m_axis, 2 to contact.
+// Stream in: depth codes of whole frames, Lanes neighbours in a beat, under the enable, which this unit makes: low
+// while the output is full. Streams out: AXI4-Stream, each depth sign-extended to whole bytes, the first in the lowest
+// bits; a packet of words for each frame. Latency: 1 cycle to m_axis, 2 to contact.
 // Models: models/tactile_depth/chip/contact/depth_gate.py, models/tactile_depth/chip/contact/.
 
 `default_nettype none
