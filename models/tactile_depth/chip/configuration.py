@@ -278,10 +278,7 @@ class Configuration:
 
     @property
     def down_words(self) -> int:
-        """Modes per clock on the way down, at most the square root of the depth values per clock.
-
-        More would cost more, and fewer would delay the last row, on which the whole map waits.
-        """
+        """Modes per clock on the way down, the root of `lanes`: more cost more, fewer delay the whole map."""
         return 1 << (self.lanes.bit_length() - 1) // 2
 
     @property
@@ -298,11 +295,7 @@ class Configuration:
 
     @property
     def words_per_row(self) -> int:
-        """Stored words side by side in a row of the tridiagonal solver's frame store.
-
-        They are those of a clock, or as many as fit an UltraRAM's row, or one as the rows of a block RAM are narrow.
-        The spectral solver stores one word in a row, because it reads columns.
-        """
+        """Words in a row of the frame store: those of a clock, or as many as an UltraRAM takes; spectral: one."""
         packed = ULTRA_WIDTH // self.data_width if self.store_style == ULTRA and self.solver == "tridiagonal" else 1
         return self.up_paths if self.up_paths > 1 else packed
 

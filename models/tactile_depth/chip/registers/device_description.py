@@ -18,8 +18,7 @@ BESIDE_ARITHMETIC = (
     *("Lanes", "RowInverseIn", "RowInverseOut", "WordsPerRow", "DownWords", "DownTableWords", "UpTableWords"),
     *("DownSettledWidth", "UpSettledWidth", "FrameLatency", "StoreStyle", "CaptureLog2", "PitchNm", "TablesCrc"),
 )
-"""Fields of Config that depth of a picture does not depend on but in last bits, by the lanes, beside those of the
-camera."""
+"""Fields of Config that depth does not depend on, or that follow from the others, beside those of the camera."""
 
 
 def is_arithmetic(name: str) -> bool:
