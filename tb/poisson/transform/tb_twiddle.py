@@ -43,10 +43,10 @@ def built(kind: str, *values: int, **runs: object) -> Structure:
 
 STRUCTURES = (
     built("twiddle_inverse", 4, 8, 8, 27, 27, 18, 17, 0, on=VERILATOR),
-    built("twiddle_forward", 4, 4, 4, 9, 9, 7, 6, 0, on=ICARUS, mutants=ICARUS),
+    built("twiddle_forward", 4, 4, 4, 9, 9, 6, 5, 0, on=ICARUS, mutants=ICARUS),
     built("phase_forward", 2, 4, 4, 15, 12, 10, 12, 1, on=ICARUS),
     built("phase_inverse", 4, 2, 2, 9, 9, 7, 4, 0, on=ICARUS),
-    built("twiddle_inverse", 1, 32, 8, 6, 6, 5, 4, 0, on=ICARUS, mutants=ICARUS),
+    built("twiddle_inverse", 1, 32, 16, 6, 6, 5, 4, 0, on=ICARUS, mutants=ICARUS),
     built("twiddle_forward", 1, 16, 8, 35, 35, 24, 23, 0),
     built("phase_inverse", 1, 64, 64, 24, 27, 18, 14, 0),
     built("phase_inverse", 2, 128, 128, 27, 27, 18, 17, 0),
