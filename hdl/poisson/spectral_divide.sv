@@ -35,6 +35,7 @@ module spectral_divide #(
   localparam int PositionWidth = $clog2(Columns);
   localparam int Words = Columns * (Columns + 1) / 2;
   localparam int AddressWidth = $clog2(Words);
+  localparam int TriangleWidth = AddressWidth - 1;  // Columns (Columns - 1) / 2 is the largest
   localparam int ProductWidth = Width + CoeffWidth;
   localparam int ShiftedWidth = ProductWidth + (1 << ShiftWidth) - 1;
   localparam int ToShifted = 5;  // cycles from a start to the shifted product: address, ROM, operands, product, shift
@@ -42,7 +43,8 @@ module spectral_divide #(
 
   // p: burst in the frame, t: word in the burst; tri_p = p (p + 1) / 2, tri_t likewise.
   logic [PositionWidth-1:0] p_q, p, t;
-  logic [AddressWidth-1:0] tri_p_q, tri_p, tri_t_q, tri_t, address;
+  logic [TriangleWidth-1:0] tri_p_q, tri_p, tri_t_q, tri_t;
+  logic [AddressWidth-1:0] address;
   logic active;
   td_burst_counter #(.Words(Columns)) u_counter (
     .clk, .rst, .en, .start(in_start), .position(t), .active
@@ -56,10 +58,10 @@ module spectral_divide #(
 
   always_ff @(posedge clk) begin
     if (en) begin
-      address <= (t <= p) ? tri_p + AddressWidth'(t) : tri_t + AddressWidth'(p);
-      tri_t_q <= tri_t + AddressWidth'(t) + AddressWidth'(1);
+      address <= (t <= p) ? AddressWidth'(tri_p) + AddressWidth'(t) : AddressWidth'(tri_t) + AddressWidth'(p);
+      tri_t_q <= tri_t + TriangleWidth'(t) + TriangleWidth'(1);
       p_q <= burst_ends ? p + PositionWidth'(1) : p;
-      tri_p_q <= burst_ends ? tri_p + AddressWidth'(p) + AddressWidth'(1) : tri_p;
+      tri_p_q <= burst_ends ? tri_p + TriangleWidth'(p) + TriangleWidth'(1) : tri_p;
     end
   end
 

@@ -27,7 +27,7 @@ STRUCTURES = (
     built({"columns": 16}, on=VERILATOR),
     # Here the largest reciprocals exceed 2^(CoeffWidth - 1): they shift further than Drop drops.
     built({"columns": 16, "coefficient_width": 10, "depth_range_px": 0.1, "gradient_limit": 4.0}, on=ICARUS),
-    built({"columns": 32, "data_width": 12, "coefficient_width": 10}, mutants=ICARUS),
+    built({"columns": 16, "data_width": 12, "coefficient_width": 10}, mutants=ICARUS),
     built({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 40.0}),
 )
 PROTOCOL = {"protocol_beats": {"Beats": "Columns", "Rows": "Columns"}}
