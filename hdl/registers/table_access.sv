@@ -44,25 +44,33 @@ module table_access
   localparam int MapWords = ReferenceWords > ZeroWords ? ReferenceWords : ZeroWords;
   localparam int IndexWidth = $clog2(SlopeWords > MapWords ? SlopeWords : MapWords);
 
-  logic [31:0] size, high;
-  logic [IndexWidth-1:0] index, last;
+  function automatic logic [31:0] words(input int code);  // entries of a table
+    case (code)
+      TableSelectGradient: return GradientWords;
+      TableSelectCoefficients: return CoefficientWords;
+      TableSelectReference: return ReferenceWords;
+      default: return ZeroWords;
+    endcase
+  endfunction
+
+  // Each table compares the index with its constant, and `select` chooses behind: a short path from `select`.
+  logic [TableSelectSelectCount-1:0] has, ends;
+  logic [31:0] high;
+  logic [IndexWidth-1:0] index;
   logic has_entry, writes, asked, reads, asked_low, had_entry;
+  for (genvar code = 0; code < TableSelectSelectCount; code++) begin : g_table
+    assign has[code] = 32'(index) < words(code);
+    assign ends[code] = index == IndexWidth'(words(code) - 32'd1);
+  end
+  assign has_entry = has[select];
 
   always_comb begin
-    case (32'(select))
-      TableSelectGradient: size = GradientWords;
-      TableSelectCoefficients: size = CoefficientWords;
-      TableSelectReference: size = ReferenceWords;
-      default: size = ZeroWords;
-    endcase
     case (read_offset)
       TableIndexOffset: read_data = 32'(index);
-      TableSizeOffset: read_data = size;
+      TableSizeOffset: read_data = words(32'(select));
       default: read_data = '0;
     endcase
   end
-  assign last = IndexWidth'(size - 32'd1);
-  assign has_entry = 32'(index) < size;
   assign write_refused = write_offset == TableLowOffset && (!has_entry || !(&write_mask) || closed[select]);
   assign writes = write && write_offset == TableLowOffset && !write_refused && !rst;
   assign reads = asked && has_entry && !rst;
@@ -80,7 +88,7 @@ module table_access
     asked <= read && read_late;
     if (read) asked_low <= read_offset == TableLowOffset;
     if (asked) had_entry <= has_entry;
-    if (writes || (reads && asked_low)) index <= index == last ? '0 : index + IndexWidth'(1);
+    if (writes || (reads && asked_low)) index <= ends[select] ? '0 : index + IndexWidth'(1);
     if (write && write_offset == TableIndexOffset) index <= IndexWidth'(write_ones | (32'(index) & ~write_mask));
     if (write && write_offset == TableHighOffset) high <= write_ones | (high & ~write_mask);
     if (rst) {asked, index, high} <= '0;
