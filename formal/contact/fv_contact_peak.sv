@@ -6,6 +6,7 @@
 
 parameter int Width = 2, Rows = 2, Columns = 3, Lanes = 1, BottomFirst = 0;
 input logic [3:0] chosen;
+input logic signed [Width:0] on_threshold;  // that of in_above
 
 localparam int Pixels = Rows * Columns;
 localparam int ToPeak = 3 + $clog2(Lanes);  // clocks from the last beat of a frame
@@ -27,8 +28,10 @@ logic [3:0] watched;
 logic [Lanes-1:0] above, is_watched;
 logic signed [Width-1:0] depth, depth_now, depth_q;
 for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
-  logic signed [Width-1:0] of_lane;
+  logic signed [Width-1:0] of_lane, in_lane;
   assign of_lane = data_q[lane*Width+:Width];
+  assign in_lane = in_data[lane*Width+:Width];
+  always_comb assume (in_above[lane] == ((Width + 1)'(in_lane) > on_threshold));
   assign above[lane] = valid_q & ((Width + 1)'(of_lane) > (touching ? off_q : on_q));
   assign is_watched[lane] = place_q + 4'(lane) == watched;
 end

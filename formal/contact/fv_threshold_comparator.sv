@@ -29,6 +29,7 @@ end
 
 always_comb begin
   if (started) begin
+    if (in_valid) compares: assert (above == exceeds);
     if (fired) fires_in_one_clock: assert (contact);
     else if (hold_q && contact_q) keeps: assert (contact);
     else follows_this_frame: assert (contact == of_this_frame);

@@ -34,6 +34,7 @@ module contact_events
   input  wire                     in_valid,
   input  wire depth_position_t    in_position,
   input  wire  [Lanes*Width-1:0]  in_data,         // depth codes, signed
+  input  wire  [Lanes-1:0]        in_above,        // depths of the beat above the frame's on_threshold
   input  wire  [31:0]             in_time,         // of the frame that begins, cycles
   input  wire frame_flags_t       in_flags,        // of the frame that ends
   input  wire  signed [31:0]      on_threshold,    // depth code
@@ -58,17 +59,12 @@ module contact_events
   localparam int Delay = $clog2(Lanes) + 6;  // until the first beat of a frame finds the area threshold
   localparam int PositionBits = $bits(depth_position_t);
 
-  // A code in one bit more than a depth has; a code beyond those of depths stays beyond them.
-  function automatic logic signed [Width:0] held(input logic signed [31:0] code);
-    return {code[31], code[31:Width-1] == {(33 - Width) {code[31]}} ? code[31] : ~code[31], code[Width-2:0]};
-  endfunction
-
   // Settings and time: of the frame that comes in (_q: since its first beat), and of the last frame (last_).
 
-  logic signed [Width:0] on, on_q, off, off_q, area_limit;
+  logic signed [Width:0] on_q, off, off_q, area_limit;
   logic [31:0] minimum, last_minimum, start_time, last_time, frame;
   logic [7:0] frames_needed, last_frames_needed;
-  assign {on, off} = in_position.frame_start ? {held(on_threshold), held(off_threshold)} : {on_q, off_q};
+  assign off = in_position.frame_start ? (Width + 1)'(near_depths(off_threshold, Width)) : off_q;
 
   frame_flags_t last_flags;
   logic touching_next, count_valid, peak_valid, any_above, last_any, began, ended;
@@ -78,7 +74,7 @@ module contact_events
   contact_peak #(
     .Width(Width), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(BottomFirst)
   ) u_peak (
-    .clk, .rst, .in_valid, .in_position, .in_data, .on_threshold(on), .off_threshold(off), .touching(touching_next),
+    .clk, .rst, .in_valid, .in_position, .in_data, .in_above, .off_threshold(off), .touching(touching_next),
     .count_valid, .count, .peak_valid, .any_above, .peak, .peak_row, .peak_column
   );
   contact_debounce #(.AreaWidth(CountWidth)) u_debounce (
@@ -146,8 +142,9 @@ module contact_events
 
   always_ff @(posedge clk) begin
     if (in_valid && in_position.frame_start) begin
-      {on_q, off_q} <= {on, off};
-      area_limit <= held(area_threshold);
+      on_q <= (Width + 1)'(near_depths(on_threshold, Width));
+      off_q <= off;
+      area_limit <= (Width + 1)'(near_depths(area_threshold, Width));
       minimum <= minimum_area;
       frames_needed <= debounce;
       start_time <= in_time;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // contact_peak: count and peak of the depths above the threshold, once a frame.
 //
-//   above = a depth greater than the threshold in force: on_threshold while not touching, off_threshold while touching
+//   above = as in_above says while not touching; a depth greater than off_threshold while touching
 //
 // Stream in: depth codes that are never held back, Lanes neighbours in a beat with the first in the lowest bits, in
-// raster order or, BottomFirst, bottom row first. A frame that begins inside another begins afresh. Thresholds are read
-// with each beat. `touching` is read in the cycle of count_valid at the earliest, so it may be decided in that cycle
-// from `count`. Latency: count_valid comes 2 cycles after the last beat of a frame, peak_valid 3 + log2(Lanes); `count`
-// and the peak are those of the frame in that cycle alone. Gaps change nothing.
+// raster order or, BottomFirst, bottom row first. A frame that begins inside another begins afresh. off_threshold is
+// read with each beat. `touching` is read in the cycle of count_valid at the earliest, so it may be decided in that
+// cycle from `count`. Latency: count_valid comes 2 cycles after the last beat of a frame, peak_valid 3 + log2(Lanes);
+// `count` and the peak are those of the frame in that cycle alone. Gaps change nothing.
 // Bit-accurate model: models/tactile_depth/chip/contact/contact_peak.py.
 
 `default_nettype none
@@ -27,7 +27,7 @@ module contact_peak
   input  wire                     in_valid,
   input  wire depth_position_t    in_position,
   input  wire  [Lanes*Width-1:0]  in_data,        // depth codes, signed
-  input  wire  signed [Width:0]   on_threshold,   // depth code
+  input  wire  [Lanes-1:0]        in_above,       // depths of the beat above a threshold
   input  wire  signed [Width:0]   off_threshold,  // depth code
   input  wire                     touching,       // the threshold in force is off_threshold
   output logic                    count_valid,
@@ -70,6 +70,7 @@ module contact_peak
     column_q <= column;
     row_q <= row;
     data_q <= {data_q[0], in_data};
+    above_on <= in_above;
     valid_q <= in_valid;
     frame_start_q <= frame_start;
     frame_end_q <= in_position.frame_end;
@@ -78,10 +79,7 @@ module contact_peak
   for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
     logic signed [Width-1:0] depth;
     assign depth = in_data[lane*Width+:Width];
-    always_ff @(posedge clk) begin
-      above_on[lane] <= (Width + 1)'(depth) > on_threshold;
-      above_off[lane] <= (Width + 1)'(depth) > off_threshold;
-    end
+    always_ff @(posedge clk) above_off[lane] <= (Width + 1)'(depth) > off_threshold;
   end
 
   // Count. The first beat of the next frame may be here in the cycle of count_valid. `touching` comes late, from the

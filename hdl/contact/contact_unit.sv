@@ -3,7 +3,7 @@
 //
 //   depth --> depth_gate --> m_axis
 //                 \-> threshold_comparator --> contact
-//                 \-> contact_events --> m_event, record
+//                 \----------> contact_events --> m_event, record
 //
 // Stream in: depth codes of whole frames, Lanes neighbours in a beat, under the enable, which this unit makes: low
 // while the output is full. Streams out: AXI4-Stream, each depth sign-extended to whole bytes, the first in the lowest
@@ -78,9 +78,10 @@ module contact_unit
   end
   assign frame_leaves = m_axis_tvalid & m_axis_tready & m_position.frame_end;
 
+  logic [Lanes-1:0] tap_above;
   threshold_comparator #(.Width(DataWidth), .Lanes(Lanes)) u_comparator (
     .clk, .rst, .in_valid(tap_valid), .in_frame_start(tap_position.frame_start), .in_data(tap_data),
-    .threshold(settings.threshold), .hold(settings.hold_contact), .contact
+    .threshold(settings.threshold), .hold(settings.hold_contact), .above(tap_above), .contact
   );
 
   logic [31:0] tap_time;
@@ -88,7 +89,7 @@ module contact_unit
   contact_events #(
     .Width(DataWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(Tridiagonal)
   ) u_events (
-    .clk, .rst, .in_valid(tap_valid), .in_position(tap_position), .in_data(tap_data),
+    .clk, .rst, .in_valid(tap_valid), .in_position(tap_position), .in_data(tap_data), .in_above(tap_above),
     .in_time(tap_time), .in_flags(tap_flags), .on_threshold(settings.threshold),
     .off_threshold(settings.off_threshold), .area_threshold(settings.area_threshold),
     .minimum_area(settings.minimum_area), .debounce(settings.debounce), .touching, .record_valid, .record, .record_lost,

@@ -6,12 +6,14 @@
 //   contact <- 0 when hold is cleared, unless this frame has had a depth above the threshold
 //
 // Stream in: depth codes as they leave (valid and ready together), Lanes of them in a beat; it never stalls them. A
-// threshold written inside a frame counts from the next one on. Latency: 1 cycle. Bit-accurate model:
-// models/tactile_depth/chip/contact/threshold_comparator.py.
+// threshold written inside a frame counts from the next one on. `above` says in the cycle of a beat which of its depths
+// are above. Latency: 1 cycle. Bit-accurate model: models/tactile_depth/chip/contact/threshold_comparator.py.
 
 `default_nettype none
 
-module threshold_comparator #(
+module threshold_comparator
+  import td_types_pkg::*;
+#(
   parameter int Width = 24,
   parameter int Lanes = 1  // depths in a beat
 ) (
@@ -22,23 +24,20 @@ module threshold_comparator #(
   input  wire  [Lanes*Width-1:0]  in_data,         // depth codes, signed
   input  wire  signed [31:0]      threshold,       // depth code
   input  wire                     hold,
+  output logic [Lanes-1:0]        above,           // with each beat
   output logic                    contact
 );
 
-  logic signed [31:0] threshold_q, threshold_now;
-  assign threshold_now = in_frame_start ? threshold : threshold_q;
-
-  logic [Lanes-1:0] higher;
-  logic above;
+  logic signed [Width:0] threshold_q, threshold_now;
+  assign threshold_now = in_frame_start ? (Width + 1)'(near_depths(threshold, Width)) : threshold_q;
   for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
     logic signed [Width-1:0] depth;
     assign depth = in_data[lane*Width+:Width];
-    assign higher[lane] = 32'(depth) > threshold_now;
+    assign above[lane] = (Width + 1)'(depth) > threshold_now;
   end
-  assign above = |higher;
 
   logic raised, raised_next;  // by a depth of this frame
-  assign raised_next = in_valid ? above | (raised & ~in_frame_start) : raised;
+  assign raised_next = in_valid ? above != '0 | (raised & ~in_frame_start) : raised;
 
   always_ff @(posedge clk) begin
     if (in_valid) threshold_q <= threshold_now;

@@ -8,12 +8,15 @@ import cocotb
 
 from formal.entries import Proof
 from tactile_depth.chip.contact.contact_events import EventsByClock, latency
-from tactile_depth.chip.fixed_point import joined
+from tactile_depth.chip.contact.threshold_comparator import above
+from tactile_depth.chip.fixed_point import codes, joined
 from tb.contact.beats import Frames, beats, levels
 from tb.contact.tb_contact_peak import NAMES
 from tb.lockstep import CLOCKS, WORD, Pins, play
-from tb.stream import parameters
+from tb.stream import depth_position, parameters
 from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
+
+FRAME_START = depth_position(True, False, False)
 
 built = of_parameters(" ".join(NAMES))
 STRUCTURES = (
@@ -67,6 +70,9 @@ async def records(dut: Any) -> None:
             pins["in_data"] = chance.choice(depths)
         if model.events.frames % 16 < 4:
             pins |= {"in_data": pins["in_data"] | signs, "on_threshold": lowest, "off_threshold": lowest}
+        of_frame = None if pins["in_position"] & FRAME_START else model.events.settings
+        (on,) = [of_frame.on_threshold] if of_frame else codes(pins["on_threshold"], 1, 32)
+        pins["in_above"] = above(codes(pins["in_data"], lanes, width), on)
         if not pins["in_valid"]:
             pins["in_position"] = chance.getrandbits(3)
 

@@ -7,8 +7,10 @@ import cocotb
 
 from formal.entries import Proof
 from tactile_depth.chip.contact.contact_peak import PeakByClock
+from tactile_depth.chip.contact.threshold_comparator import above
+from tactile_depth.chip.fixed_point import codes
 from tb.contact.beats import Frames, beats, levels
-from tb.lockstep import CLOCKS, play
+from tb.lockstep import CLOCKS, Pins, play
 from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, Structure, of_parameters
 
@@ -56,5 +58,11 @@ async def peaks(dut: Any) -> None:
     width, lanes = parameters(dut, "Width", "Lanes")
     bits = {"in_valid": 1.0, "interrupts": 0.02, "touching": 1.0}
     thresholds = dict.fromkeys(("on_threshold", "off_threshold"), levels(width, width + 1))
-    model = PeakByClock(*parameters(dut, *NAMES))
-    await play(dut, model, {**bits, **thresholds, "in_data": beats(width, lanes)}, Frames(dut), clocks=3 * CLOCKS)
+    model, frames = PeakByClock(*parameters(dut, *NAMES)), Frames(dut)
+
+    def legal(model: PeakByClock, pins: Pins) -> None:
+        frames(model, pins)
+        (on,) = codes(pins.pop("on_threshold"), 1, width + 1)
+        pins["in_above"] = above(codes(pins["in_data"], lanes, width), on)
+
+    await play(dut, model, {**bits, **thresholds, "in_data": beats(width, lanes)}, legal, clocks=3 * CLOCKS)

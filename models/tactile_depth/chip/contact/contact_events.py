@@ -256,6 +256,7 @@ class EventsByClock:
         in_valid: int,
         in_position: int,
         in_data: int,
+        in_above: int,
         in_time: int,
         in_flags: int,
         m_event_tready: int,

@@ -92,12 +92,12 @@ class PeakByClock:
 
     def _clear(self) -> None:
         self._late: deque[Peak | None] = deque([None] * (cycles_to_peak(self.lanes) - 1))
-        self._beat: Any = None  # of the clock before: depths, position and both thresholds
+        self._beat: Any = None  # of the clock before: depths, position, which are above, threshold
 
-    def _judged(self, touching: int, data: int, position: int, on: int, off: int) -> Peak | None:
+    def _judged(self, touching: int, data: int, position: int, above: int, off: int) -> Peak | None:
         """Take the beat of the clock before; `touching` is read now."""
-        for beat in marked(data, position, self.lanes, self.width):
-            peak = self.peak.beat(*beat, off if touching else on)
+        for lane, beat in enumerate(marked(data, position, self.lanes, self.width)):
+            peak = self.peak.beat(*beat, off if touching else beat[0] - (above >> lane & 1))
         return peak
 
     def clock(
@@ -107,7 +107,7 @@ class PeakByClock:
         in_valid: int,
         in_position: int,
         in_data: int,
-        on_threshold: int,
+        in_above: int,
         off_threshold: int,
         touching: int,
     ) -> dict[str, int | None]:
@@ -120,8 +120,8 @@ class PeakByClock:
             row, column = peak.position
             out |= {"any_above": bool(peak.above), "peak": peak.peak, "peak_row": row, "peak_column": column}
         self._late.append(self._judged(touching, *self._beat) if self._beat else None)
-        on, off = (codes(level, 1, self.width + 1)[0] for level in (on_threshold, off_threshold))
-        self._beat = (in_data, in_position, on, off) if in_valid else None
+        (off,) = codes(off_threshold, 1, self.width + 1)
+        self._beat = (in_data, in_position, in_above, off) if in_valid else None
         if rst:
             self._clear()
         return out

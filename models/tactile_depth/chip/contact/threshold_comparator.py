@@ -3,11 +3,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tactile_depth.chip.fixed_point import codes
 
 LATENCY = 1  # from the depth value that raises contact
+
+
+def above(depths: Sequence[int], threshold: int | None) -> int:
+    """Return a bit for each depth of a beat, 1 if it is above the threshold, the first in the lowest bit."""
+    assert threshold is not None
+    return sum((depth > threshold) << lane for lane, depth in enumerate(depths))
 
 
 @dataclass
@@ -68,9 +75,10 @@ class ThresholdComparator:
         """Advance by one clock edge; return the outputs before it."""
         out: dict[str, int | None] = {"contact": self.contact}
         if in_valid:
-            highest = max(codes(in_data, self.lanes, self.width))
+            depths = codes(in_data, self.lanes, self.width)
             (level,) = codes(threshold, 1, 32)
-            self.beat(highest, bool(in_frame_start), level, bool(hold))
+            self.beat(max(depths), bool(in_frame_start), level, bool(hold))
+            out["above"] = above(depths, self.threshold)
         else:
             self.idle(bool(hold))
         if rst:
