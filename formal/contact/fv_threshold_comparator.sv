@@ -16,8 +16,9 @@ for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
   assign exceeds[lane] = excess > 0;
 end
 
-logic fired, of_this_frame, contact_q, hold_q, beat_q, within_frame;
+logic began, fired, of_this_frame, contact_q, hold_q, beat_q, within_frame;
 always_ff @(posedge clk) begin
+  began <= ~rst & (began | (in_valid & in_frame_start));
   of_frame <= in_force;
   fired <= ~rst & in_valid & (exceeds != '0);
   of_this_frame <= ~rst & (in_valid ? exceeds != '0 | (of_this_frame & ~in_frame_start) : of_this_frame);
@@ -29,7 +30,7 @@ end
 
 always_comb begin
   if (started) begin
-    if (in_valid) compares: assert (above == exceeds);
+    if (in_valid && (began || in_frame_start)) compares: assert (above == exceeds);
     if (fired) fires_in_one_clock: assert (contact);
     else if (hold_q && contact_q) keeps: assert (contact);
     else follows_this_frame: assert (contact == of_this_frame);

@@ -73,23 +73,28 @@ module butterfly #(
       assign b = {in_im[B*Width+:Width], in_re[B*Width+:Width]};
     end
 
+    // Half a sum of two words always fits, half a difference does not. Rotated: -1 where it depends on the beat.
+    localparam int Rotated = RotateBit < 0 ? 0 : RotateBit < PathWidth ? (A >> RotateBit) & 1 : -1;
     for (genvar result = 0; result < 4; result++) begin : g_result
       localparam int Part = result % 2;  // 0: real, 1: imaginary
       localparam int Path = result < 2 ? A : B;
+      localparam int Minus = Part == (Inverse != 0 ? 0 : 1) ? Rotated : 0;  // b is negated
+      localparam int Fits = Halve != 0 && Minus == (result < 2 ? 0 : 1) ? 1 : 0;
       logic [Width-1:0] operand;
       logic carry, unused_carry;
       logic signed [Width:0] sum, sum_q;
-      logic signed [Width-1:0] rounded, rounded_q;
+      logic signed [Width-1+Fits:0] rounded;
+      logic signed [Width-1:0] rounded_q;
       assign operand = result < 2 ? b[Part] : ~b[Part];
       assign carry = result < 2 ? minus[Part] : ~minus[Part];
       assign {sum, unused_carry} = {a[Part][Width-1], a[Part], 1'b1} + {operand[Width-1], operand, carry};
-      td_round_saturate #(.InWidth(Width + 1), .Drop(Halve), .OutWidth(Width)) u_round (
+      td_round_saturate #(.InWidth(Width + 1), .Drop(Halve), .OutWidth(Width + Fits)) u_round (
         .in(sum_q), .out(rounded), .clipped(clipped[2*Path+Part])
       );
       always_ff @(posedge clk) begin
         if (en) begin
           sum_q <= sum;
-          rounded_q <= rounded;
+          rounded_q <= rounded[Width-1:0];
         end
       end
       if (Part == 0) begin : g_re
