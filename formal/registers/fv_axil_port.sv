@@ -46,7 +46,7 @@ always_comb begin
   if (started) begin
     one_write_in_flight: assert (s_axil_awready == (!has_address && !rst) && s_axil_wready == (!has_data && !rst));
     one_read_in_flight: assert (s_axil_arready == (!read_busy && !rst));
-    a_write_when_due: assert (write == (has_address && has_data && !answered && until_late == 3'd0));
+    a_write_when_due: assert (write == (has_address && has_data && !answered && !read_taken && until_late == 3'd0));
     response_when_due: assert (s_axil_bvalid == answered);
     answer_when_due: assert (s_axil_rvalid == (read_busy && !read_taken && until_late == 3'd0));
     read_when_taken: assert (read == read_taken);
@@ -64,7 +64,7 @@ always_comb begin
 
     data_first: cover (has_data && !has_address && s_axil_awvalid);
     write_waits_for_a_late_read: cover (has_address && has_data && until_late == 3'd1);
-    both_at_once: cover (write && read && read_late);
+    write_waits_for_a_read: cover (has_address && has_data && !answered && read && !read_late);
     refused_and_stalled: cover (response_waits && refused && answer_waits && answer_refused);
   end
 end

@@ -84,7 +84,7 @@ end
 logic effective, refused, camera_writes, camera_reads;
 int offset;
 logic [31:0] mask;
-assign effective = has_address & has_data & ~answered & (since == 3'd0);
+assign effective = has_address & has_data & ~answered & ~reads & (since == 3'd0);
 assign offset = 32'(address) / 4 * 4;
 always_comb begin
   for (int bit_number = 0; bit_number < 32; bit_number++) mask[bit_number] = strobes[bit_number/8];

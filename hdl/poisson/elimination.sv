@@ -57,9 +57,7 @@ module elimination #(
   logic [RowWidth-1:0] row, row_q;
   logic active;
   assign row = in_frame_start ? '0 : row_q;
-  td_burst_counter #(.Words(Clocks)) u_counter (
-    .clk, .rst, .en, .start(in_start), .position, .active
-  );
+  assign active = in_start | (position != '0);  // the counter rests at 0: no path leads from in_start to the table
 
   logic [Words*CoeffWidth-1:0] coefficients;
   logic [Words*LastShiftWidth-1:0] shifts, shifts_q;
@@ -76,6 +74,7 @@ module elimination #(
   logic [ToState-1:0][PositionWidth-1:0] position_q;
   always_ff @(posedge clk) begin
     if (en) begin
+      if (active) position <= position + PositionWidth'(1);
       start_q <= {start_q[ToState-3:0], in_start};
       frame_start_q <= {frame_start_q[ToState-3:0], in_frame_start};
       active_q <= {active_q[ToEnd-2:0], active};
@@ -87,7 +86,7 @@ module elimination #(
       out_frame_start <= frame_start_q[ToStart-1];
       shifts_q <= shifts;
     end
-    if (rst) {start_q, frame_start_q, active_q, out_start, out_frame_start} <= '0;
+    if (rst) {position, start_q, frame_start_q, active_q, out_start, out_frame_start} <= '0;
   end
 
   // The row above: d and its c.

@@ -55,9 +55,7 @@ module substitution #(
   logic [BeatWidth-1:0] position;
   logic active;
   logic [PairWidth-1:0] pair, pair_q;  // 0: with the first row of the frame
-  td_burst_counter #(.Words(Beats)) u_counter (
-    .clk, .rst, .en, .start(in_start), .position, .active
-  );
+  assign active = in_start | (position != '0);  // the counter rests at 0: no path leads from in_start to the table
   assign pair = !in_start ? pair_q : in_frame_start ? PairWidth'(Pairs - 1) : pair_q - PairWidth'(1);
 
   logic [Words*CoeffWidth-1:0] coefficients;  // minus the products of two
@@ -76,6 +74,7 @@ module substitution #(
   always_ff @(posedge clk) begin
     if (en) begin
       pair_q <= pair;
+      if (active) position <= position + BeatWidth'(1);
       start_q <= {start_q[ToWords-2:0], in_start};
       frame_start_q <= {frame_start_q[ToWords-2:0], in_frame_start};
       alone_start_q <= {alone_start_q[ToWords-2:0], in_alone};
@@ -84,7 +83,7 @@ module substitution #(
       first_q <= {first_q[ToBelow-2:0], pair == PairWidth'(Pairs - 1)};
       position_q <= {position_q[ToSum-1:0], position};
     end
-    if (rst) {start_q, frame_start_q, active_q} <= '0;
+    if (rst) {position, start_q, frame_start_q, active_q} <= '0;
   end
   assign out_start = start_q[ToWords-1];
   assign out_frame_start = frame_start_q[ToWords-1];

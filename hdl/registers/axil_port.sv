@@ -3,12 +3,12 @@
 //
 // Write: `write` is high in the cycle after both address and data were taken, whichever came first; the response leaves
 // in the cycle after it. Read: `read` is high in the cycle after the address was taken, and read_data of that cycle
-// leaves in the next; if read_late is high with `read`, late_data of 4 cycles later leaves in the cycle after that, and
-// writes wait until then. A response waits for its ready, and the next transaction of its kind waits for the response.
-// `refused`, with the data, makes the response SLVERR. No ready output depends on an input of the port in the same
-// cycle. While rst is high every ready is low: no access is taken that would find no answer. A reset forgets those in
-// flight, but a write that is due in its first cycle takes effect: `write` comes from a register, because it begins
-// long paths. Model: models/tactile_depth/chip/registers/axil_port.py.
+// leaves in the next; if read_late is high with `read`, late_data of 4 cycles later leaves in the cycle after that.
+// A write waits while `read` is high, and for late data. A response waits for its ready, and the next transaction of its
+// kind waits for the response. `refused`, with the data, makes the response SLVERR. No ready output depends on an input
+// of the port in the same cycle. While rst is high every ready is low: no access is taken that would find no answer. A
+// reset forgets those in flight, but a write that is due in its first cycle takes effect: `write` comes from a register,
+// because it begins long paths. Model: models/tactile_depth/chip/registers/axil_port.py.
 
 `default_nettype none
 
@@ -90,7 +90,7 @@ module axil_port
       strobe <= s_axil_wstrb;
     end
     write <= (address_held || s_axil_awvalid) && (data_held || s_axil_wvalid) && !write && !s_axil_bvalid
-        && waiting[2:0] == '0 && !(read && read_late);
+        && waiting[2:0] == '0 && !(read && read_late) && !(s_axil_arvalid && s_axil_arready);
     if (write) begin
       s_axil_bvalid <= 1'b1;
       s_axil_bresp <= write_refused ? SlaveError : Okay;

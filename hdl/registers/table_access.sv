@@ -6,7 +6,8 @@
 // TABLE_HIGH or TABLE_LOW raises table_command.read in the cycle after `read`; the entry's words shall stand on
 // table_answer from 3 cycles later until the next such read, and stand on late_data then. Refused: what has no entry, a
 // write with a byte that is not strobed, and a write of a table that is `closed`. A write that is refused does nothing.
-// In a reset neither is commanded.
+// In a reset neither is commanded. Whether there is an entry comes from a register, because it begins long paths: no
+// access and no other `select` may come in the cycle before one, where the access of a read is the cycle after `read`.
 // Model: models/tactile_depth/chip/registers/table_access.py.
 
 `default_nettype none
@@ -62,7 +63,6 @@ module table_access
     assign has[code] = 32'(index) < words(code);
     assign ends[code] = index == IndexWidth'(words(code) - 32'd1);
   end
-  assign has_entry = has[select];
 
   always_comb begin
     case (read_offset)
@@ -85,6 +85,7 @@ module table_access
   assign table_command.low = write_ones;
 
   always_ff @(posedge clk) begin
+    has_entry <= has[select];
     asked <= read && read_late;
     if (read) asked_low <= read_offset == TableLowOffset;
     if (asked) had_entry <= has_entry;

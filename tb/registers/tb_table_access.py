@@ -28,7 +28,9 @@ class Access:
     Attributes
     ----------
     asked : str
-        Port to a table that was read in the clock before.
+        Port to a table that was read in the clock before: this clock has an access.
+    accessed, select : bool, int
+        Whether the clock before had an access or a reset; its table.
     low, had_entry : bool
         Whether the late word is the lower one, and whether there was an entry; None before the first.
     """
@@ -36,6 +38,7 @@ class Access:
     def __init__(self, sizes: dict[int, int]) -> None:
         self.model, self.asked, self.low = TableAccess(sizes), "", False
         self.had_entry: bool | None = None
+        self.accessed, self.select = True, 0
 
     def clock(self, **pins: int) -> dict[str, int | None]:
         """Advance by one clock edge; return the outputs before it, None where one does not count."""
@@ -52,7 +55,7 @@ class Access:
         command |= {"index": model.values[INDEX], "high": model.values[HIGH], "low": ones}
         shown = {INDEX: model.values[INDEX], SIZE: model.sizes[select]}
         out: dict[str, int | None] = {
-            "write_refused": refused,
+            "write_refused": refused if pins["write"] else None,
             "read_data": shown.get(at, 0),
             "read_late": at in PORTS,
             "table_command": structs.pack("table_command_t", command),
@@ -64,6 +67,7 @@ class Access:
             self.had_entry = model.read(self.asked, select) is not None
         if writes:
             model.write(name, ones, mask, select)
+        self.accessed, self.select = bool(self.asked or pins["write"] or pins["rst"]), select
         self.asked = at if pins["read"] and at in PORTS else ""
         self.low = at == LOW if pins["read"] else self.low
         if pins["rst"]:
@@ -85,9 +89,11 @@ async def accesses(dut: Any) -> None:
     }
 
     def legal(access: Access, pins: Pins) -> None:
-        """Access nothing in the clock after a read of a table."""
+        """Access nothing in the clock before an access, and no other table."""
         bus.drive(pins)
-        pins["read"] &= not access.asked
-        pins["write"] &= not access.asked
+        pins["write"] &= not (access.asked or access.accessed)
+        pins["read"] &= not (access.asked or pins["write"])
+        if access.asked or pins["write"]:
+            pins["select"] = access.select
 
     await play(dut, Access(sizes), pins, legal)

@@ -86,7 +86,7 @@ class AxilPort:
             "s_axil_rvalid": self.answer is not None,
             "s_axil_rdata": rdata,
             "s_axil_rresp": rresp,
-            "write": self.address_held and self.data_held and self.written is None and not self.late,
+            "write": self.address_held and self.data_held and self.written is None and not (self.reads or self.late),
             "write_offset": self.address,
             "write_ones": ones,
             "write_mask": mask,
