@@ -3,12 +3,12 @@
 //
 // Write: `write` is high in the cycle after both address and data were taken, whichever came first; the response leaves
 // in the cycle after it. Read: `read` is high in the cycle after the address was taken, and read_data of that cycle
-// leaves in the next; if read_late is high with `read`, late_data of 4 cycles later leaves in the cycle after that.
-// A write waits while `read` is high, and for late data. A response waits for its ready, and the next one of its kind
-// waits for the response. `refused`, with the data, makes the response SLVERR. No ready output depends on an input
-// of the port in the same cycle. While rst is high every ready is low: no access is taken that would find no answer. A
-// reset forgets those in flight, but a write that is due in its first cycle takes effect: `write` comes from a register,
-// because it begins long paths. Model: models/tactile_depth/chip/registers/axil_port.py.
+// leaves in the next; if read_late is high with `read`, late_data of 4 cycles later leaves in the cycle after that. A
+// write waits while `read` is high, and for late data. A response waits for its ready, and the next one of its kind
+// waits for the response. `refused`, with the data, makes the response SLVERR. No ready output depends on an input of
+// the port in the same cycle. While rst is high every ready is low: no access is taken that would find no answer. A
+// reset forgets those in flight, but a write that is due in its first cycle takes effect: `write` comes from a
+// register, because it begins long paths. Model: models/tactile_depth/chip/registers/axil_port.py.
 
 `default_nettype none
 
