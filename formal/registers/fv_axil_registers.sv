@@ -247,6 +247,7 @@ logic b_stalled, r_stalled, refused_q, write_due, read_due;
 logic [1:0] bresp_q, rresp_q;
 logic [31:0] rdata_q;
 logic asks;  // a table
+logic had_entry, had_known;  // a clock ago
 assign asks = reads & (read_offset == TableHighOffset || read_offset == TableLowOffset);
 logic [31:0] index_written, select_written;
 assign index_written = written(index);
@@ -272,6 +273,8 @@ always_ff @(posedge clk) begin
     since <= since == 3'd4 ? 3'd0 : since + 3'd1;
   end
   if (since == 3'd1) has_entry <= index < size;
+  had_entry <= index < size;
+  had_known <= started;
   b_stalled <= s_axil_bvalid & ~s_axil_bready;
   r_stalled <= s_axil_rvalid & ~s_axil_rready;
   bresp_q <= s_axil_bresp;
@@ -380,6 +383,7 @@ always_comb begin
     table_word: assert (table_command.select == select && 32'(table_command.index) == index
         && table_command.high == high);
     if (table_command.write) table_data: assert (table_command.low == data && index < size);
+    if (had_known) of_the_clock_before: assert (dut.u_access.has_entry == had_entry);
     never_both: assert (!(table_command.write && since != 3'd0));
     banks: assert (table_bank == ((frame_start && !rst) ? bank ^ requested : bank));
     if (table_command.write) only_settled: assert (table_bank[select] == table_in_use[select]);

@@ -113,6 +113,7 @@ module zero_capture
     always_ff @(posedge clk) map_write_zero[s*Width+:Width] <= complete & ~request & ~rst ? mean[Width-1:0] : '0;
   end
 
+  logic starts;  // the last frame has begun
   logic zero_valid = 1'b0;  // a cycle before the first reset writes nothing
   assign map_write = zero_valid & ~rst;  // at power-up it is not known which bank is free
   assign ends = zero_valid & map_write_node == NodeWidth'(Nodes - 1);
@@ -127,10 +128,11 @@ module zero_capture
     end
   end
   assign captured = {
-    map_write, sums_up & frame_start & last_frame, map_write, ends & ~rst, g_signature[Side-1].signature
+    map_write, starts, map_write, ends & ~rst, g_signature[Side-1].signature
   };
 
   always_ff @(posedge clk) begin
+    starts <= sums_up & frame_start & last_frame & ~request & ~rst;
     zero_valid <= complete;
     map_write_node <= write_node;
     if (begins) begin

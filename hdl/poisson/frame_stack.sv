@@ -67,14 +67,15 @@ module frame_stack #(
   // Rows of the frame that have begun; behind the last one no row counts until a frame begins.
   logic [RowWidth-1:0] begun, begun_q;
   logic [ClockWidth-1:0] position;
-  logic active, begins;  // begins: the reader
+  logic active, begins, ends;  // begins: the reader; ends: the last row has begun
   logic down;  // the way of the writer through the memories, up from row 0 or down; behind begins that of the reader
   td_burst_counter #(.Words(Clocks)) u_clocks (
     .clk, .rst, .en, .start(in_start), .position, .active
   );
   assign begun = !in_start ? begun_q : in_frame_start ? RowWidth'(1)
       : begun_q == RowWidth'(Rows + 1) ? begun_q : begun_q + RowWidth'(1);
-  assign begins = active & (position == ClockWidth'(BeginsAt)) & (begun == RowWidth'(Rows));
+  assign ends = in_start ? !in_frame_start && begun_q == RowWidth'(Rows - 1) : begun_q == RowWidth'(Rows);
+  assign begins = active & (position == ClockWidth'(BeginsAt)) & ends;
 
   // Writer, as the words come.
   logic [Lead-1:0] start_q;

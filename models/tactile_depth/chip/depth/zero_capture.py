@@ -65,7 +65,7 @@ class ZeroCapture:
         self._columns, self._nodes = columns >> block_log2, (columns >> block_log2) * (rows >> block_log2)
         self.size, self.place, self.busy = rows * self._row, 0, False
         self._beats: deque[tuple[int, int] | None] = deque([None] * levels(lanes, block_log2))
-        self._starts = False  # the last frame of a capture
+        self._starts = False  # the last frame of a capture began in the clock before
         self._stop()
 
     def _stop(self) -> None:
@@ -108,14 +108,14 @@ class ZeroCapture:
         self._done = node == self._nodes // self._side - 1
         taken = pins["en"] and pins["in_valid"]
         self._beats.append((self.place, pins["in_data"]) if taken else None)
-        beat, self._starts = self._beats.popleft(), False
+        beat, starts, self._starts = self._beats.popleft(), self._starts, False
         self._late.append(beat and self._take(*beat, pins["log2_frames"]))
         word = 0 if zero is None else signature(codes(zero, self._side, self._width), 0)
-        out["captured"] = Captured(valid, self._starts, valid, valid and self._done, word).bits
+        out["captured"] = Captured(valid, starts, valid, valid and self._done, word).bits
         self.place = (self.place + 1) % self.size if taken else self.place
         if pins["request"] or pins["rst"]:
             self._stop()
-            self.busy = not pins["rst"]
+            self.busy, self._starts = not pins["rst"], False
         if pins["rst"]:
             self.place = 0
             self._beats = deque([None] * len(self._beats))
