@@ -83,18 +83,24 @@ module butterfly #(
       logic [Width-1:0] operand;
       logic carry, unused_carry;
       logic signed [Width:0] sum, sum_q;
-      logic signed [Width-1+Fits:0] rounded;
-      logic signed [Width-1:0] rounded_q;
+      logic signed [Width-1:0] rounded, rounded_q;
       assign operand = result < 2 ? b[Part] : ~b[Part];
       assign carry = result < 2 ? minus[Part] : ~minus[Part];
       assign {sum, unused_carry} = {a[Part][Width-1], a[Part], 1'b1} + {operand[Width-1], operand, carry};
-      td_round_saturate #(.InWidth(Width + 1), .Drop(Halve), .OutWidth(Width + Fits)) u_round (
-        .in(sum_q), .out(rounded), .clipped(clipped[2*Path+Part])
-      );
+      if (Fits != 0) begin : g_fits
+        logic unused_sign;
+        td_round_saturate #(.InWidth(Width + 1), .Drop(Halve), .OutWidth(Width + 1)) u_round (
+          .in(sum_q), .out({unused_sign, rounded}), .clipped(clipped[2*Path+Part])
+        );
+      end else begin : g_limited
+        td_round_saturate #(.InWidth(Width + 1), .Drop(Halve), .OutWidth(Width)) u_round (
+          .in(sum_q), .out(rounded), .clipped(clipped[2*Path+Part])
+        );
+      end
       always_ff @(posedge clk) begin
         if (en) begin
           sum_q <= sum;
-          rounded_q <= rounded[Width-1:0];
+          rounded_q <= rounded;
         end
       end
       if (Part == 0) begin : g_re
