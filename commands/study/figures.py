@@ -13,6 +13,7 @@ import subprocess
 import sysconfig
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ from commands.common import published, recorded, run_request
 from commands.common.repository import GENERATED, ROOT
 from commands.common.tabular import Table
 from commands.common.zero_offset import untouched
-from commands.cost.cost import CAMERAS, KINDS, cost
+from commands.cost.cost import CAMERAS, KINDS, XCZU7EV, cost
 from commands.hardware import estimate, lut_runs, memory_model, synth, synthesis
 from commands.hardware.targets import DEFAULT_TARGET, SEVEN_SERIES, TARGETS
 from commands.run.sim_table import coefficient_words
@@ -185,24 +186,10 @@ def published_design() -> Table:
         ("DSP48E2", *of_grids(dsp)),
         ("as an ASIC, 45 nm", "-", f"{published.ASIC_AREA_MM2:.2f} mm2, {published.ASIC_POWER_MW:.0f} mW", "-"),
     ]
-    for solver in estimate.RECORDED:
-        _, area, power, _ = estimate.at_45_nm(solver)
-        rows.append((f"this design, {solver}: estimate at 45 nm", "-", f"{area:.2f} mm2, {power:.0f} mW", "-"))
+    for name, one in {name: one for name, _, one, _ in at_45_nm() if name != "chip"}.items():
+        area, power = span(one.placed_mm2, ".2f"), span(one.placed_mw, ".0f")
+        rows.append((f"this design, {name}: estimate at 45 nm", "-", f"{area} mm2, {power} mW", "-"))
     return Table(("published", *map(str, GRIDS)), rows)
-
-
-def estimated() -> Table:
-    rows = []
-    for solver, logic in estimate.RECORDED.items():
-        _, area, power, _ = estimate.at_45_nm(solver)
-        memory = memory_model.area_um2(logic.memory_bits, memory_model.NODE_NM) / 1e6
-        least, greatest = logic.logic_mw
-        middle = sum(logic.logic_mw) / 2
-        sums = (f"{logic.logic_mm2} + {memory:.3f} = {area:.2f}", f"{middle:g} + {power - middle:.1f} = {power:.0f}")
-        rows.append((solver, f"{least:g} to {greatest:g}", f"{logic.memory_bits:,}", *sums))
-    rows.append(("published", "-", "-", f"{published.ASIC_AREA_MM2:.2f}", f"{published.ASIC_POWER_MW:.0f}"))
-    head = ("45 nm, 166 MHz, 128 x 128", "recorded logic, mW", "bits", "logic and memory, mm2", "logic and memory, mW")
-    return Table(head, rows)
 
 
 def runs(command: str) -> Iterator[tuple[str, dict[str, Any], tuple[str, str]]]:
@@ -280,25 +267,70 @@ def routed_alone() -> Table:
 NEXUS_CELLS = {"MULT18_CORE": "18 x 18", "OXIDE_EBR": "block memories", "OXIDE_COMB": "LUT", "OXIDE_FF": "registers"}
 
 
+def measured() -> list[tuple[str, dict[str, Any], tuple[str, str]]]:
+    """Return the runs of `make asic`, the published configuration first, in the order of the recorded ones at 45 nm."""
+    order = list(estimate.recorded_runs())
+    return sorted(runs("asic"), key=lambda run: order.index(run[0]) if run[0] in order else len(order))
+
+
+def at_45_nm() -> Iterator[tuple[str, str, estimate.Estimate, str]]:
+    """Yield design, how its logic is known, estimate and commit; that of later RTL is known by the ratios."""
+    old = estimate.recorded_runs()
+    for name, run in old.items():
+        yield name, "", estimate.at_45_nm(run["at_45"]), run["commit"]
+    for name, figures, (commit, _) in measured():
+        if name in old and commit != old[name]["commit"]:
+            yield name, ", by the ratios", estimate.of_default_library(figures["logic"]), commit
+
+
+def span(values: Iterable[float], form: str) -> str:
+    """Return the least and the greatest value."""
+    each = list(values)
+    return f"{min(each):{form}} to {max(each):{form}}"
+
+
 def in_cells() -> Table:
-    rows: list[tuple[object, ...]] = []
-    for name, figures, source in runs("asic"):
-        for index, row in enumerate(figures["figures"]):
-            slack = f"{figures['worst_slack_ns']:.2f}" if index == 0 else ""
-            what = f"{name}: {row['name']}" if index == 0 else row["name"]
-            rows.append((what, f"{row['area_mm2']:.2f}", f"{row['power_mw']:,.0f}", slack, *source))
-    return Table(("make asic", "area, mm2", "power, mW", "worst slack, ns", *SOURCE), rows)
+    rows = []
+    for name, figures, source in measured():
+        logic, (cells, memory, _), largest = figures["logic"], figures["figures"], figures["cores"][0]
+        frames = f"{cells['power_mw']:,.0f}"
+        if len(by_frame := figures["power_mw_by_frame"]) > 1:
+            frames += f" ({span(by_frame, ',.0f')})"
+        area, power = (f"{memory['area_mm2']:.2f}", f"{memory['power_mw']:,.0f}")
+        part = f"{largest['area_um2'] / 1e6:.2f}, {largest['with_delays_mw']:,.0f}, {largest['delay_factor']:.2f}"
+        row = (name, f"{cells['area_mm2']:.2f}", area, frames, power, part, f"{logic['worst_slack_ns']:.2f}")
+        rows.append((*row, *source))
+    head = ("`make asic`", "logic, mm2", "memories", "logic, mW (each frame)", "memories")
+    return Table((*head, "`td_multiply`: mm2, mW, by delays", "slack, ns", *SOURCE), rows)
 
 
-def largest_cores() -> Table:
-    rows = [
-        (f"`{row['core']}`", name, f"{row['area_um2'] / 1e6:.2f}", f"{row['with_delays_mw']:.0f}",
-         f"{row['delay_factor']:.2f}", *source)
-        for name, figures, source in runs("asic")
-        for row in figures["cores"]
-    ]  # fmt: skip
-    powers = ("power with delays, mW", "power of toggling, with delays over without")
-    return Table(("core", "design", "area, mm2", *powers, *SOURCE), rows)
+def recorded_at_45_nm() -> Table:
+    rows = []
+    for name, run in estimate.recorded_runs().items():
+        logic, ratios = run["at_45"], estimate.ratios(name)
+        figures = (f"{logic['area_mm2']:.3f}", f"{logic['power_mw']:.1f}", f"{logic['worst_slack_ns']:.2f}")
+        each = (f"{ratios.area:.4f}", f"{ratios.clock:.4f}", f"{ratios.toggling:.4f}", f"{ratios.leakage:.1f}")
+        rows.append((name, *figures, *each, run["commit"]))
+    head = ("logic", "mm2", "mW", "slack, ns", "ratio of area", "of clock pins", "of toggling", "leakage, mW per mm2")
+    return Table((*head, "commit"), rows)
+
+
+def estimated() -> Table:
+    rows: list[tuple[str, ...]] = []
+    for name, known, one, commit in at_45_nm():
+        area = (f"{one.logic_mm2:.2f}", span(one.memory_mm2, ".2f"), span(one.placed_mm2, ".2f"))
+        power = (f"{one.logic_mw:.0f}", f"{one.memory_mw:.0f}", span(one.placed_mw, ".0f"))
+        rows.append((f"{name}{known}", *area, *power, commit))
+    bits = published.RESOURCES[128]["UltraRAM"] * prod(XCZU7EV.ultra_shape or ())
+    per_bit = min(ram.area_um2 / ram.bits for ram in memory_model.RAMS)
+    stores = f"its UltraRAMs, {bits / 1e6:.2f} Mbit, at {per_bit:.2f} um2 a bit"
+    whole = (f"{published.ASIC_AREA_MM2:.2f}", "-", "-", f"{published.ASIC_POWER_MW:.0f}")
+    rows[1:1] = [
+        ("published", "-", "-", *whole, "-"),
+        (stores, "-", f"{bits * per_bit / 1e6:.2f}", *"-----"),
+    ]
+    head = ("45 nm, 166 MHz", "logic, mm2", "memories", "placed", "logic, mW", "memories", "placed")
+    return Table((*head, "commit"), rows)
 
 
 def against_software() -> Iterator[Table]:
@@ -391,7 +423,7 @@ TABLES: dict[str, Callable[[], Table | Iterable[Table]]] = {
     "make fpga": routed,
     "make fpga TARGET=nexus": routed_alone,
     "make asic": in_cells,
-    "make asic by core": largest_cores,
+    "recorded at 45 nm": recorded_at_45_nm,
     "estimate at 45 nm": estimated,
     "whole map against software": against_software,
     "cost model": lut_runs.runs_and_model,

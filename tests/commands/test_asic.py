@@ -73,7 +73,7 @@ def test_power_by_hand(library: Any) -> None:
     netlist = Netlist("toggle", {"clk": ("input", [2]), "q": ("output", [3])}, gates, library, 2)
     load, _ = typical(library)
     assert load == 8  # four inverters
-    flip_flop, inverter = power_of(netlist, {3: 1.0, 4: 1.0}, clock_hz=1e6)
+    flip_flop, inverter = power_of(netlist, clock_hz=1e6).of({3: 1.0, 4: 1.0})
     # Both edges of 1 fF at 2 V and 7 + 9 fJ; D takes 0.5 fJ; Q drives 2 fF and an output of 8 fF.
     assert flip_flop[CLOCK] == pytest.approx((1 * 4 + 16) * 1e-15 * 1e6)
     assert flip_flop[INTERNAL] == pytest.approx(0.5e-15 * 1e6)
@@ -119,25 +119,62 @@ def test_flip_flops() -> None:
         clock_pin(cell)
 
 
-def test_memory_model_is_the_macro_at_45_nm() -> None:
-    assert memory_model.area_um2(512 * 64, 45) == pytest.approx(17_301, rel=0.005)
-    assert memory_model.energy_pj(64, 45, 1.1) == pytest.approx(5.3)
-    assert memory_model.energy_pj(32, 90, 2.2) == pytest.approx(0.5 * 5.3 * 2 * 4)
-    assert memory_model.area_um2(1, 90) == pytest.approx(4 * 0.53)
-    assert memory_model.times_ns(90) == (0.61, 0.1)
+def test_a_memory_has_the_figures_per_bit_of_the_nearest_macro() -> None:
+    for ram in memory_model.RAMS:
+        assert memory_model.nearest(ram.depth, ram.width) == ram
+    assert memory_model.area_um2(512, 64, 45) == pytest.approx(17_301, rel=0.005)
+    assert memory_model.area_um2(500, 32, 90) == pytest.approx(4 * 500 * 32 * 5_065.7 / 8_192)
+    assert memory_model.energy_pj(512, 64, 45, 1.1) == pytest.approx(5.3)
+    assert memory_model.energy_pj(512, 50, 90, 2.2) == pytest.approx(50 / 64 * 5.3 * 2 * 4)
+    assert memory_model.leakage_mw(16_384, 24) == pytest.approx(16_384 * 24 * 1.8766 / (2_048 * 39))
+    second = memory_model.area_um2(2, 3, 45, two_ports=True) - memory_model.area_um2(2, 3, 45)
+    assert second == pytest.approx(6 * 148 * 0.045**2)
+    assert memory_model.times_ns(90) == (0.87, 0.1)
 
 
-@pytest.mark.parametrize(("solver", "logic", "bits", "milliwatts"), [
-    ("tridiagonal", 0.227, 865_095, 89.5),
-    ("spectral", 0.41, 1_420_403, 181.5),
-])  # fmt: skip
-def test_estimate_at_45_nm(solver: str, logic: Any, bits: int, milliwatts: Any) -> None:
-    """Compare with figures by hand: recorded logic, 0.53 um2 and 5.3 / 64 pJ per bit at 166 MHz."""
-    _, area_mm2, power_mw, source = estimate.at_45_nm(solver)
-    assert area_mm2 == pytest.approx(logic + 0.53e-6 * bits)
-    accessed = estimate.RECORDED[solver].accessed_bits_per_clock
-    assert power_mw == pytest.approx(milliwatts + accessed * 5.3 / 64 * 0.166)
-    assert source.startswith("not of this run")
+LOGIC = {"area_mm2": 0.2, "clock_mw": 20.0, "toggling_mw": 60.0, "leakage_mw": 4.0, "flip_flops": 10_000}
+
+
+def test_estimate_at_45_nm() -> None:
+    """Compare with figures by hand, at twice the clock that the logic was measured at."""
+    memories = [[512, 64, 1.0, 1.0], [2048, 39, 1.0, 0.0]]
+    result = estimate.at_45_nm(LOGIC | {"clock_mhz": 83.0, "memories": memories})
+    one_port = (17_301.4 + 45_478.8) / 1e6
+    memory_mw = (2 * 5.3 + 6.855) * 0.166 + 0.8232 + 1.8766
+    assert result.logic_mm2 == 0.2
+    assert result.logic_mw == pytest.approx(2 * 80 + 4)
+    assert result.memory_mm2 == pytest.approx((one_port, one_port + 512 * 64 * 148 * 0.045**2 / 1e6))
+    assert result.memory_mw == pytest.approx(memory_mw)
+    factors = (100_819 / 96_427, 58_967 / 49_942)
+    assert result.placed_mm2 == pytest.approx(
+        [0.2 * factor / 0.68 + memory for factor, memory in zip(factors, result.memory_mm2, strict=True)]
+    )
+    wires = (225.5 / 192.7 - 1, 55.66 / 30.28 - 1)
+    trees = (46.784 * 1.3 / 19_807, 19.702 * 1.2 / 4_035)
+    assert result.placed_mw == pytest.approx(
+        [
+            164 + 120 * estimate.capacitances() * wire + 10_000 * tree * 0.166 + memory_mw
+            for wire, tree in zip(wires, trees, strict=True)
+        ]
+    )
+
+
+@pytest.mark.parametrize("name", estimate.recorded_runs())
+def test_ratios_of_one_design_lead_from_another_to_its_recorded_figures(name: str) -> None:
+    """The designs have other shares of clock pins, toggling and leakage, and nearly the same ratios."""
+    small, large = (estimate.recorded_runs()[name][node] for node in ("at_45", "at_180"))
+    result = estimate.of_default_library(large | {"memories": []})
+    assert result.logic_mm2 == pytest.approx(small["area_mm2"], rel=0.015)
+    assert result.logic_mw == pytest.approx(small["power_mw"], rel=0.015)
+    assert small["codes_wrong"] == large["codes_wrong"] == 0
+
+
+@pytest.mark.parametrize("name", estimate.recorded_runs())
+def test_accesses_of_recorded_memories_sum_up_to_what_was_counted(name: str) -> None:
+    """That run counted accesses of all memories together; those of each follow from its kind."""
+    run = estimate.recorded_runs()[name]["at_45"]
+    bits = sum(width * (reads + writes) for _, width, reads, writes in run["memories"])
+    assert bits == pytest.approx(run["accessed_bits"], rel=5e-4)
 
 
 def test_whole_design_in_gates(library: Any, tmp_path: Path) -> None:
@@ -205,7 +242,10 @@ def test_delays_count_for_the_cores_in_which_they_act(library: Any) -> None:
     gates = [Instance("INV", path, {"A": [i], "Y": [i + 1]}) for i, path in ((5, "a"), (9, "b"))]
     netlist = Netlist("two", {"clk": ("input", [2])}, gates, library, 2)
     activity = activity_of({6: 0.2, 10: 0.1}, {6: 0.3}, {6: 0.9})
-    rows = {row["core"]: row for row in asic.core_rows(netlist, {"a": "one", "b": "other"}, activity, 1e6)}
+    rows = {
+        row["core"]: row
+        for row in asic.core_rows(netlist, {"a": "one", "b": "other"}, power_of(netlist, 1e6), activity)
+    }
     assert (rows["one"]["delay_factor"], rows["other"]["delay_factor"]) == (pytest.approx(3), 1)
     still = library.cells["INV"].leakage * library.watt * 1e3
     for name, factor in (("one", 3), ("other", 1)):
@@ -214,22 +254,49 @@ def test_delays_count_for_the_cores_in_which_they_act(library: Any) -> None:
 
 
 @pytest.mark.parametrize("node_nm", [180.0, 45.0])
-def test_figures(library: Any, node_nm: Any) -> None:
-    """Print one figure each for area and power, and the published figures at their node only."""
-    core = {"core": "one", "cells": 7, "area_um2": 2e6, "delay_factor": 2.0, "with_delays_mw": 30.0}
+@pytest.mark.parametrize("by_ratios", [False, True])
+def test_figures(node_nm: float, by_ratios: bool) -> None:
+    """Print area and power, the estimate where logic is at 45 nm or leads there, published figures at their node."""
+    core = {"core": "one", "cells": 7, "flip_flops": 3, "area_um2": 2e6, "delay_factor": 2.0, "with_delays_mw": 30.0}
     core["without_delays_mw"] = {"clock": 10.0, "internal": 4.0, "switching": 5.0, "leakage": 1.0}
-    options = asic.Options(repository.ROOT, library, node_nm, 100.0)
-    figures = asic.figures([core], [Macro(8, 1000, "")], activity_of({}, {}, {}), options, "spectral")
-    memory_mm2 = 8000 * 0.53e-6 * (node_nm / 45) ** 2
-    memory_mw = 8 * 0.75 * 5.3 / 64 * node_nm / 45 * (2 / 1.1) ** 2 * 100 / 1000
+    report = {"node_nm": node_nm, "cores": [core], "power_mw_by_frame": [29.0, 31.0], "codes": 9, "codes_wrong": 0}
+    report |= {"clocks_wrong_with_delays": 0, "memories": [[1000, 8, 0.5, 0.25]], "method": asic.METHOD}
+    report["timing"] = {
+        "worst_slack_ns": 0.5,
+        "period_ns": 10.0,
+        "clock_mhz": 100.0,
+        "fastest_mhz": 105.3,
+        "path": "ab",
+    }
+    report["figures"] = figures = asic.figures(report, 2.0, by_ratios=by_ratios)
+    memory_mm2 = memory_model.area_um2(1000, 8, node_nm) / 1e6
+    memory_mw = 0.75 * memory_model.energy_pj(1000, 8, node_nm, 2.0) * 100 / 1000
     assert [row["area_mm2"] for row in figures[:3]] == pytest.approx([2, memory_mm2, 2 + memory_mm2])
     assert [row["power_mw"] for row in figures[:3]] == pytest.approx([30, memory_mw, 30 + memory_mw])
-    assert "with delays; 20.0 mW without" in figures[0]["source"]
-    time = {"worst_slack_ns": 0.5, "period_ns": 10.0, "fastest_mhz": 105.3, "path": ["u_a", "u_b"]}
-    text = asic.text({"cores": [core], "timing": time, "figures": figures, "method": asic.METHOD})
-    assert "worst slack 0.50 of 10.00 ns (105 MHz): u_a to u_b" in text
-    assert "45 nm estimate, spectral" in text
-    assert ("5.10" in text) == ("324.0" in text) == ("another pipeline" in text) == (node_nm == 45)
+    assert "with delays, 29.0 to 31.0 mW in 2 frames; 20.0 mW without" in figures[0]["source"]
+    text = asic.text(report)
+    assert "worst slack 0.50 of 10.00 ns (105 MHz): a to b" in text
+    assert ("placed and routed, at most" in text) == (by_ratios or node_nm == 45)
+    assert ("5.10" in text) == ("324.0" in text) == ("another pipeline" in text) == (node_nm == 45 and not by_ratios)
+
+
+def test_powers_are_the_means_of_frames() -> None:
+    frames = [
+        [
+            {
+                "core": "one",
+                "cells": 7,
+                "delay_factor": x,
+                "with_delays_mw": 10 * x,
+                "without_delays_mw": dict.fromkeys(asic.NAMES, x),
+            }
+        ]
+        for x in (1.0, 2.0)
+    ]
+    (row,) = asic.averaged(frames)
+    assert row == {"core": "one", "cells": 7, "delay_factor": 1.5, "with_delays_mw": 15.0} | {
+        "without_delays_mw": dict.fromkeys(asic.NAMES, 1.5)
+    }
 
 
 def test_delays() -> None:
