@@ -42,7 +42,7 @@ STRUCTURES = (
     built(CHOICES | {"rows": 9}, on=ICARUS),
     # Few bits are dropped: ties are common.
     built(CHOICES | {"neumann": True, "data_width": 12, "coefficient_width": 10}, mutants=ICARUS, on=ICARUS),
-    built(CHOICES | {"columns": 32, "data_width": 12, "coefficient_width": 10, "lanes": 16}, mutants=ICARUS),
+    built(CHOICES | {"neumann": True, "data_width": 12, "coefficient_width": 10, "lanes": 2}, mutants=ICARUS),
     built(CHOICES | {"rows": 9, "neumann": True, "lanes": 1}, on=ICARUS),
     built(CHOICES | {"rows": 21, "neumann": True, "data_width": 32, "coefficient_width": 24}),
 )
