@@ -68,7 +68,7 @@ module dst_forward #(
 
   logic fft_start, fft_frame_start;
   logic [Words*Width-1:0] fft_re, fft_im;
-  logic [$clog2(2*Words*Stages+1)-1:0] clipped_fft;
+  logic [$clog2(Words*Stages+1)-1:0] clipped_fft;
   fft #(
     .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Paths(Words), .Inverse(0)
   ) u_fft (

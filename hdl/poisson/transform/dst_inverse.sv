@@ -77,7 +77,7 @@ module dst_inverse #(
 
   logic fft_start, fft_frame_start;
   logic [Paths*Width-1:0] fft_re, fft_im;
-  logic [$clog2(2*Paths*Stages+1)-1:0] clipped_fft;
+  logic [$clog2(Paths*Stages+1)-1:0] clipped_fft;
   fft #(
     .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Paths(Paths), .Inverse(1)
   ) u_fft (

@@ -32,7 +32,7 @@ module fft #(
   parameter int Inverse    = 0,
   localparam int Log2Size = $clog2(Size),
   localparam int Stages = Log2Size + (Log2Size - 1) / 2,
-  localparam int CountWidth = $clog2(2 * Paths * Stages + 1)
+  localparam int CountWidth = $clog2(Paths * Stages + 1)  // of a sum and its difference, or of a product, one clips
 ) (
   input  wire                    clk,
   input  wire                    rst,
