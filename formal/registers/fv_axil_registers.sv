@@ -396,7 +396,8 @@ always_comb begin
     set_wins: cover (writes(StatusOffset) && data[StatusRowLongBit] && mask[StatusRowLongBit] && seen.faults.row_long
         && sticky[StatusRowLongBit]);
     refused_while_pending: cover (effective && offset == TableLowOffset && strobes == 4'b1111 && requested[TableCommitZeroBit]);
-    if (Camera != 0) camera_answer: cover (read_due && known_q && word_q == 32'h12345678 && rdata_q == '0 && write_due && !refused_q && offset == 32'h104);
+    if (Camera != 0) camera_answer: cover (read_due && known_q && word_q == 32'h12345678 && rdata_q == '0);
+    if (Camera != 0) camera_written: cover (write_due && !refused_q && offset == 32'h104);
     refused_outside: cover (effective && offset == TableLowOffset && index == size && size == ZeroWords && refused);
     captured: cover (frame_start && requested == 4'b1100 && reference_status.busy && !zero_status.busy);
     reads_centroid: cover (read_due && read_offset == RecordCentroidOffset && word_q == 32'h12345678 && known_q);
