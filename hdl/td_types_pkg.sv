@@ -230,7 +230,7 @@ package td_types_pkg;
     logic [31:0] low;
     low = (32'd1 << (width - 1)) - 32'd1;
     near_depths = (low & code) | (~low & {32{code[31]}});
-    if (near_depths != code) near_depths[width-1] = ~code[31];
+    near_depths[width-1] = code[31] ? &(code | low) : |(code & ~low);
   endfunction
 
 endpackage
