@@ -177,15 +177,9 @@ int main() {
   Window window(d);
   Values value(d.nets, 0), before;
   std::vector<uint32_t> toggles(d.nets, 0);
-  std::vector<List> readers(d.nets);
-  for (size_t g = 0; g < d.logic.size(); g++)
-    for (int i = 0; i < d.logic[g].count; i++) readers[d.logic[g].in[i]].push_back(static_cast<int32_t>(g));
-  std::vector<uint8_t> stale(d.logic.size(), 1);  // gates with an input that has changed
   const auto set = [&](int32_t net, uint8_t bit) {
-    if (value[net] == bit) return;
-    toggles[net]++;
+    toggles[net] += value[net] ^ bit;
     value[net] = bit;
-    for (const int32_t g : readers[net]) stale[g] = 1;
   };
   value[1] = 1;
   for (const int32_t net : d.high) value[net] = 1;
@@ -199,11 +193,7 @@ int main() {
     set(d.tlast, sent % d.columns == d.columns - 1);
     set(d.tuser, sent % size == 0);
     for (size_t i = 0; i < d.tdata.size(); i++) set(d.tdata[i], d.pixels[sent % size] >> i & 1);
-    for (size_t g = 0; g < d.logic.size(); g++)
-      if (stale[g]) {
-        stale[g] = 0;
-        set(d.logic[g].out, evaluate(d.logic[g], value));
-      }
+    for (const auto& gate : d.logic) set(gate.out, evaluate(gate, value));
 
     if (!reset) {
       if (value[d.depth_valid]) wrong += number(d.depth, value) != static_cast<uint32_t>(d.codes[received++ % d.codes.size()]);
