@@ -18,9 +18,9 @@ built = of_parameters("Columns Width Rows InWords Lanes WordsPerRow")
 STRUCTURES = (
     built(32, 24, 9, 4, 16, 8, on=VERILATOR),
     built(16, 16, 8, 2, 8, 4, on=ICARUS),
-    built(16, 16, 9, 1, 1, 3, on=ICARUS, mutants=ICARUS),
-    built(16, 12, 8, 1, 2, 1, on=ICARUS, mutants=ICARUS),
-    built(32, 12, 7, 2, 8, 4, on=ICARUS, mutants=ICARUS),
+    built(8, 10, 5, 1, 1, 3, on=ICARUS, mutants=ICARUS),
+    built(8, 10, 6, 1, 2, 1, on=ICARUS, mutants=ICARUS),
+    built(16, 10, 5, 2, 8, 4, on=ICARUS, mutants=ICARUS),
     built(64, 16, 6, 4, 32, 16, on=ICARUS),
     built(16, 16, 8, 1, 1, 1),
     built(16, 16, 9, 1, 2, 2),
