@@ -113,7 +113,7 @@ if (1) begin : g_steps
       rows: assert (32'(next_row) == (32'(dut.begun_q) < Rows ? 32'(dut.begun_q) : 0));
       burst_left: assert (left == (active_q[0] ? (PositionWidth + 1)'(Clocks - 1) - position_q[0] : '0));
       if (active_q[0]) burst: assert (row_q[0] == burst_row && 32'(dut.begun_q) == 32'(row_q[0]) + 1);
-      if (dut.start_q == '0) none_on_way: assert (dut.begun_q == (known ? dut.written_q : Rows + 1));
+      if (dut.start_q == '0) none_on_way: assert (dut.begun_q == (known ? dut.written_q : Rows));
       writes: assert (dut.write_active == active);
       if (active) present: assert ((known || dut.start_q[Lead-1]) && dut.write_position == position
           && 32'(dut.written) == 32'(row) + 1 && 32'(dut.gather) == (Clocks - 1 - 32'(position)) % Gather);
@@ -153,9 +153,13 @@ if (1) begin : g_steps
         if (next_row != '0) next_frame: assert (n + 32'(left) >= Clocks + Wait + 32'(next_row) * Clocks - 1);
         if (Due >= 0 && Due < (Pairs - 1) * Period) pairs_to_begin: assert (dut.starts_active
             && 32'(dut.start_time) == Due % Period && 32'(dut.pair) == Pairs - 1 - Due / Period);
+        if (Read >= 0 && Read < Leaves) first: assert (dut.first_pair == (Read < Period));
         if (Read >= 0 && Read < Leaves && Read % Period < Beats) reader: assert (32'(dut.read_time) == Read % Period
-            && dut.first_pair == (Read < Period) && dut.alone == (Rows % 2 != 0 && Read / Period == Pairs - 1)
             && 32'(dut.serve) == (Beats - 1 - Read % Period) % Serve);
+        for (int i = 0; i < 3; i++) begin
+          if (Due > i && Due <= i + Leaves)
+            assert (dut.alone_q[i] == (Rows % 2 != 0 && Due > i + (Pairs - 1) * Period));
+        end
         if (Read > 0 && Read <= Leaves && (Read - 1) % Period < Beats) behind: assert (dut.past_q[0] == (Read <= Period)
             && 32'(dut.word_serve) == (Beats - 1 - (Read - 1) % Period) % Serve);
         if (Read > 1 && Read <= Leaves + 1 && (Read - 2) % Period < Beats)
@@ -176,8 +180,6 @@ if (1) begin : g_steps
       for (int i = 0; i < 3; i++) begin
         assert (dut.read_start_q[i] == pair_begins(i + 1));
         assert (dut.frame_start_q[i] == starts[Latency+i]);
-        if (dut.read_start_q[i])
-          assert (dut.alone_q[i] == (Rows % 2 != 0 && starts[Latency+i+(Pairs-1)*Period]));
       end
     end
   end

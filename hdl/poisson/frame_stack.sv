@@ -54,8 +54,8 @@ module frame_stack #(
   localparam int PeriodWidth = $clog2(Period);
   localparam int GatherWidth = Gather > 1 ? $clog2(Gather) : 1;
   localparam int ServeWidth = Serve > 1 ? $clog2(Serve) : 1;
-  localparam int RowWidth = $clog2(Rows + 2);
-  localparam int PairWidth = $clog2(Pairs + 1);
+  localparam int RowWidth = $clog2(Rows + 1);
+  localparam int PairWidth = $clog2(Pairs);
   localparam int Lead = 6;
   localparam int ToRead = Lead - 3;  // clocks from out_start to the read of the first words
   localparam bit Past = InWords == Paths;  // the last two rows go past the memories
@@ -64,7 +64,7 @@ module frame_stack #(
   localparam logic [GatherWidth-1:0] FirstGather = GatherWidth'((Clocks - 1) % Gather);
   localparam logic [ServeWidth-1:0] FirstServe = ServeWidth'((Beats - 1) % Serve);
 
-  // Rows of the frame that have begun; behind the last one no row counts until a frame begins.
+  // Rows of the frame that have begun.
   logic [RowWidth-1:0] begun, begun_q;
   logic [ClockWidth-1:0] position;
   logic active, begins, ends;  // begins: the reader; ends: the last row has begun
@@ -72,8 +72,7 @@ module frame_stack #(
   td_burst_counter #(.Words(Clocks)) u_clocks (
     .clk, .rst, .en, .start(in_start), .position, .active
   );
-  assign begun = !in_start ? begun_q : in_frame_start ? RowWidth'(1)
-      : begun_q == RowWidth'(Rows + 1) ? begun_q : begun_q + RowWidth'(1);
+  assign begun = !in_start ? begun_q : in_frame_start ? RowWidth'(1) : begun_q + RowWidth'(1);
   assign ends = in_start ? !in_frame_start && begun_q == RowWidth'(Rows - 1) : begun_q == RowWidth'(Rows);
   assign begins = active & (position == ClockWidth'(BeginsAt)) & ends;
 
@@ -88,10 +87,10 @@ module frame_stack #(
   td_burst_counter #(.Words(Clocks)) u_write (
     .clk, .rst, .en, .start(write_start), .position(write_position), .active(write_active)
   );
-  assign gather = write_start ? FirstGather : gather_q;
+  assign gather = Gather == 1 ? '0 : write_start ? FirstGather : gather_q;
   assign write_row = write_active & (gather == '0);
   assign written = write_start ? begun_q : written_q;
-  assign stores = (written != RowWidth'(1)) & (written != RowWidth'(Rows)) & (written != RowWidth'(Rows + 1));
+  assign stores = (written != RowWidth'(1)) & (written != RowWidth'(Rows));
   always_ff @(posedge clk) begin
     if (en) begin
       begun_q <= begun;
@@ -101,7 +100,7 @@ module frame_stack #(
       down <= down ^ begins;
     end
     if (rst) begin
-      begun_q <= RowWidth'(Rows + 1);
+      begun_q <= RowWidth'(Rows);
       {start_q, down} <= '0;
     end
   end
@@ -121,18 +120,18 @@ module frame_stack #(
   logic [BeatWidth-1:0] read_time;
   logic [ToRead-1:0] read_start_q, frame_start_q, alone_q;
   logic [ServeWidth-1:0] serve, serve_q;
-  logic first_pair, first_pair_q, alone, alone_now;
+  logic first_pair, first_pair_q;
   td_burst_counter #(.Words(Period)) u_starts (
     .clk, .rst, .en, .start(out_start), .position(start_time), .active(starts_active)
   );
+  assign out_alone = Rows % 2 != 0 && pair == '0;
   assign pair_end = starts_active & (start_time == PeriodWidth'(Period - 1));
   assign read_start = read_start_q[ToRead-1];
   td_burst_counter #(.Words(Beats)) u_read (
     .clk, .rst, .en, .start(read_start), .position(read_time), .active(read_active)
   );
   assign first_pair = read_start ? frame_start_q[ToRead-1] : first_pair_q;
-  assign alone = Rows % 2 != 0 && (read_start ? alone_q[ToRead-1] : alone_now);
-  assign serve = read_start ? FirstServe : serve_q;
+  assign serve = Serve == 1 ? '0 : read_start ? FirstServe : serve_q;
   assign read_row = read_active & ~first_pair & (read_start | (serve == ServeWidth'(Serve - 1)));
   assign read_last = read_time == BeatWidth'(Beats - Serve);  // of the memory rows of a burst
 
@@ -140,17 +139,15 @@ module frame_stack #(
     if (en) begin
       out_start <= begins | (pair_end & (pair != '0));
       out_frame_start <= begins;
-      out_alone <= Rows % 2 != 0 && !begins && pair == PairWidth'(1);
       if (begins) pair <= PairWidth'(Pairs - 1);
       else if (pair_end && pair != '0) pair <= pair - PairWidth'(1);
       read_start_q <= {read_start_q[ToRead-2:0], out_start};
       frame_start_q <= {frame_start_q[ToRead-2:0], out_frame_start};
       alone_q <= {alone_q[ToRead-2:0], out_alone};
       first_pair_q <= first_pair;
-      alone_now <= alone;
       serve_q <= serve == '0 ? ServeWidth'(Serve - 1) : serve - ServeWidth'(1);
     end
-    if (rst) {pair, out_start, out_frame_start, out_alone, read_start_q, frame_start_q} <= '0;
+    if (rst) {pair, out_start, out_frame_start, read_start_q, frame_start_q} <= '0;
   end
 
   logic [1:0] past_q;
@@ -177,7 +174,7 @@ module frame_stack #(
     // The words of the row above, which comes with the row after it.
     logic [AddressWidth-1:0] write_address, read_address;
     logic write_now, read_now;
-    assign read_now = read_row & ~(alone & (side == 1));
+    assign read_now = read_row & ~(alone_q[ToRead-1] & (side == 1));
     assign write_now = write_row & stores & (written[0] == 1'(Rows - 1 - side));
     logic [RowWords*Width-1:0] words;
     td_ram #(.Width(RowWords * Width), .Depth(Depth), .Style(Style)) u_ram (
@@ -191,12 +188,12 @@ module frame_stack #(
     );
     always_ff @(posedge clk) begin
       if (en) begin
-        if (write_start && written == RowWidth'(1)) write_address <= down ? Top : '0;
+        if (written == RowWidth'(1)) write_address <= down ? Top : '0;
         else if (write_now) begin
           write_address <= address_after(write_address, write_position == ClockWidth'(Clocks - 1));
         end
         // A frame that was written upwards is read from the top down; its last burst needs no address behind it.
-        if (read_start && first_pair) read_address <= down ? Top : '0;
+        if (first_pair) read_address <= down ? Top : '0;
         else if (read_now) read_address <= address_after(read_address, read_last);
       end
     end
