@@ -184,8 +184,7 @@ if (1) begin : g_steps
       in_range: assert (32'(left) < Clocks && 32'(next_row) < Rows);
       now: assert (dut.active == active && (!active
           || (dut.position == position && dut.row == row)));
-      count: assert (dut.u_counter.running == left_some && (!left_some
-          || dut.u_counter.count == PositionWidth'((PositionWidth + 1)'(Clocks) - left)));
+      count: assert (dut.position == (left_some ? PositionWidth'((PositionWidth + 1)'(Clocks) - left) : '0));
       if (left_some) burst: assert (32'(burst_row) < Rows && dut.row_q == burst_row
           && next_row == (burst_row == RowWidth'(Rows - 1) ? '0 : burst_row + RowWidth'(1)));
       else if (next_row != '0) row_to_come: assert (dut.row_q == next_row);
