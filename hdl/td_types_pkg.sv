@@ -227,10 +227,11 @@ package td_types_pkg;
 
   // A threshold that fits one bit more than depths of `width` bits have; beyond those of depths it stays beyond them.
   function automatic logic signed [31:0] near_depths(input logic signed [31:0] code, input int width);
-    logic [31:0] low;
+    logic [31:0] low, word;
     low = (32'd1 << (width - 1)) - 32'd1;
-    near_depths = (low & code) | (~low & {32{code[31]}});
-    near_depths[width-1] = code[31] ? &(code | low) : |(code & ~low);
+    word = $unsigned(code);
+    near_depths = $signed((low & word) | (~low & {32{word[31]}}));
+    near_depths[width-1] = word[31] ? &(word | low) : |(word & ~low);
   endfunction
 
 endpackage
