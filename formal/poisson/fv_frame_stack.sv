@@ -92,18 +92,25 @@ if (1) begin : g_steps
 
   // The way through the memories of the frame that comes, of that which leaves, of that of the word followed.
   logic known, comes_down, leaves_down, word_down;  // known: a row of a frame came since the reset
+  logic [RowWidth-1:0] written_q;  // rows of which words came
+  logic [Lead-1:0] start_q;
+  assign start_q[Lead-2:0] = dut.start_q;
   always_ff @(posedge clk) begin
     if (en) begin
+      written_q <= dut.written;
+      start_q[Lead-1] <= dut.start_q[Lead-2];
       known <= known | active;
       if (active && position == '0 && row == '0) comes_down <= dut.down;
       if (starts[Reads]) leaves_down <= ~dut.down;
       if (!following) word_down <= comes_down;
     end
-    if (rst) known <= 1'b0;
+    if (rst) {known, start_q[Lead-1]} <= '0;
   end
 
   logic [31:0] now;  // clock of the frame that comes, or the one before which it pauses
-  assign now = active ? 32'(row) * Clocks + 32'(position) : 32'(dut.written_q) * Clocks;
+  assign now = active ? 32'(row) * Clocks + 32'(position) : 32'(written_q) * Clocks;
+
+  wire ends_row = active && (Clocks - 1 - 32'(position)) % Gather == 0;  // a row of a memory
 
   // What comes: the protocol, the rows on their way, the writer.
   always_comb begin
@@ -113,24 +120,32 @@ if (1) begin : g_steps
       rows: assert (32'(next_row) == (32'(dut.begun_q) < Rows ? 32'(dut.begun_q) : 0));
       burst_left: assert (left == (active_q[0] ? (PositionWidth + 1)'(Clocks - 1) - position_q[0] : '0));
       if (active_q[0]) burst: assert (row_q[0] == burst_row && 32'(dut.begun_q) == 32'(row_q[0]) + 1);
-      if (dut.start_q == '0) none_on_way: assert (dut.begun_q == (known ? dut.written_q : Rows));
-      writes: assert (dut.write_active == active);
-      if (active) present: assert ((known || dut.start_q[Lead-1]) && dut.write_position == position
-          && 32'(dut.written) == 32'(row) + 1 && 32'(dut.gather) == (Clocks - 1 - 32'(position)) % Gather);
+      if (start_q == '0) none_on_way: assert (dut.begun_q == (known ? written_q : Rows));
+      comes: assert (dut.coming == active_q[Lead-2]);
+      if (active_q[Lead-2]) coming: assert ((known || start_q[Lead-1:Lead-2] != '0)
+          && dut.coming_position == position_q[Lead-2]
+          && 32'(dut.coming_written) == 32'(row_q[Lead-2]) + 1
+          && 32'(dut.gather) == (Clocks - 1 - 32'(position_q[Lead-2])) % Gather);
+      if (known) same_row: assert (dut.written == (start_q[Lead-1] ? dut.begun_q : written_q));
+      for (int side = 0; side < 2; side++)
+        assert (dut.stores[side] == (ends_row && row != '0 && 32'(row) != Rows - 1
+            && 32'(row) % 2 == (Rows - side) % 2));
+      if (active) present: assert ((known || start_q[Lead-1]) && 32'(dut.written) == 32'(row) + 1
+          && dut.ends_burst == (32'(position) == Clocks - 1));
       if (known) way: assert (comes_down == (dut.down
-          ^ (32'(dut.written_q) == Rows ? (starts & from_to(0, Begins)) == '0
-          : 32'(dut.written_q) == Rows - 1 && (starts & from_to(Begins, Lead)) != '0)));
+          ^ (32'(written_q) == Rows ? (starts & from_to(0, Begins)) == '0
+          : 32'(written_q) == Rows - 1 && (starts & from_to(Begins, Lead)) != '0)));
     end
   end
   for (genvar i = 0; i < Lead; i++) begin : g_late
     always_comb begin
       if (started) begin
-        starts_late: assert (dut.start_q[i] == (active_q[i] && position_q[i] == '0));
+        starts_late: assert (start_q[i] == (active_q[i] && position_q[i] == '0));
         if (active_q[i]) in_frame: assert (32'(row_q[i]) < Rows);
         if (active_q[i] && 32'(row_q[i]) == Rows - 1) last_began: assert (starts[i+32'(position_q[i])]);
         for (int n = i; n < i + Clocks && n < Longest; n++)
           if (starts[n]) assert (active_q[i] && 32'(row_q[i]) == Rows - 1 && 32'(position_q[i]) == n - i);
-        if (dut.start_q[i]) on_way: assert (row_q[i] == '0 || (known && dut.written_q == row_q[i]));
+        if (start_q[i]) on_way: assert (row_q[i] == '0 || (known && written_q == row_q[i]));
         if (i > 0 && active_q[i] && position_q[i] != '1)
           goes_on: assert (active_q[i-1] && position_q[i-1] == position_q[i] + 1'b1 && row_q[i-1] == row_q[i]);
         else if (i > 0 && active_q[i-1]) begins: assert (position_q[i-1] == '0);
@@ -165,7 +180,7 @@ if (1) begin : g_steps
         if (Read > 1 && Read <= Leaves + 1 && (Read - 2) % Period < Beats)
           out: assert (dut.past_q[1] == (Read <= Period + 1));
         if (Read > 0 && (starts & from_to(Begins, n)) == '0) way_back: assert (leaves_down == ~dut.down);
-        if (n >= Lead && Read <= Leaves && known && 32'(dut.written_q) < Rows && (starts & from_to(Lead, n)) == '0)
+        if (n >= Lead && Read <= Leaves && known && 32'(written_q) < Rows && (starts & from_to(Lead, n)) == '0)
           next_way: assert (comes_down == ~leaves_down);
       end
     end
@@ -187,6 +202,12 @@ if (1) begin : g_steps
   always_comb if (started && following) placed: assert (32'(place) < Leaves
       && (age == '0 || (32'(age) >= Lead && 32'(age) <= Reads + 3 + 32'(place) && starts[age])));
   for (genvar s = 0; s < 2; s++) begin : g_side
+    if (InWords != Paths) begin : g_buffer
+      always_comb begin
+        if (started) writes: assert (dut.g_side[s].g_buffer.write_row == ends_row);
+        if (started && active) at: assert (32'(dut.g_side[s].g_buffer.write_time) == 32'(position) * Beats / Clocks);
+      end
+    end
     localparam int Slots = (Rows - 1 - s) / 2, Odd = (Rows - 1 - s) % 2;
     function automatic int at(input int slot, input int memory_row, input logic down);
       at = (down ? Slots - 1 - slot : slot) * Burst + memory_row;
@@ -240,7 +261,7 @@ if (1) begin : g_steps
             always_comb begin
               if (here) begin
                 if (age == '0) came: assert (now > Came && now <= (Rows - 1) * Clocks);
-                else if (32'(age) <= Reads) whole: assert (32'(dut.written_q) == Rows);
+                else if (32'(age) <= Reads) whole: assert (32'(written_q) == Rows);
                 if (32'(age) <= Reads) way: assert (known && comes_down == word_down);
                 else if (32'(age) <= ReadAt) way_back: assert (leaves_down == word_down);
                 if (32'(age) <= ReadAt && !gathers) stands: assert (entry[Entry*Width+:Width] == value);

@@ -76,32 +76,37 @@ module frame_stack #(
   assign ends = in_start ? !in_frame_start && begun_q == RowWidth'(Rows - 1) : begun_q == RowWidth'(Rows);
   assign begins = active & (position == ClockWidth'(BeginsAt)) & ends;
 
-  // Writer, as the words come.
-  logic [Lead-1:0] start_q;
-  logic [ClockWidth-1:0] write_position;
-  logic write_active, write_start, write_row, stores;
-  logic [RowWidth-1:0] written, written_q;  // begun, of the words present
+  // Writer. It counts a clock ahead of the words (coming), so that the enables of the memories are registers.
+  logic [Lead-2:0] start_q;
+  logic [ClockWidth-1:0] coming_position;
+  logic coming, coming_start, coming_row, ends_burst;
+  logic [1:0] stores;  // in the memory of each side
+  logic [RowWidth-1:0] coming_written, written;  // begun, of the words present
   logic [GatherWidth-1:0] gather, gather_q;
   logic [RowWords*Width-1:0] ahead;
-  assign write_start = start_q[Lead-1];
+  assign coming_start = start_q[Lead-2];
   td_burst_counter #(.Words(Clocks)) u_write (
-    .clk, .rst, .en, .start(write_start), .position(write_position), .active(write_active)
+    .clk, .rst, .en, .start(coming_start), .position(coming_position), .active(coming)
   );
-  assign gather = Gather == 1 ? '0 : write_start ? FirstGather : gather_q;
-  assign write_row = write_active & (gather == '0);
-  assign written = write_start ? begun_q : written_q;
-  assign stores = (written != RowWidth'(1)) & (written != RowWidth'(Rows));
+  assign gather = Gather == 1 ? '0 : coming_start ? FirstGather : gather_q;
+  assign coming_row = coming & (gather == '0);
+  assign coming_written = coming_start ? begun_q : written;
   always_ff @(posedge clk) begin
     if (en) begin
       begun_q <= begun;
-      written_q <= written;
-      start_q <= {start_q[Lead-2:0], in_start};
+      start_q <= {start_q[Lead-3:0], in_start};
       gather_q <= gather == '0 ? GatherWidth'(Gather - 1) : gather - GatherWidth'(1);
       down <= down ^ begins;
+      written <= coming_written;
+      ends_burst <= coming_position == ClockWidth'(Clocks - 1);
+      for (int side = 0; side < 2; side++) begin
+        stores[side] <= coming_row & (coming_written != RowWidth'(1)) & (coming_written != RowWidth'(Rows))
+            & (coming_written[0] == 1'(Rows - 1 - side));
+      end
     end
     if (rst) begin
       begun_q <= RowWidth'(Rows);
-      {start_q, down} <= '0;
+      {start_q, down, stores} <= '0;
     end
   end
   if (Gather > 1) begin : g_gather
@@ -173,13 +178,12 @@ module frame_stack #(
 
     // The words of the row above, which comes with the row after it.
     logic [AddressWidth-1:0] write_address, read_address;
-    logic write_now, read_now;
+    logic read_now;
     assign read_now = read_row & ~(alone_q[ToRead-1] & (side == 1));
-    assign write_now = write_row & stores & (written[0] == 1'(Rows - 1 - side));
     logic [RowWords*Width-1:0] words;
     td_ram #(.Width(RowWords * Width), .Depth(Depth), .Style(Style)) u_ram (
       .clk,
-      .write_en     (en & write_now),
+      .write_en     (en & stores[side]),
       .write_address(write_address),
       .write_data   (ahead),
       .read_en      (en & read_now),
@@ -189,9 +193,7 @@ module frame_stack #(
     always_ff @(posedge clk) begin
       if (en) begin
         if (written == RowWidth'(1)) write_address <= down ? Top : '0;
-        else if (write_now) begin
-          write_address <= address_after(write_address, write_position == ClockWidth'(Clocks - 1));
-        end
+        else if (stores[side]) write_address <= address_after(write_address, ends_burst);
         // A frame that was written upwards is read from the top down; its last burst needs no address behind it.
         if (first_pair) read_address <= down ? Top : '0;
         else if (read_now) read_address <= address_after(read_address, read_last);
@@ -205,6 +207,12 @@ module frame_stack #(
       assign past = in_words;
     end else begin : g_buffer
       logic [RowWords*Width-1:0] buffered, row_words;
+      logic [BeatWidth-1:0] write_time;
+      logic write_row;
+      always_ff @(posedge clk) begin
+        if (en) {write_row, write_time} <= {coming_row, coming_position[ClockWidth-1-:BeatWidth]};
+        if (rst) write_row <= 1'b0;
+      end
       if (side == 0) begin : g_last
         logic [(RowWords-InWords)*Width-1:0] kept;
         assign row_words = {in_last, kept};
@@ -215,7 +223,7 @@ module frame_stack #(
       td_ram #(.Width(RowWords * Width), .Depth(Beats), .Style(0)) u_row (
         .clk,
         .write_en     (en & write_row),
-        .write_address(write_position[ClockWidth-1-:BeatWidth]),
+        .write_address(write_time),
         .write_data   (row_words),
         .read_en      (en & read_active & first_pair),
         .read_address (read_time),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """dst_inverse against its model: codes, latency, saturations; rows alone, gaps, pauses, extremes, reset."""
 
+import random
 from collections.abc import Sequence
 from typing import Any
 
@@ -66,6 +67,14 @@ class RowsMonitor(BeatsMonitor):
         return super().word(reads[: self.paths]) + (0,) * self.paths if self.alone else super().word(reads)
 
 
+class GapDriver(AloneDriver):
+    """AloneDriver of which in_alone is random in gaps."""
+
+    def idle(self) -> None:
+        super().idle()
+        self.entity.in_alone.value = random.getrandbits(1)
+
+
 class RowsCore(BurstCore):
     """BurstCore of two rows, with zeros beside a row alone."""
 
@@ -93,7 +102,7 @@ CORE = RowsCore(
     lambda dut: dst_inverse_latency(*parameters(dut, "Size", "Paths")),
     "InWidth",
     ("a", "b"),
-    {"driver": AloneDriver, "sink": RowsMonitor},
+    {"driver": GapDriver, "sink": RowsMonitor},
 )
 bursts, many_bursts, limits, reset_in_mid_burst, *_ = CORE.tests()
 
