@@ -5,7 +5,7 @@
 
 parameter int Width = 24, Lanes = 1;
 
-logic signed [31:0] of_frame, in_force;  // threshold when the frame began; that which counts now
+logic signed [Width:0] of_frame, in_force;  // threshold when the frame began; that which counts now
 assign in_force = in_valid & in_frame_start ? threshold : of_frame;
 logic [Lanes-1:0] exceeds;  // depths of the beat above the threshold
 for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane

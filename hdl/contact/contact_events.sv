@@ -37,9 +37,9 @@ module contact_events
   input  wire  [Lanes-1:0]        in_above,        // depths of the beat above the frame's on_threshold
   input  wire  [31:0]             in_time,         // of the frame that begins, cycles
   input  wire frame_flags_t       in_flags,        // of the frame that ends
-  input  wire  signed [31:0]      on_threshold,    // depth code
-  input  wire  signed [31:0]      off_threshold,   // depth code
-  input  wire  signed [31:0]      area_threshold,  // depth code
+  input  wire  signed [Width:0]   on_threshold,    // depth code, or one beyond them
+  input  wire  signed [Width:0]   off_threshold,   // the same
+  input  wire  signed [Width:0]   area_threshold,  // the same
   input  wire  [31:0]             minimum_area,    // pixels above
   input  wire  [7:0]              debounce,        // frames
   output logic                    touching,
@@ -64,7 +64,7 @@ module contact_events
   logic signed [Width:0] on_q, off, off_q, area_limit;
   logic [31:0] minimum, last_minimum, start_time, last_time, frame;
   logic [7:0] frames_needed, last_frames_needed;
-  assign off = in_position.frame_start ? (Width + 1)'(near_depths(off_threshold, Width)) : off_q;
+  assign off = in_position.frame_start ? off_threshold : off_q;
 
   frame_flags_t last_flags;
   logic touching_next, count_valid, peak_valid, any_above, last_any, began, ended;
@@ -142,9 +142,9 @@ module contact_events
 
   always_ff @(posedge clk) begin
     if (in_valid && in_position.frame_start) begin
-      on_q <= (Width + 1)'(near_depths(on_threshold, Width));
+      on_q <= on_threshold;
       off_q <= off;
-      area_limit <= (Width + 1)'(near_depths(area_threshold, Width));
+      area_limit <= area_threshold;
       minimum <= minimum_area;
       frames_needed <= debounce;
       start_time <= in_time;

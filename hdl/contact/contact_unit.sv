@@ -3,7 +3,9 @@
 //
 //   depth --> depth_gate --> m_axis
 //                 \-> threshold_comparator --> contact
-//                 \----------> contact_events --> m_event, record
+//                 |              |
+//                 |              v above
+//                 \-------> contact_events --> m_event, record
 //
 // Stream in: depth codes of whole frames, Lanes neighbours in a beat, under the enable, which this unit makes: low
 // while the output is full. Streams out: AXI4-Stream, each depth sign-extended to whole bytes, the first in the lowest
@@ -78,10 +80,23 @@ module contact_unit
   end
   assign frame_leaves = m_axis_tvalid & m_axis_tready & m_position.frame_end;
 
+  // Thresholds of one bit more than depths; those beyond depths stay beyond them. A change counts a clock later.
+
+  logic [2:0][31:0] settings_given;
+  logic signed [2:0][DataWidth:0] limited;
+  logic signed [DataWidth:0] on_threshold, off_threshold, area_threshold;
+  assign settings_given = {settings.threshold, settings.off_threshold, settings.area_threshold};
+  for (genvar number = 0; number < 3; number++) begin : g_threshold
+    td_round_saturate #(.InWidth(32), .Drop(0), .OutWidth(DataWidth + 1)) u_limit (
+      .in(settings_given[number]), .out(limited[number]), .clipped()
+    );
+  end
+  always_ff @(posedge clk) {on_threshold, off_threshold, area_threshold} <= limited;
+
   logic [Lanes-1:0] tap_above;
   threshold_comparator #(.Width(DataWidth), .Lanes(Lanes)) u_comparator (
     .clk, .rst, .in_valid(tap_valid), .in_frame_start(tap_position.frame_start), .in_data(tap_data),
-    .threshold(settings.threshold), .hold(settings.hold_contact), .above(tap_above), .contact
+    .threshold(on_threshold), .hold(settings.hold_contact), .above(tap_above), .contact
   );
 
   logic [31:0] tap_time;
@@ -90,8 +105,7 @@ module contact_unit
     .Width(DataWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(Tridiagonal)
   ) u_events (
     .clk, .rst, .in_valid(tap_valid), .in_position(tap_position), .in_data(tap_data), .in_above(tap_above),
-    .in_time(tap_time), .in_flags(tap_flags), .on_threshold(settings.threshold),
-    .off_threshold(settings.off_threshold), .area_threshold(settings.area_threshold),
+    .in_time(tap_time), .in_flags(tap_flags), .on_threshold, .off_threshold, .area_threshold,
     .minimum_area(settings.minimum_area), .debounce(settings.debounce), .touching, .record_valid, .record, .record_lost,
     .m_event_tdata, .m_event_tvalid, .m_event_tready, .m_event_tlast
   );

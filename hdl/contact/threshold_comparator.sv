@@ -11,9 +11,7 @@
 
 `default_nettype none
 
-module threshold_comparator
-  import td_types_pkg::*;
-#(
+module threshold_comparator #(
   parameter int Width = 24,
   parameter int Lanes = 1  // depths in a beat
 ) (
@@ -22,14 +20,14 @@ module threshold_comparator
   input  wire                     in_valid,
   input  wire                     in_frame_start,  // first beat of a frame
   input  wire  [Lanes*Width-1:0]  in_data,         // depth codes, signed
-  input  wire  signed [31:0]      threshold,       // depth code
+  input  wire  signed [Width:0]   threshold,       // depth code, or one beyond them
   input  wire                     hold,
   output logic [Lanes-1:0]        above,           // with each beat
   output logic                    contact
 );
 
   logic signed [Width:0] threshold_q, threshold_now;
-  assign threshold_now = in_frame_start ? (Width + 1)'(near_depths(threshold, Width)) : threshold_q;
+  assign threshold_now = in_frame_start ? threshold : threshold_q;
   for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
     logic signed [Width-1:0] depth;
     assign depth = in_data[lane*Width+:Width];

@@ -49,8 +49,8 @@ PROOFS = (
 async def records(dut: Any) -> None:
     chance, frames = random.Random(cocotb.RANDOM_SEED), Frames(dut)
     width, rows, columns, lanes, _ = given = parameters(dut, *NAMES)
-    depths, lowest, signs = beats(width, lanes), (-1 << width - 1) % (1 << 32), joined([1 << width - 1] * lanes, width)
-    thresholds = levels(width, 32) * 10 + levels(32, 32)
+    depths, lowest, signs = beats(width, lanes), (-1 << width - 1) % (2 << width), joined([1 << width - 1] * lanes, width)
+    thresholds = levels(width, width + 1) * 10 + levels(width + 1, width + 1)
     settings: dict[str, list[int]] = dict.fromkeys(("on_threshold", "off_threshold", "area_threshold"), thresholds)
     powers = [1 << bit for bit in range(32)]
     settings["minimum_area"] = [*range(1, 9), 0, rows * columns, rows * columns + 1, *powers]
@@ -62,7 +62,7 @@ async def records(dut: Any) -> None:
         pins |= {pin: chance.choice((values[0], chance.choice(values))) for pin, values in settings.items()}
         if chance.random() < 0.3:
             half_peak = (model.events.last_peak or 0) >> 1
-            pins["area_threshold"] = (half_peak ^ 1 << chance.randrange(32)) % (1 << 32)
+            pins["area_threshold"] = (half_peak ^ 1 << chance.randrange(width + 1)) % (2 << width)
         if chance.random() < 0.01 and not any(model.due):
             dut.frame.value = model.events.frames = (1 << chance.randrange(33)) - 1
         frames(model, pins)
@@ -71,7 +71,7 @@ async def records(dut: Any) -> None:
         if model.events.frames % 16 < 4:
             pins |= {"in_data": pins["in_data"] | signs, "on_threshold": lowest, "off_threshold": lowest}
         of_frame = None if pins["in_position"] & FRAME_START else model.events.settings
-        (on,) = [of_frame.on_threshold] if of_frame else codes(pins["on_threshold"], 1, 32)
+        (on,) = [of_frame.on_threshold] if of_frame else codes(pins["on_threshold"], 1, width + 1)
         pins["in_above"] = above(codes(pins["in_data"], lanes, width), on)
         if not pins["in_valid"]:
             pins["in_position"] = chance.getrandbits(3)

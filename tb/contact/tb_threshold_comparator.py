@@ -39,7 +39,7 @@ def legal(model: ThresholdComparator, pins: Pins) -> None:
     pins["in_frame_start"] |= model.threshold is None
     beside, lane, width = pins.pop("beside"), pins.pop("lane"), model.width
     lowest = -1 << width - 1
-    depth = beside + (codes(pins["threshold"], 1, 32)[0] if pins["in_frame_start"] else model.threshold or 0)
+    depth = beside + (codes(pins["threshold"], 1, width + 1)[0] if pins["in_frame_start"] else model.threshold or 0)
     if beside < 2 and lowest <= depth < -lowest:
         others = [lowest] * model.lanes
         others[lane] = depth
@@ -54,7 +54,7 @@ async def depths(dut: Any) -> None:
         "in_valid": 1.0,
         "in_frame_start": 0.4,
         "hold": 1.0,
-        "threshold": [*(depth % (1 << 32) for beat in data for depth in codes(beat, lanes, width)), *levels(32, 32)],
+        "threshold": [*(depth % (2 << width) for beat in data for depth in codes(beat, lanes, width)), *levels(width + 1, width + 1)],
         "in_data": data,
         "beside": [2, -1, 0, 1],
         "lane": range(lanes),

@@ -17,7 +17,7 @@ from tactile_depth.chip.contact.contact_peak import ContactPeak, Peak, cycles_to
 from tactile_depth.chip.contact.contact_sums import ContactSums, Sums, cycles_to_sums
 from tactile_depth.chip.contact.frame_flags import FLAG_WORDS, NO_FLAGS, FrameFlags
 from tactile_depth.chip.contact.record_packets import RecordPackets
-from tactile_depth.chip.fixed_point import joined, split
+from tactile_depth.chip.fixed_point import codes, joined, split
 from tactile_depth.chip.resources import DEPTH_MARKS, Parts, Words, delay_line
 
 WORD_BITS = 32
@@ -269,7 +269,9 @@ class EventsByClock:
         out |= self.packets.clock(rst=rst, **new, m_event_tready=m_event_tready)
         if in_valid:
             flags = FrameFlags.of(split(in_flags, FLAG_WORDS, WORD_BITS))
-            words = {name: word if name in UNSIGNED else _signed(word) for name, word in settings.items()}
+            words = {
+                name: word if name in UNSIGNED else codes(word, 1, self.width + 1)[0] for name, word in settings.items()
+            }
             for beat in marked(in_data, in_position, self.lanes, self.width):
                 record = self.events.beat(*beat, Settings(**words), in_time, flags)
         self._touching.append(self.events.touching)

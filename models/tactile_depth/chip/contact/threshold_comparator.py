@@ -76,7 +76,7 @@ class ThresholdComparator:
         out: dict[str, int | None] = {"contact": self.contact}
         if in_valid:
             depths = codes(in_data, self.lanes, self.width)
-            (level,) = codes(threshold, 1, 32)
+            (level,) = codes(threshold, 1, self.width + 1)
             self.beat(max(depths), bool(in_frame_start), level, bool(hold))
             out["above"] = above(depths, self.threshold)
         else:
