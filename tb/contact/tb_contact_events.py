@@ -49,7 +49,7 @@ PROOFS = (
 async def records(dut: Any) -> None:
     chance, frames = random.Random(cocotb.RANDOM_SEED), Frames(dut)
     width, rows, columns, lanes, _ = given = parameters(dut, *NAMES)
-    depths, lowest, signs = beats(width, lanes), (-1 << width - 1) % (2 << width), joined([1 << width - 1] * lanes, width)
+    depths, lowest, signs = beats(width, lanes), 3 << width - 1, joined([1 << width - 1] * lanes, width)
     thresholds = levels(width, width + 1) * 10 + levels(width + 1, width + 1)
     settings: dict[str, list[int]] = dict.fromkeys(("on_threshold", "off_threshold", "area_threshold"), thresholds)
     powers = [1 << bit for bit in range(32)]

@@ -50,11 +50,12 @@ def legal(model: ThresholdComparator, pins: Pins) -> None:
 async def depths(dut: Any) -> None:
     width, lanes = parameters(dut, "Width", "Lanes")
     data = beats(width, lanes)
+    near = [depth % (2 << width) for beat in data for depth in codes(beat, lanes, width)]
     choices = {
         "in_valid": 1.0,
         "in_frame_start": 0.4,
         "hold": 1.0,
-        "threshold": [*(depth % (2 << width) for beat in data for depth in codes(beat, lanes, width)), *levels(width + 1, width + 1)],
+        "threshold": [*near, *levels(width + 1, width + 1)],
         "in_data": data,
         "beside": [2, -1, 0, 1],
         "lane": range(lanes),
