@@ -4,6 +4,7 @@
 from functools import partial
 from typing import Any
 
+import cocotb
 import numpy as np
 
 from formal.entries import ROUNDING, Proof
@@ -20,6 +21,7 @@ from tb.poisson.burst_core import BurstCore
 from tb.stream import configuration, of_configuration
 from tb.structures import ICARUS, VERILATOR
 
+DIRECT = 4  # clocks from z to the next product
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal", "lanes": 4}
 
 
@@ -69,7 +71,7 @@ class PairDriver(BeatsDriver):
 
 
 class PairsCore(BurstCore):
-    """BurstCore of pairs of rows, which follow each other in a frame without a pause."""
+    """BurstCore of pairs of rows, which follow each other in a frame without a pause if they have DIRECT beats."""
 
     def shape(self, dut: Any, frames: int) -> tuple[int, ...]:
         paths = configuration().up_paths
@@ -77,7 +79,7 @@ class PairsCore(BurstCore):
 
     async def check(self, dut: Any, words: Any, **behaviour: Any) -> None:
         alone, pairs, odd = AloneMonitor(dut, "out"), self.frame(dut), configuration().rows % 2
-        await super().check(dut, words, gap_every=pairs, **behaviour)
+        await super().check(dut, words, gap_every=pairs if words.shape[1] == DIRECT else 1, **behaviour)
         want = [odd != 0 and pair % pairs == pairs - 1 for pair in range(len(words))]
         assert alone.marks[-len(want) :] == want
 
@@ -100,3 +102,9 @@ CORE = PairsCore(
     lambda dut: (configuration().rows + 1) // 2,
 )
 bursts, many_bursts, limits, reset_in_mid_burst, a_frame_begins_afresh = CORE.tests()
+
+
+@cocotb.test
+async def clips_in_pauses(dut: Any) -> None:
+    """Count a clip once, however long it stands."""
+    await CORE.check(dut, CORE.words(dut, 2, None), pause=0.3)
