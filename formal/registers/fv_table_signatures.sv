@@ -16,15 +16,21 @@ logic [1:0] pick_was;
 logic pick_bank_was;
 always_comb if (started) assume (pick == pick_was && pick_bank == pick_bank_was);
 
-// A write of the host: a word in order, or one that is not.
-logic is_gradient, high, low, in_order, wrong, host_starts, half;
-assign is_gradient = 32'(table_command.select) == TableSelectGradient;
-assign high = write && write_offset == TableHighOffset;
-assign low = table_command.write;
-assign in_order = low ? half == is_gradient : high && is_gradient && !half && write_mask == '1;
-assign wrong = ((low || (high && is_gradient)) && !in_order) || table_command.read
-  || (write && write_offset == TableIndexOffset);
-assign host_starts = in_order && !half && table_command.index == '0 && !rst;
+// An access of the host, a clock late: a word in order, or one that is not.
+logic is_gradient, high, low, whole, moves, in_order, wrong, host_starts, half;
+table_command_t bus;
+assign is_gradient = 32'(bus.select) == TableSelectGradient;
+assign low = bus.write;
+assign in_order = low ? half == is_gradient : high && is_gradient && !half && whole;
+assign wrong = ((low || (high && is_gradient)) && !in_order) || bus.read || moves;
+assign host_starts = in_order && !half && bus.index == '0 && !rst;
+always_ff @(posedge clk) begin
+  bus <= table_command;
+  high <= write && write_offset == TableHighOffset && !rst;
+  moves <= write && write_offset == TableIndexOffset && !rst;
+  whole <= write_mask == '1;
+  if (rst) {bus.write, bus.read} <= '0;
+end
 
 // The captures: of the followed table, and of the other one.
 logic is_reference, is_zero, starts, starts_any, steps, steps_other, ends, free, changed, captures;
@@ -33,7 +39,7 @@ assign is_reference = 32'(pick) == TableSelectReference;
 assign is_zero = 32'(pick) == TableSelectZero;
 assign own = is_reference ? reference_captured : is_zero ? zero_captured : '0;
 assign starts_any = host_starts || reference_captured.starts || zero_captured.starts;
-assign starts = host_starts ? table_command.select == pick
+assign starts = host_starts ? bus.select == pick
   : reference_captured.starts ? is_reference : zero_captured.starts && is_zero;
 
 // A word of the host counts a clock after its write; the last one has brought the index back to 0.
@@ -43,10 +49,10 @@ logic [31:0] host_word;
 assign steps = (host_step && host_table == pick) || own.steps;
 assign steps_other = (host_step && host_table != pick) || (reference_captured.steps && !is_reference)
   || (zero_captured.steps && !is_zero);
-assign ends = (host_step && host_low && table_command.index == '0) || reference_captured.ends || zero_captured.ends;
+assign ends = (host_step && host_low && bus.index == '0) || reference_captured.ends || zero_captured.ends;
 assign free = table_in_use[pick] != pick_bank;
 assign captures = own.writes && free;
-assign changed = captures || (low && table_command.select == pick && free);
+assign changed = captures || (low && bus.select == pick && free);
 
 logic running = 1'b0, done = 1'b0, known = 1'b0, held = 1'b0;
 logic shown, shown_known;
@@ -57,8 +63,8 @@ always_ff @(posedge clk) begin
   if (high || low) half <= high && in_order;
   host_step <= in_order && !rst;
   host_low <= low;
-  host_table <= table_command.select;
-  host_word <= table_command.low;
+  host_table <= bus.select;
+  host_word <= bus.low;
   running <= starts_any ? starts && free : running && free && !wrong && !steps_other && !ends;
   done <= running && free && !wrong && !steps_other && ends && !starts_any && !rst;
   if (starts) signature <= '1;

@@ -4,9 +4,9 @@
 //   signature = signature_step(.. signature_step(32'hffffffff, first word) .., last word)
 //
 // The words are those that the host writes, one after another: TABLE_HIGH, if entries have two, and TABLE_LOW of each
-// entry from index 0 to the last; or those of a capture. A bank's signature is known from 3 cycles after the last of a
-// run of all its words. Any entry that is written outside such a run makes it unknown at once; reads of entries, a
-// write of TABLE_INDEX, a word for another table and rst end a run. `last` of the host: the index is 0 a cycle after
+// entry from index 0 to the last; or those of a capture. A bank's signature is known from 4 cycles after the last of a
+// run of all its words. Any entry that is written outside such a run makes it unknown a cycle later; reads of entries,
+// a write of TABLE_INDEX, a word for another table and rst end a run. `last` of the host: the index is 0 a cycle after
 // the write. File gives the signatures at power-up: those of bank 0 and bank 1 of each table, 0 for unknown; without
 // File none is known, nor after cold_rst. A change-over shows in read_data 1 cycle later.
 // Model: models/tactile_depth/chip/registers/table_signatures.py.
@@ -39,24 +39,25 @@ module table_signatures
   localparam logic [1:0] Reference = 2'(TableSelectReference);
   localparam logic [1:0] Zero = 2'(TableSelectZero);
 
-  // Words of the host.
+  // Words of the host. Its bus has a register here, because whether an entry is written is known late in a cycle.
 
   logic [1:0] select, host_table;
-  logic first, upper, lower, in_order, is_half, host_starts, host_steps, host_ends;
-  logic [31:0] host_word;
-  assign select = table_command.select;
-  assign first = table_command.index == '0;
-  assign lower = table_command.write;
-  assign upper = write && write_offset == TableHighOffset;
-  assign in_order = lower ? is_half == (select == Gradient) : upper && select == Gradient && !is_half && (&write_mask);
+  logic first, upper, lower, whole, reads, moves, in_order, is_half, host_starts, host_steps, host_ends;
+  logic [31:0] low, host_word;
+  assign in_order = lower ? is_half == (select == Gradient) : upper && select == Gradient && !is_half && whole;
   assign host_starts = in_order && first && !is_half && !rst;
   always_ff @(posedge clk) begin
+    {lower, reads, select, low} <= {table_command.write, table_command.read, table_command.select, table_command.low};
+    first <= table_command.index == '0;
+    upper <= write && write_offset == TableHighOffset;
+    moves <= write && write_offset == TableIndexOffset;
+    whole <= &write_mask;
     host_table <= select;
     host_steps <= in_order && !rst;
     host_ends <= lower;
-    host_word <= in_order ? table_command.low : '0;
+    host_word <= in_order ? low : '0;
     if (upper || lower) is_half <= upper && in_order;
-    if (rst) is_half <= 1'b0;
+    if (rst) {lower, reads, upper, moves, is_half} <= '0;
   end
 
   // The run of words: one at a time.
@@ -70,10 +71,9 @@ module table_signatures
   assign starts = host_starts || reference_captured.starts || zero_captured.starts;
   assign table_started = host_starts ? select : reference_captured.starts ? Reference : Zero;
   assign steps = host_steps || reference_captured.steps || zero_steps;
-  assign disturbed = ((lower || (upper && select == Gradient)) && !in_order) || table_command.read
-    || (write && write_offset == TableIndexOffset) || table_in_use[table_run] == bank_run
-    || (host_steps && host_table != table_run) || (reference_captured.steps && table_run != Reference)
-    || (zero_steps && table_run != Zero);
+  assign disturbed = ((lower || (upper && select == Gradient)) && !in_order) || reads || moves
+    || table_in_use[table_run] == bank_run || (host_steps && host_table != table_run)
+    || (reference_captured.steps && table_run != Reference) || (zero_steps && table_run != Zero);
   assign ends = (host_steps && host_ends && first) || reference_captured.ends || zero_captured.ends;
   for (genvar n = 0; n < Side; n++) begin : g_side
     logic [31:0] later;  // the signature after n words of 0
@@ -107,7 +107,7 @@ module table_signatures
   logic [2:0] bank_in_use;
   logic is_known;
   logic [31:0] signature_in_use;
-  assign bank_in_use = {select, table_in_use[select]};
+  assign bank_in_use = {table_command.select, table_in_use[table_command.select]};
   assign captured = (4'(reference_captured.writes) << Reference) | (4'(zero_captured.writes) << Zero);
   assign written = (4'(lower) << select) | captured;
   for (genvar n = 0; n < 8; n++) begin : g_bank

@@ -62,12 +62,12 @@ class Signatures:
 
     Attributes
     ----------
-    index : int
-        Of the entry that is next.
+    index, half : int, bool
+        Of the entry that is next; its upper word was written.
     """
 
     def __init__(self, model: TableSignatures) -> None:
-        self.model, self.index = model, 0
+        self.model, self.index, self.half = model, 0, False
 
     def clock(self, **pins: int) -> dict[str, int]:
         """Advance by one clock edge; return the outputs before it."""
@@ -76,8 +76,11 @@ class Signatures:
         shown = {OFFSET["TABLE_SIGNATURE"]: self.model.shown}
         shown |= {register.offset: register.pack(held=table in held) for table, register in CAPTURES.items()}
         advance(self.model, pins, command)
+        upper = pins["write"] and pins["write_offset"] == OFFSET["TABLE_HIGH"]
         if command["write"]:
             self.index = (command["index"] + 1) % ENTRIES
+        if command["write"] or upper or pins["rst"]:
+            self.half = not (command["write"] or pins["rst"] or self.half) and command["select"] == GRADIENT
         return {"read_data": shown.get(pins["read_offset"], 0)}
 
 
@@ -106,7 +109,7 @@ class Writers:
             self.in_use = pins["table_in_use"]
         pins["table_in_use"] = self.in_use
         table = chance.randrange(4) if stray else self.table
-        upper = table == GRADIENT and not signatures.model._has_upper
+        upper = table == GRADIENT and not signatures.half
         if not stray:
             pins["write"] = int(self.kind == "host" and chance.random() < 0.7)
             pins["write_offset"], pins["write_mask"] = OFFSET["TABLE_HIGH" if upper else "TABLE_LOW"], STROBES[0]

@@ -65,7 +65,8 @@ if (1) begin : g_steps
   wire [1:0] active_q = u_timing.active_q;
   wire [1:0][BeatWidth-1:0] beat_q = u_timing.beat_q;
   wire picked = pick & active & ~(row_b & alone_now) & (~following | watched);  // the word present is followed from now on
-  localparam int Reads = 2 * OutBeats, Longest = Beats + Reads + 4;
+  localparam int Reads = 2 * OutBeats, Longest = Beats + Reads + 4, Ahead = Lanes == 1 ? 1 : 0,
+      Begins = Beats + 1 - Ahead;  // clocks from a start to the first read, less one
 
   function automatic logic [Longest-1:0] from_to(input int from, input int to);  // bits from .. to - 1
     from_to = '0;
@@ -102,14 +103,13 @@ if (1) begin : g_steps
       if (active_q[0]) late_beat: assert (dut.position_q == beat_q[0]);
       if (active_q[1]) words_beat: assert (dut.beat == beat_q[1]);
       last: assert (dut.last_q == starts[Beats:Beats-1]);
-      read_starts: assert (dut.read_start == starts[Beats+1]);
-      read_runs: assert (dut.u_read.running
-          == ((starts & from_to(Beats + 2, Beats + Reads + 1)) != '0));
+      read_starts: assert (dut.read_start == starts[Begins]);
+      read_runs: assert (dut.u_read.running == ((starts & from_to(Begins + 1, Begins + Reads)) != '0));
       if ((starts & from_to(1, Longest)) != '0)
         bank: assert (dut.write_bank_q == (dut.write_bank ^ starts[0]));
       rows_begin: assert (dut.row_start_q
-          == (starts[Beats+3:Beats+2] | seconds[Beats+OutBeats+3:Beats+OutBeats+2])
-          && dut.frame_row_q == frames[Beats+3:Beats+2]);
+          == (starts[Beats+3:Begins+1] | seconds[Beats+OutBeats+3:Begins+OutBeats+1])
+          && dut.frame_row_q == frames[Beats+3:Begins+1]);
     end
   end
 
@@ -129,12 +129,11 @@ if (1) begin : g_steps
         for (int i = 0; i < 2; i++) if (n >= i && n < Beats + i) assert (32'(beat_q[i]) == n - i);
         if (n < Beats) written: assert (dut.alone_q == ~seconds[n]
             && dut.frame_start_q == frames[n]);
-        if (n >= Beats && n < Beats + Reads && (starts & from_to(Beats, n)) == '0) turns: assert (dut.next_alone == ~seconds[n]
-            && dut.next_frame_start == frames[n]);
-        if (n > Beats && n <= Beats + Reads && (starts & from_to(Beats + 1, n)) == '0) reader: assert (dut.read_alone == ~seconds[n]
-            && dut.read_frame_start == frames[n]
-            && dut.read_bank == banks[n]
-            && (n == Beats + 1 || 32'(dut.u_read.count) == n - Beats - 1));
+        if (Ahead == 0 && n >= Beats && n < Beats + Reads && (starts & from_to(Beats, n)) == '0)
+          turns: assert (dut.next_alone == ~seconds[n] && dut.next_frame_start == frames[n]);
+        if (n >= Begins && n < Begins + Reads && (starts & from_to(Begins, n)) == '0) reader: assert (
+            dut.read_alone == ~seconds[n] && dut.read_frame_start == frames[n] && dut.read_bank == banks[n]
+            && (n == Begins || 32'(dut.u_read.count) == n - Begins));
       end
     end
   end
@@ -153,13 +152,21 @@ if (1) begin : g_steps
   assign write_beat = of_beat ^ {BeatWidth{second_half}};
   assign in_bank = banks[$clog2(Longest)'(age)];
   assign next_out = dut.leaves;
+  logic [1:0][1:0][Width-1:0] memory_words;  // with one lane, of each half and row
+  wire [Width-1:0] memory_word = memory_words[second_half][follows_b];
   logic [1:0][1:0][Paths-1:0][Width-1:0] entries;  // in each half: with Paths 1 of each row, else of each memory
   logic [PathWidth-1:0] memory;
   assign entry = Paths == 1 ? entries[second_half][follows_b][0] : entries[second_half][0][memory];
   if (Paths == 1) begin : g_single
     assign memory = '0;
+    for (genvar n = Begins + 1; n <= Begins + Reads && Ahead == 1; n++) begin : g_behind_read
+      localparam int Read = n - 1 - Begins;
+      always_comb if (started && starts[n] && (starts & from_to(Begins + 1, n)) == '0) selects: assert (
+          dut.g_single.row_q[1] == (Read >= OutBeats) && dut.g_one_lane.odd_q[0] == 1'(Read % 2));
+    end
     for (genvar half = 0; half < 2; half++) begin : g_entry
       for (genvar r = 0; r < 2; r++) begin : g_row
+        assign memory_words[half][r] = dut.g_single.g_half[half].words[r];
         assign entries[half][r] = dut.g_single.g_half[half].g_row[r].u_ram.g_distributed
             .words[{in_bank, write_beat[BeatWidth-2:0]}];
         for (genvar n = 2; n < Longest; n++) begin : g_age
@@ -172,6 +179,7 @@ if (1) begin : g_steps
       end
     end
   end else begin : g_paths
+    assign memory_words = '0;
     localparam int Turned = BeatWidth < PathWidth ? BeatWidth : PathWidth;
     logic [PathWidth-1:0] in_half, turn;
     assign in_half = second_half ? PathWidth'(Paths - 1) - of_path : of_path;
@@ -198,7 +206,8 @@ if (1) begin : g_steps
       in_time: assert (age >= 32'(of_beat) + 2 && age < Longest && starts[$clog2(Longest)'(age)]);
       if (follows_b) of_pair: assert (seconds[$clog2(Longest)'(age)]);
       own_slot: assert (slot == SlotWidth'(of_sample % Lanes));
-      if (left >= 8'd2) stands: assert (entry == value);
+      if (32'(left) >= 2 + Ahead) stands: assert (entry == value);
+      if (Ahead == 1 && left == 8'd2) was_read_first: assert (memory_word == value);
       if (left == 8'd1) was_read: assert (next_out[slot*Width+:Width] == value);
     end
   end

@@ -41,6 +41,9 @@ module corner_turn #(
   localparam int Reads = 2 * Size / Lanes;  // of two rows
   localparam int ReadWidth = $clog2(Reads);
   localparam int PathWidth = $clog2(Paths);
+  // One word a cycle: the first is none of the last beat's, so it is read as that one is written. The cycle saved goes
+  // to a register behind the memories, which are slow.
+  localparam int Ahead = Lanes == 1 ? 1 : 0;
 
   // Writer: beat of the words present, and the bank of their burst.
   logic [BeatWidth-1:0] position, position_q, beat;
@@ -62,22 +65,27 @@ module corner_turn #(
 
   logic [1:0][Paths*Width-1:0] read;  // in each half the words that leave
   if (Paths == 1) begin : g_single
-    logic row_q;
-    always_ff @(posedge clk) if (en) row_q <= row;
+    logic [1+Ahead:1] row_q;
+    always_ff @(posedge clk) if (en) row_q <= (1 + Ahead)'({row_q, row});
     for (genvar half = 0; half < 2; half++) begin : g_half
-      logic [1:0][Width-1:0] words;
+      logic [1:0][Width-1:0] words, words_q;
       for (genvar r = 0; r < 2; r++) begin : g_row
         td_ram #(.Width(Width), .Depth(Beats)) u_ram (
           .clk,
           .write_en     (en & active_q[1] & (beat[BeatWidth-1] == 1'(half))),
           .write_address({write_bank_q, beat[BeatWidth-2:0] ^ {(BeatWidth - 1){1'(half)}}}),
           .write_data   (r == 0 ? in_a : in_b),
-          .read_en      (en & read_active & (row == 1'(r))),
+          .read_en      (en & read_active & (row == 1'(r)) & (Ahead == 0 | read_beat[0] == 1'(half))),
           .read_address ({read_bank, read_beat[ReadWidth-2-:BeatWidth-1]}),
           .read_data    (words[r])
         );
+        if (Ahead > 0) begin : g_register
+          always_ff @(posedge clk) if (en) words_q[r] <= words[r];
+        end else begin : g_straight
+          assign words_q[r] = words[r];
+        end
       end
-      assign read[half] = words[row_q];
+      assign read[half] = words_q[row_q[1+Ahead]];
     end
   end else begin : g_paths
     localparam int Turned = BeatWidth < PathWidth ? BeatWidth : PathWidth;  // bits of the beat in a memory's number
@@ -135,18 +143,18 @@ module corner_turn #(
 
   logic [Lanes*Width-1:0] leaves;
   if (Lanes == 1) begin : g_one_lane
-    logic odd_q;
-    always_ff @(posedge clk) if (en) odd_q <= read_beat[0];
-    assign leaves = read[odd_q];
+    logic [1:0] odd_q;
+    always_ff @(posedge clk) if (en) odd_q <= {odd_q[0], read_beat[0]};
+    assign leaves = read[odd_q[1]];
   end else begin : g_lanes
     for (genvar w = 0; w < Paths; w++) begin : g_pair
       assign leaves[2*w*Width+:2*Width] = {read[1][w*Width+:Width], read[0][w*Width+:Width]};
     end
   end
 
-  logic [1:0] row_start_q, frame_row_q;
-  assign out_start = row_start_q[1];
-  assign out_frame_start = frame_row_q[1];
+  logic [1+Ahead:0] row_start_q, frame_row_q;
+  assign out_start = row_start_q[1+Ahead];
+  assign out_frame_start = frame_row_q[1+Ahead];
   always_ff @(posedge clk) begin
     if (en) begin
       position_q <= position;
@@ -159,11 +167,14 @@ module corner_turn #(
         alone_q <= in_alone;
       end
       write_bank_q <= write_bank;
-      if (last_q[0]) {next_frame_start, next_alone} <= {frame_start_q, alone_q};
-      if (last_q[1]) {read_frame_start, read_alone, read_bank} <= {next_frame_start, next_alone, write_bank_q};
-      read_start <= last_q[1];
-      row_start_q <= {row_start_q[0], row_start};
-      frame_row_q <= {frame_row_q[0], row_start & ~row & read_frame_start};
+      if (Ahead == 0 && last_q[0]) {next_frame_start, next_alone} <= {frame_start_q, alone_q};
+      if (last_q[1-Ahead]) begin
+        {read_frame_start, read_alone, read_bank} <=
+            Ahead == 0 ? {next_frame_start, next_alone, write_bank_q} : {frame_start_q, alone_q, write_bank};
+      end
+      read_start <= last_q[1-Ahead];
+      row_start_q <= {row_start_q[Ahead:0], row_start};
+      frame_row_q <= {frame_row_q[Ahead:0], row_start & ~row & read_frame_start};
       out_data <= leaves;
     end
     if (rst) {active_q, last_q, write_bank, read_start, row_start_q, frame_row_q} <= '0;

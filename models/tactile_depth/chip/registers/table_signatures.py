@@ -32,6 +32,27 @@ def power_up_words(entries: Mapping[str, np.ndarray]) -> list[int]:
     return [signatures.get(name, NOT_KNOWN) for name in TABLES for _ in range(2)]
 
 
+@dataclass(frozen=True)
+class Host:
+    """Access of the host in a clock: its table, whether the entry is the first, the word, and what is accessed.
+
+    Attributes
+    ----------
+    lower, upper, whole : bool
+        An entry is written; its upper word is, with all bytes.
+    disturbs : bool
+        An entry is read, or TABLE_INDEX is written.
+    """
+
+    table: int = 0
+    first: bool = False
+    word: int = 0
+    lower: bool = False
+    upper: bool = False
+    whole: bool = False
+    disturbs: bool = False
+
+
 @dataclass
 class TableSignatures:
     """State of the core.
@@ -54,7 +75,8 @@ class TableSignatures:
     _signature: int = START  # of the words of the run
     _finished: int | None = None  # bank of the run that has ended
     _has_upper: bool = False  # the upper word of the entry has come
-    _host: tuple[int, int, bool] | None = None  # table and word of the clock before, and whether an entry was written
+    _bus: Host = Host()  # of the clock before
+    _host: tuple[int, int, bool] | None = None  # table and word of the one before it, and whether an entry was written
 
     def __post_init__(self) -> None:
         self.signatures = list(self.signatures)
@@ -86,27 +108,26 @@ class TableSignatures:
         write_offset : int, optional
             Of the register that is written; None without a write.
         """
-        table, first, lower = command["select"], not command["index"], bool(command["write"])
-        upper = write_offset == OFFSETS["TABLE_HIGH"]
+        table, first, lower, upper = self._bus.table, self._bus.first, self._bus.lower, self._bus.upper
         of_entry = lower or (upper and table == GRADIENT)
         if lower:
             in_order = self._has_upper == (table == GRADIENT)
         else:
-            in_order = of_entry and not self._has_upper and write_mask == WORD
+            in_order = of_entry and not self._has_upper and self._bus.whole
         starts = [table] * (in_order and first and not self._has_upper and not rst)
         starts += [each for each in captured if captured[each].starts]
-        disturbed = (of_entry and not in_order) or command["read"] or write_offset == OFFSETS["TABLE_INDEX"] or rst
+        disturbed = (of_entry and not in_order) or self._bus.disturbs or rst
 
         finished, signatures = self._finished, list(self.signatures)
         if finished is None:
-            self.shown = signatures[_bank(table, in_use)]
+            self.shown = signatures[_bank(command["select"], in_use)]
         else:
             signatures[finished] = self._signature
         self._finished = self._step(captured, in_use, first, bool(disturbed), not starts)
         if starts:
             self._run, self._signature = (starts[0], ~in_use >> starts[0] & 1), START
         self._run = None if rst else self._run
-        self._host = (table, command["low"], lower) if in_order and not rst else None
+        self._host = (table, self._bus.word, lower) if in_order and not rst else None
         self._has_upper = not rst and (upper and in_order if upper or lower else self._has_upper)
 
         writers = [(table, False)] * lower + [(each, True) for each in captured if captured[each].writes]
@@ -116,6 +137,9 @@ class TableSignatures:
         if cold_rst:
             signatures, self._held = [NOT_KNOWN] * len(signatures), [False] * len(signatures)
         self.signatures = signatures
+        is_upper, moves = (write_offset == OFFSETS[name] for name in ("TABLE_HIGH", "TABLE_INDEX"))
+        accesses = bool(command["write"]), is_upper, write_mask == WORD, bool(command["read"] or moves)
+        self._bus = Host(command["select"], not command["index"], command["low"], *(() if rst else accesses))
 
     def _step(
         self, captured: Mapping[int, Captured], in_use: int, first: bool, disturbed: bool, stays: bool
