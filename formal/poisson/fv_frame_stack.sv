@@ -169,9 +169,14 @@ if (1) begin : g_steps
         if (Due >= 0 && Due < (Pairs - 1) * Period) pairs_to_begin: assert (dut.starts_active
             && 32'(dut.start_time) == Due % Period && 32'(dut.pair) == Pairs - 1 - Due / Period);
         if (Read >= 0 && Read < Leaves) first: assert (dut.first_pair == (Read < Period));
-        if (Read >= 0 && Read < Leaves && Read % Period < Beats) reader: assert (32'(dut.read_time) == Read % Period
+        if (Read >= -1 && Read + 1 < Leaves) next_first: assert (dut.next_first_pair == (Read + 1 < Period));
+        if (Read >= -1 && Read + 1 < Leaves && (Read + 1) % Period < Beats) comes: assert (
+            32'(dut.next_time) == (Read + 1) % Period
+            && 32'(dut.next_serve) == (Beats - 1 - (Read + 1) % Period) % Serve);
+        if (Read >= 0 && Read < Leaves && Read % Period < Beats) reader: assert (
+            dut.ends_read == (Read % Period == Beats - Serve)
             && 32'(dut.serve) == (Beats - 1 - Read % Period) % Serve);
-        for (int i = 0; i < 3; i++) begin
+        for (int i = 0; i < 2; i++) begin
           if (Due > i && Due <= i + Leaves)
             assert (dut.alone_q[i] == (Rows % 2 != 0 && Due > i + (Pairs - 1) * Period));
         end
@@ -185,14 +190,28 @@ if (1) begin : g_steps
       end
     end
   end
-  logic reading;
+  // Reads: of the clock that is next, and those of memory rows in this one, but for the last two rows of a frame.
+  logic reading_next, reading_past;
+  logic [1:0] reads_row;
   always_comb begin
-    reading = 1'b0;
-    for (int beat = 0; beat < Beats; beat++) reading |= pair_begins(3 + beat);
+    reading_next = 1'b0;
+    reading_past = 1'b0;
+    reads_row = '0;
+    for (int beat = 0; beat < Beats; beat++) begin
+      reading_next |= pair_begins(2 + beat);
+      reading_past |= starts[Reads+beat];
+      if (beat == 0 || (Beats - 1 - beat) % Serve == Serve - 1) begin
+        for (int pair = 1; pair < Pairs; pair++) begin
+          reads_row[0] |= starts[Reads+beat+pair*Period];
+          reads_row[1] |= starts[Reads+beat+pair*Period] & ~(Rows % 2 != 0 && pair == Pairs - 1);
+        end
+      end
+    end
     if (started) begin
       if ((starts & from_to(Begins, Begins + (Pairs - 1) * Period)) == '0) no_pair: assert (dut.pair == '0);
-      reads: assert (dut.read_active == reading);
-      for (int i = 0; i < 3; i++) begin
+      comes_to_read: assert (dut.next_read == reading_next);
+      for (int side = 0; side < 2; side++) assert (dut.reads[side] == reads_row[side]);
+      for (int i = 0; i < 2; i++) begin
         assert (dut.read_start_q[i] == pair_begins(i + 1));
         assert (dut.frame_start_q[i] == starts[Latency+i]);
       end
@@ -205,6 +224,9 @@ if (1) begin : g_steps
     if (InWords != Paths) begin : g_buffer
       always_comb begin
         if (started) writes: assert (dut.g_side[s].g_buffer.write_row == ends_row);
+        if (started) past: assert (dut.g_side[s].g_buffer.reads_row == reading_past);
+        for (int n = Reads; n < Reads + Beats; n++)
+          if (started && starts[n]) assert (32'(dut.g_side[s].g_buffer.read_time) == n - Reads);
         if (started && active) at: assert (32'(dut.g_side[s].g_buffer.write_time) == 32'(position) * Beats / Clocks);
       end
     end

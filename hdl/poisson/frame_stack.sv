@@ -118,27 +118,27 @@ module frame_stack #(
     assign ahead = in_ahead;
   end
 
-  // Reader: starts of the pairs, and behind them the reads.
+  // Reader: starts of the pairs, and behind them the reads, a clock ahead too.
   logic [PairWidth-1:0] pair;  // that are still to begin
-  logic starts_active, pair_end, read_start, read_active, read_row, read_last;
+  logic starts_active, pair_end, next_start, next_read, next_first_pair, next_row;
   logic [PeriodWidth-1:0] start_time;
-  logic [BeatWidth-1:0] read_time;
-  logic [ToRead-1:0] read_start_q, frame_start_q, alone_q;
-  logic [ServeWidth-1:0] serve, serve_q;
-  logic first_pair, first_pair_q;
+  logic [BeatWidth-1:0] next_time;
+  logic [ToRead-2:0] read_start_q, frame_start_q, alone_q;
+  logic [ServeWidth-1:0] next_serve, next_serve_q, serve;
+  logic [1:0] reads;  // the memory of each side
+  logic first_pair, ends_read;
   td_burst_counter #(.Words(Period)) u_starts (
     .clk, .rst, .en, .start(out_start), .position(start_time), .active(starts_active)
   );
   assign out_alone = Rows % 2 != 0 && pair == '0;
   assign pair_end = starts_active & (start_time == PeriodWidth'(Period - 1));
-  assign read_start = read_start_q[ToRead-1];
+  assign next_start = read_start_q[ToRead-2];
   td_burst_counter #(.Words(Beats)) u_read (
-    .clk, .rst, .en, .start(read_start), .position(read_time), .active(read_active)
+    .clk, .rst, .en, .start(next_start), .position(next_time), .active(next_read)
   );
-  assign first_pair = read_start ? frame_start_q[ToRead-1] : first_pair_q;
-  assign serve = Serve == 1 ? '0 : read_start ? FirstServe : serve_q;
-  assign read_row = read_active & ~first_pair & (read_start | (serve == ServeWidth'(Serve - 1)));
-  assign read_last = read_time == BeatWidth'(Beats - Serve);  // of the memory rows of a burst
+  assign next_first_pair = next_start ? frame_start_q[ToRead-2] : first_pair;
+  assign next_serve = Serve == 1 ? '0 : next_start ? FirstServe : next_serve_q;
+  assign next_row = next_read & ~next_first_pair & (next_start | (next_serve == ServeWidth'(Serve - 1)));
 
   always_ff @(posedge clk) begin
     if (en) begin
@@ -146,13 +146,16 @@ module frame_stack #(
       out_frame_start <= begins;
       if (begins) pair <= PairWidth'(Pairs - 1);
       else if (pair_end && pair != '0) pair <= pair - PairWidth'(1);
-      read_start_q <= {read_start_q[ToRead-2:0], out_start};
-      frame_start_q <= {frame_start_q[ToRead-2:0], out_frame_start};
-      alone_q <= {alone_q[ToRead-2:0], out_alone};
-      first_pair_q <= first_pair;
-      serve_q <= serve == '0 ? ServeWidth'(Serve - 1) : serve - ServeWidth'(1);
+      read_start_q <= {read_start_q[ToRead-3:0], out_start};
+      frame_start_q <= {frame_start_q[ToRead-3:0], out_frame_start};
+      alone_q <= {alone_q[ToRead-3:0], out_alone};
+      first_pair <= next_first_pair;
+      next_serve_q <= next_serve == '0 ? ServeWidth'(Serve - 1) : next_serve - ServeWidth'(1);
+      serve <= next_serve;
+      reads <= {next_row & ~alone_q[ToRead-2], next_row};
+      ends_read <= next_time == BeatWidth'(Beats - Serve);  // with the last memory row of a burst
     end
-    if (rst) {pair, out_start, out_frame_start, read_start_q, frame_start_q} <= '0;
+    if (rst) {pair, out_start, out_frame_start, read_start_q, frame_start_q, reads} <= '0;
   end
 
   logic [1:0] past_q;
@@ -178,15 +181,13 @@ module frame_stack #(
 
     // The words of the row above, which comes with the row after it.
     logic [AddressWidth-1:0] write_address, read_address;
-    logic read_now;
-    assign read_now = read_row & ~(alone_q[ToRead-1] & (side == 1));
     logic [RowWords*Width-1:0] words;
     td_ram #(.Width(RowWords * Width), .Depth(Depth), .Style(Style)) u_ram (
       .clk,
       .write_en     (en & stores[side]),
       .write_address(write_address),
       .write_data   (ahead),
-      .read_en      (en & read_now),
+      .read_en      (en & reads[side]),
       .read_address (read_address),
       .read_data    (words)
     );
@@ -196,7 +197,7 @@ module frame_stack #(
         else if (stores[side]) write_address <= address_after(write_address, ends_burst);
         // A frame that was written upwards is read from the top down; its last burst needs no address behind it.
         if (first_pair) read_address <= down ? Top : '0;
-        else if (read_now) read_address <= address_after(read_address, read_last);
+        else if (reads[side]) read_address <= address_after(read_address, ends_read);
       end
     end
 
@@ -207,11 +208,14 @@ module frame_stack #(
       assign past = in_words;
     end else begin : g_buffer
       logic [RowWords*Width-1:0] buffered, row_words;
-      logic [BeatWidth-1:0] write_time;
-      logic write_row;
+      logic [BeatWidth-1:0] write_time, read_time;
+      logic write_row, reads_row;
       always_ff @(posedge clk) begin
-        if (en) {write_row, write_time} <= {coming_row, coming_position[ClockWidth-1-:BeatWidth]};
-        if (rst) write_row <= 1'b0;
+        if (en) begin
+          {write_row, write_time} <= {coming_row, coming_position[ClockWidth-1-:BeatWidth]};
+          {reads_row, read_time} <= {next_read & next_first_pair, next_time};
+        end
+        if (rst) {write_row, reads_row} <= '0;
       end
       if (side == 0) begin : g_last
         logic [(RowWords-InWords)*Width-1:0] kept;
@@ -225,7 +229,7 @@ module frame_stack #(
         .write_en     (en & write_row),
         .write_address(write_time),
         .write_data   (row_words),
-        .read_en      (en & read_active & first_pair),
+        .read_en      (en & reads_row),
         .read_address (read_time),
         .read_data    (buffered)
       );
