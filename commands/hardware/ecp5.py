@@ -5,7 +5,7 @@ A MULT18X18D has registers at its inputs and at its output, which Yosys leaves o
 product and its registers disappear, and so does most of the delay.
 
 The enable of the pipeline has thousands of readers, and wires over the whole device. Registers that it enables are at
-the end of such a wire; behind it, logic and memories take time too. They read a copy, whose wires are shorter.
+the end of such a wire; behind it, logic and memories take time too. They read copies, whose wires are shorter.
 """
 
 from collections import Counter
@@ -20,7 +20,8 @@ WHOLE_WORDS = 2048  # words of a memory that boards/ecp5/td_ram.sv builds withou
 
 MULTIPLIER, REGISTER, MEMORY, LOGIC = "MULT18X18D", "TRELLIS_FF", "DP16KD", "LUT4"
 SIDES, WIDTH = "AB", 18
-READERS = 1000  # of a register whose logic and memories read a copy
+READERS = 1000  # of a register whose logic and memories read copies
+OF_A_COPY = 64  # readers, at most
 CLOCKS = 4  # number of clocks, of enables and of resets of a multiplier
 Bit = int | str  # of Yosys' JSON: number of a net, or "0", "1", "x"
 Cells = dict[str, dict[str, Any]]
@@ -170,9 +171,10 @@ def _configure(multiplier: dict[str, Any], controls: dict[str, Control]) -> None
 
 
 def copy_enables(module: dict[str, Any]) -> None:
-    """Give a copy of each register that enables more than `READERS` registers to the logic and memories that read it.
+    """Give copies of each register that enables more than `READERS` registers to the logic and memories that read it.
 
-    The module is flat, of Yosys' JSON after synth_ecp5.
+    A copy has readers that are neighbours by their names, which begin with the path of their core. The module is flat,
+    of Yosys' JSON after synth_ecp5.
     """
     cells: Cells = module["cells"]
     registers = _registers(cells)
@@ -180,13 +182,20 @@ def copy_enables(module: dict[str, Any]) -> None:
     wide = {name: ports["Q"][0] for name, ports in registers.items() if enabled[ports["Q"][0]] > READERS}
     used = {bit for cell in cells.values() for bits in cell["connections"].values() for bit in bits}
     free = 1 + max((bit for bit in used if isinstance(bit, int)), default=0)
-    copies: dict[Bit, Bit] = {bit: free + number for number, bit in enumerate(wide.values())}
-    for cell in cells.values():
-        for port, bits in cell["connections"].items():
-            if cell["type"] != REGISTER and cell["port_directions"][port] == "input":
-                cell["connections"][port] = [copies.get(bit, bit) for bit in bits]
+    others = [(name, cell) for name, cell in sorted(cells.items()) if cell["type"] != REGISTER]
     for name, bit in wide.items():
-        cells[f"{name}_copy"] = {**cells[name], "connections": {**cells[name]["connections"], "Q": [copies[bit]]}}
+        pins = [
+            (cell["connections"], port)
+            for _, cell in others
+            for port, bits in cell["connections"].items()
+            if bit in bits and cell["port_directions"][port] == "input"
+        ]
+        for number, (connections, port) in enumerate(pins):
+            connections[port] = [free + number // OF_A_COPY if each == bit else each for each in connections[port]]
+        for number in range(-(-len(pins) // OF_A_COPY)):
+            copy = {**cells[name], "connections": {**cells[name]["connections"], "Q": [free]}}
+            cells[f"{name}_copy{number}"] = copy
+            free += 1
 
 
 def write_slices(folder: Path) -> None:

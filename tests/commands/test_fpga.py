@@ -78,8 +78,9 @@ def test_packed_multipliers_compute_the_same(tmp_path: Path) -> None:
     assert not failed, (folder / "run.log").read_text()[-2000:]
 
 
-def test_logic_and_memories_read_a_copy_of_a_wide_enable(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_logic_and_memories_read_copies_of_a_wide_enable(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ecp5, "READERS", 2)
+    monkeypatch.setattr(ecp5, "OF_A_COPY", 1)
     directions = {"DI": "input", "CE": "input", "Q": "output", "A": "input", "Z": "output", "CEB": "input"}
 
     def cell(kind: str, **connections: Any) -> dict[str, Any]:
@@ -95,9 +96,10 @@ def test_logic_and_memories_read_a_copy_of_a_wide_enable(monkeypatch: pytest.Mon
     other = cell(ecp5.LOGIC, A=3, Z=31)
     cells = {**enables, **enabled, "logic": logic, "memory": memory, "other": other}
     ecp5.copy_enables({"cells": cells})
-    assert [name for name in cells if name.endswith("_copy")] == ["enable2_copy"]  # the other enable has two readers
-    assert cells["enable2_copy"]["connections"] == {"DI": [1], "CE": ["1"], "Q": [32]}
-    assert logic["connections"]["A"] == memory["connections"]["CEB"] == [32]
+    copies = {name: cell["connections"] for name, cell in cells.items() if "_copy" in name}
+    assert [*copies] == ["enable2_copy0", "enable2_copy1"]  # the other enable has two readers
+    assert [copies[name] for name in copies] == [{"DI": [1], "CE": ["1"], "Q": [bit]} for bit in (32, 33)]
+    assert (logic["connections"]["A"], memory["connections"]["CEB"]) == ([32], [33])
     assert other["connections"]["A"] == [3]
     assert [cells[f"r{bit}"]["connections"]["CE"] for bit in (20, 23)] == [[2], [3]]
 
