@@ -189,6 +189,8 @@ end
 // once, in the third of these clocks.
 logic core_named, core_bank, last_named;
 logic [WordWidth-1:0] core_word;
+logic [3:0] core_term;
+assign core_term = dut.g_axis[Axis].g_colour[Colour].term;
 logic [Total-1:0] core_value, core_step, core_second, core_third;
 logic [5:0][Total-1:0] core_ring;
 assign core_named = dut.g_axis[Axis].g_colour[Colour].u_words.named;
@@ -243,6 +245,9 @@ always_comb begin
     frames_marked: assert (dut.first_q == first[9:0]);
     rows_marked: assert (dut.row_q == line[9:0]);
     pixels_marked: assert (dut.valid_q == valid[Latency-2:0]);
+    moves_marked: assert (dut.g_axis[Axis].g_colour[Colour].loads == (first[2+Colour+:6] != '0)
+        && dut.g_axis[Axis].g_colour[Colour].moves == (line[2+Colour+:6] != '0)
+        && dut.g_axis[Axis].g_colour[Colour].by_word == (line[2+Colour] | line[6+Colour] | line[7+Colour]));
 
     // The words of a frame come early: T, by which the pixels before them no longer change.
     if (new_frame[2]) third_comes: assert (core_third == wide[3]);
@@ -264,6 +269,9 @@ for (genvar t = 0; t < Terms; t++) begin : g_word
     banks_are_those: assert ({core_word_1, core_word_0} == {words_1[t], words_0[t]});
     if (started) begin
       if (in_frame) words_stay: assert (words[t] == (in_use ? words_1[t] : words_0[t]));
+      if (t < 7 && first[Read+Colour]) term_of_frame: assert (32'(core_term) == t);
+      if (t >= 7 && rising && other[Read+Colour]) term_of_row: assert (32'(core_term) == t);
+      in_table: assert (32'(core_term) < Terms);
       if (t < 7 && first[Read+1+Colour]) word_of_frame: assert (core_word == words[t]);
       if (t >= 7 && rising && other[Read+1+Colour]) word_of_row: assert (core_word == words[t]);
     end

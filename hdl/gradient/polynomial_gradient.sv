@@ -80,10 +80,13 @@ module polynomial_gradient
   logic [ToSum-1:0] valid_q;
   position_t [ToSum-1:0] position_q;
   logic [ToLast-1:0] first_q, row_q;  // it is the first of a frame, of a row
+  logic [ToLast:0] first, row;        // the same and the pixel that comes: [n] is [n] of the others in the next clock
+  assign first = {first_q, frame_start};
+  assign row = {row_q, in_valid & in_position.first_column};
   always_ff @(posedge clk) begin
     if (en) begin
-      first_q <= {first_q[ToLast-2:0], frame_start};
-      row_q <= {row_q[ToLast-2:0], in_valid & in_position.first_column};
+      first_q <= first[ToLast-1:0];
+      row_q <= row[ToLast-1:0];
     end
     if (rst) {first_q, row_q} <= '0;
   end
@@ -144,11 +147,14 @@ module polynomial_gradient
         own_entry <= IndexWidth'(table_command.index) - IndexWidth'($unsigned(Terms * Polynomial))
             < IndexWidth'($unsigned(Terms));
       end
-      always_comb begin
-        term = '0;
-        for (int k = Reads - 1; k >= 0; k--) begin
-          if (row_q[k+colour]) term = TermWidth'((first_q[k+colour] ? FrameTerms : RowTerms) >> k * TermWidth);
+      always_ff @(posedge clk) begin
+        if (en) begin
+          term <= '0;
+          for (int k = Reads - 1; k >= 0; k--) begin
+            if (row[k+colour]) term <= TermWidth'((first[k+colour] ? FrameTerms : RowTerms) >> k * TermWidth);
+          end
         end
+        if (rst) term <= '0;
       end
       td_banked_table #(
         .Width(WordWidth), .Depth(Terms), .Style(0), .File({TableFolder, "polynomial_", "0" + 8'(Polynomial), ".hex"})
@@ -171,13 +177,13 @@ module polynomial_gradient
       assign begins_row = row_q[ToCoefficient-2+colour];
       assign coarse = TotalWidth'(word) << FineBits;
       assign fine = TotalWidth'($signed(word));
-      assign loads = |first_q[ToFirst+colour+:Differences];
-      assign moves = |row_q[ToFirst+colour+:Differences];
-      assign by_word = row_q[ToFirst+colour] | row_q[ToFirst+4+colour] | row_q[ToFirst+5+colour];
       assign rise = by_word ? fine : ring[2];
       assign next = loads ? coarse : ring[0] + rise;
       always_ff @(posedge clk) begin
         if (en) begin
+          loads <= |first[ToFirst+colour+:Differences];
+          moves <= |row[ToFirst+colour+:Differences];
+          by_word <= row[ToFirst+colour] | row[ToFirst+4+colour] | row[ToFirst+5+colour];
           if (moves) ring <= {next, ring[Differences-1:1]};
           if (first_q[1+colour]) third <= fine;
           if (valid_q[ToCoefficient-2+colour]) begin
@@ -186,6 +192,7 @@ module polynomial_gradient
             second <= begins_row ? ring[Differences-2] : second + third;
           end
         end
+        if (rst) {loads, moves, by_word} <= '0;
       end
 
       // The product.

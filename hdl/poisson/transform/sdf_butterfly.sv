@@ -53,11 +53,10 @@ module sdf_butterfly #(
   logic minus_re, minus_im;
   if (RotateBlock > 0) begin : g_rotate
     localparam int QuarterBit = $clog2(RotateBlock) - 2;
-    logic rotate, rotate_q;  // rotate_q: the word after this one, unless it begins a burst
+    logic rotate;
     logic [PositionWidth-1:0] next;
     assign next = position + PositionWidth'(1);
-    assign rotate = rotate_q & ~start;
-    always_ff @(posedge clk) if (en && active) rotate_q <= &2'(next >> QuarterBit);
+    always_ff @(posedge clk) if (en) rotate <= &2'(next >> QuarterBit) & ~start_q[0];
     assign minus_re = rotate & (Inverse != 0);
     assign minus_im = rotate & (Inverse == 0);
     assign b_re = $unsigned(rotate ? in_im : in_re) ^ {Width{minus_re}};
