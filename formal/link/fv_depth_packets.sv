@@ -2,7 +2,7 @@
 // fv_depth_packets: a frame is taken as soon as it can be, with its format; then each byte is that of docs/link.md: kind,
 // number and position, Values values in a packet, those that are left in the last one, and the trailer with the CRC over
 // the bytes of values and with the record. Reads are those of the value, each once; done comes with the last byte. Bytes
-// are stable under stall, and none is more than 8 clocks late. `sent` is cleared by a cold reset alone.
+// are stable under stall, and none is more than 9 clocks late. `sent` is cleared by a cold reset alone.
 //
 // The value at an arbitrary address is any constant, and so is one bit of an arbitrary byte of the record. 16-bit values
 // are compared with a depth_value of the bench, which takes what was read.
@@ -19,12 +19,12 @@ logic signed [DataWidth-1:0] watched_value, value_q;
 logic [5:0] watched_byte;
 logic [3:0] word_q, word_q2;
 logic [31:0] record_q;
-logic watched_bit, read_q, read_q2, read_watched_q, read_watched_q2, word_watched_q;
+logic watched_bit, read_q, read_q2, read_q3, read_watched_q, read_watched_q2, read_watched_q3, word_watched_q;
 offer_stays u_depth_ (.*);
 always_comb begin
-  assume (read_q2 || value_data == value_q);
+  assume (read_q3 || value_data == value_q);
   assume (word_q != word_q2 || record_data == record_q);
-  if (read_watched_q2) assume (value_data == watched_value);
+  if (read_watched_q3) assume (value_data == watched_value);
   if (word_watched_q) assume (record_data[{watched_byte[1:0], 3'd0}] == watched_bit);
   assume (pick_byte < 6'd60);
 end
@@ -32,8 +32,9 @@ always_ff @(posedge clk) begin
   if (!started) {watched, watched_value, watched_byte, watched_bit} <= {pick, pick_value, pick_byte, pick_bit};
   value_q <= value_data;
   {word_q, word_q2, record_q} <= {record_word, word_q, record_data};
-  {read_q, read_q2} <= rst ? 2'b00 : {value_read, read_q};
-  {read_watched_q, read_watched_q2} <= {value_read & value_address == watched, read_watched_q};
+  {read_q, read_q2, read_q3} <= rst ? '0 : {value_read, read_q, read_q2};
+  {read_watched_q, read_watched_q2, read_watched_q3} <=
+      {value_read & value_address == watched, read_watched_q, read_watched_q2};
   word_watched_q <= record_word == watched_byte[5:2];
 end
 
@@ -67,15 +68,15 @@ logic signed [15:0] reference;
 logic [1:0] since;  // clocks since the last code of the reference, up to 2
 logic [2:0] codes;
 depth_value #(.DataWidth(DataWidth)) u_reference (
-  .clk, .average(kind == 2'd3), .shift(kept_shift), .in_valid(read_q2), .in_first(codes == '0),
+  .clk, .average(kind == 2'd3), .shift(kept_shift), .in_valid(read_q3), .in_first(codes == '0),
   .in_code(value_data), .value(reference)
 );
 
 logic ended;  // the last byte of a frame left in the clock before
 always_ff @(posedge clk) begin
   ended <= ~rst & leaves & packet_ends & trailer;
-  since <= read_q2 ? '0 : since + 2'(since != 2'd2);
-  if (read_q2) codes <= codes + 3'd1;
+  since <= read_q3 ? '0 : since + 2'(since != 2'd2);
+  if (read_q3) codes <= codes + 3'd1;
   if (value_read) reads <= reads + 3'd1;
   if (leaves) begin
     at <= packet_ends ? '0 : at + 7'd1;
@@ -137,15 +138,15 @@ assign tail_phase = dut.phase == 2'd3;
 assign step = dut.at;
 assign all = kind == 2'd3 ? 6'd4 : 6'd1;
 assign reads_due = step < all ? step : all;
-assign codes_due = step < 6'd2 ? '0 : step - 6'd2 < all ? step - 6'd2 : all;
+assign codes_due = step < 6'd3 ? '0 : step - 6'd3 < all ? step - 6'd3 : all;
 always_comb begin
   if (started && !rst) begin
-    if (!busy || head_phase || tail_phase) no_reads: assert (!read_q && !read_q2);
+    if (!busy || head_phase || tail_phase) no_reads: assert (!read_q && !read_q2 && !read_q3);
     if (busy) begin
       same_frame: assert (dut.kept_format == kind && kind != 2'd0 && dut.kept_shift == kept_shift && dut_crc == crc);
       same_part: assert (dut.trailer == trailer && (trailer ? head_phase | tail_phase : !tail_phase));
       same_end: assert (dut.last_at == (head_phase ? (trailer ? 6'd17 : 6'd8) : tail_phase ? 6'd59
-          : load_phase ? all + 6'd3 : 6'(size) - 6'd1));
+          : load_phase ? all + 6'd4 : 6'(size) - 6'd1));
       if (trailer) all_sent: assert (index == count && in_packet == '0);
       else same_value: assert (index < count && 8'(dut.place) == index && in_packet == index % 8'(Values));
       same_place: assert ((kind == 2'd3 ? row * 16'(Columns / 2) : row * 16'(Columns)) + column == 16'(index)
@@ -160,14 +161,15 @@ always_comb begin
       end
       if (load_phase) begin
         nothing_sent: assert (at >= 7'd9 && byte_of_value == '0 && !dut.stale && 6'(silent) == step);
-        till_now: assert (6'(reads) == reads_due && 6'(codes) == codes_due && step <= all + 6'd3);
+        till_now: assert (6'(reads) == reads_due && 6'(codes) == codes_due && step <= all + 6'd4);
         read_before: assert (read_q == (step >= 6'd1 && step <= all));
         read_before_that: assert (read_q2 == (step >= 6'd2 && step <= all + 6'd1));
-        if (step >= all + 6'd2) settles: assert (6'(since) == step - all - 6'd2);
+        read_first: assert (read_q3 == (step >= 6'd3 && step <= all + 6'd2));
+        if (step >= all + 6'd3) settles: assert (6'(since) == step - all - 6'd3);
       end
       if (value_phase) begin
         some_sent: assert (at >= 7'd9 && step == 6'(byte_of_value) && byte_of_value < size && !dut.stale);
-        settled: assert (!read_q && !read_q2 && since == 2'd2 && codes == reads && 6'(reads) == all && silent <= 4'd8);
+        settled: assert (!read_q && !read_q2 && !read_q3 && since == 2'd2 && codes == reads && 6'(reads) == all && silent <= 4'd9);
       end
       if (load_phase || value_phase) begin
         so_far: assert (at == 7'd9 + 7'(in_packet) * 7'(size) + 7'(byte_of_value));
@@ -179,6 +181,7 @@ always_comb begin
           if (reads != '0) same_address: assert (value_address_q == dut.place);
           watched_before: assert (read_watched_q == (read_q && value_address_q == watched));
           watched_before_that: assert (read_watched_q2 == (read_q2 && value_address_q == watched));
+          watched_first: assert (read_watched_q3 == (read_q3 && value_address_q == watched));
           if (codes != '0 && value_address_q == watched) same_code: assert (value_q == watched_value);
         end
       end else begin
@@ -199,7 +202,7 @@ always_comb begin
       own: assert (!trailer && at >= 7'd9 && byte_of_value == '0 && reads < (kind == 2'd3 ? 3'd4 : 3'd1));
       place: assert (32'(value_address) == 32'(read_row) * Columns + 32'(read_column));
     end
-    in_time: assert (silent <= 4'd8);
+    in_time: assert (silent <= 4'd9);
     if (depth_valid) begin
       ends: assert (depth_last == packet_ends);
       if (at < (trailer ? 7'd18 : 7'd9)) fields: assert (depth_data == 8'(head >> {at, 3'd0}));

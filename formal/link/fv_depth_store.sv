@@ -24,9 +24,9 @@ always_comb assume (32'(pick) < Pixels && pick_word <= 4'd14);
 // The followed bit of the value, and of the word, of each frame: it comes, has ended, waits, is taken.
 logic [PlaceWidth-1:0] place;
 logic [3:0] place_word;
-logic came, came_next, came_word, came_word_next, ended_value, ready_value, ready_word, taken_value, taken_word;
+logic came, came_next, came_word, came_word_next, ended_value, ready_value, ready_word, taken_value, taken_value_q, taken_word;
 logic in_frame, ended, ready, busy, record_ends, loses_ended, loses_ready, ended_next, ready_next;
-logic read_q, read_q2, word_read_q, was_reset;
+logic read_q, read_q2, read_q3, word_read_q, was_reset;
 assign busy = frame_take | (reading & ~frame_done);
 assign record_ends = s_event_tvalid & s_event_tlast & awaited;
 assign loses_ended = begins & ~in_frame & ended & busy;
@@ -48,11 +48,12 @@ always_ff @(posedge clk) begin
   ended <= ended_next;
   ready <= ready_next;
   read_q <= value_read & value_address == place;
-  read_q2 <= read_q;
+  {read_q2, read_q3} <= {read_q, read_q2};
+  taken_value_q <= taken_value;
   word_read_q <= reading & record_word == place_word;
   if (rst) begin
     {in_frame, ended, ready} <= '0;
-    {read_q, read_q2, word_read_q} <= '0;
+    {read_q, read_q2, read_q3, word_read_q} <= '0;
   end
 end
 
@@ -62,10 +63,10 @@ always_comb begin
   if (started && !rst) begin
     waits: assert (frame_valid == ready);
     counted: assert (skipped == (keep && lost != 2'd0));
-    if (read_q2 && !was_reset) value_of_frame: assert (value_data[0] == taken_value);
+    if (read_q3 && !was_reset) value_of_frame: assert (value_data[0] == taken_value_q);
     if (word_read_q) word_of_frame: assert (record_data[0] == taken_word);
     loses_one: cover (skipped && loses_ready && !busy);
-    reads: cover (read_q2 && word_read_q);
+    reads: cover (read_q3 && word_read_q);
   end
 end
 
@@ -78,7 +79,8 @@ module protocol_depth_store;
   logic [PlaceWidth:0] beat;  // its place
   logic begins, ends;
   localparam int Beats = Pixels / Lanes;
-  logic in_frame = 1'b0, waits = 1'b0, taken = 1'b0, was_taken = 1'b0, known = 1'b0, known_q = 1'b0;
+  logic in_frame = 1'b0, waits = 1'b0, taken = 1'b0, was_taken = 1'b0, known = 1'b0;
+  logic [1:0] known_q = '0;
   logic [PlaceWidth:0] next_beat = '0;
   logic [3:0] next_word = '0;
   assign begins = s_axis_tvalid & s_axis_tuser;
@@ -90,7 +92,7 @@ module protocol_depth_store;
       & (~frame_take | (frame_valid & keep & ~taken)) & (~frame_done | taken) & (~value_read | (taken & ~frame_done & 32'(value_address) < Pixels))
       & record_word <= 4'd14;
   assign counts = live & ~reset;
-  assign counts_value_data = counts & known_q;
+  assign counts_value_data = counts & known_q[1];
   assign counts_record_data = counts & was_taken;
   always_ff @(posedge clk) begin
     if (s_axis_tvalid) next_beat <= beat + (PlaceWidth + 1)'(1);
@@ -100,7 +102,7 @@ module protocol_depth_store;
     taken <= frame_take | (taken & ~frame_done);
     was_taken <= taken;
     known <= known | (value_read & holds);
-    known_q <= known;
+    known_q <= {known_q[0], known};
     if (reset) begin
       in_frame <= 1'b0;
       next_word <= '0;

@@ -6,7 +6,7 @@
 // Stream out: the bytes of kind and fields. A packet has Values values, the last of a frame the rest. `sent` is the
 // number of the last frame that was taken; `sending`: it is not complete yet. A reset gives the frame up; cold_rst,
 // which comes with a reset, clears `sent`, which is 0 at power-up. `resets` does not change inside a frame. A byte
-// takes a clock; 5 more before each value, 8 if it is a mean, and 1 before a word of the record. Models: Depth and
+// takes a clock; 6 more before each value, 9 if it is a mean, and 1 before a word of the record. Models: Depth and
 // Trailer in models/tactile_depth/chip/link/packets.py, to_bytes in models/tactile_depth/chip/link/depth_formats.py.
 
 `default_nettype none
@@ -33,7 +33,7 @@ module depth_packets
   output logic                        frame_done,
   output logic                        value_read,
   output logic [PlaceWidth-1:0]       value_address,
-  input  wire  signed [DataWidth-1:0] value_data,     // 2 clocks after value_read
+  input  wire  signed [DataWidth-1:0] value_data,     // 3 clocks after value_read
   output logic [3:0]                  record_word,
   input  wire  [31:0]                 record_data,    // 1 clock after record_word
   output logic                        depth_valid,
@@ -88,8 +88,8 @@ module depth_packets
   assign value_address = ~means ? place
       : (((row << 1) | PlaceWidth'(at[1])) << ColumnWidth) | (column << 1) | PlaceWidth'(at[0]);
   depth_value #(.DataWidth(DataWidth)) u_value (
-    .clk, .average(means), .shift(kept_shift), .in_valid(at >= 6'd2 & at <= (means ? 6'd5 : 6'd2)),
-    .in_first(at == 6'd2), .in_code(value_data), .value(short_value)
+    .clk, .average(means), .shift(kept_shift), .in_valid(at >= 6'd3 & at <= (means ? 6'd6 : 6'd3)),
+    .in_first(at == 6'd3), .in_code(value_data), .value(short_value)
   );
   assign value = kept_format == Words ? 32'(value_data) : {16'd0, short_value};
 
@@ -131,7 +131,7 @@ module depth_packets
         phase <= phase_next;
         unique case (phase_next)
           Head: last_at <= last_value ? LastOfTrailer : LastOfHeader;
-          Load: last_at <= means ? 6'd7 : 6'd4;
+          Load: last_at <= means ? 6'd8 : 6'd5;
           Value: last_at <= kept_format == Words ? 6'(LastOfWord) : 6'd1;
           Tail: last_at <= LastOfRecord;
         endcase

@@ -5,7 +5,7 @@
 // Lanes beats; what comes before the first tuser is dropped, and a tuser inside a frame begins it again. s_event: the
 // words of each frame's record, behind its last depth and before the last depth of the next; the record of a frame that
 // did not come whole is dropped. frame_valid: a frame with its record waits. frame_take, only while frame_valid and
-// keep, takes it; from the next clock up to frame_done its values and words can be read: value_data 2 clocks after
+// keep, takes it; from the next clock up to frame_done its values and words can be read: value_data 3 clocks after
 // value_read with value_address, record_data 1 clock after record_word. value_read is low in the clock of frame_done.
 // A frame that comes whole replaces one that waits. `skipped`: a whole frame is lost so. While keep is low, frames are
 // not kept, and none is counted. Memory: two banks of a frame. Model:
@@ -86,7 +86,8 @@ module depth_store
     .read_en(reading), .read_address({record_word, read_bank}), .read_data(record_data)
   );
 
-  // Values out: a register behind each memory, because block memories are slow; then the bank and the lane.
+  // Values out: a register behind each memory, because block memories are slow and far apart; then the bank and the
+  // lane, into a register.
 
   localparam int LaneLog2 = $clog2(Lanes);
   logic [LaneLog2:0] from;  // {bank, lane} of the value
@@ -96,10 +97,10 @@ module depth_store
   assign from = (LaneLog2 + 1)'(value_address & PlaceWidth'($unsigned(Lanes - 1)))
       | ((LaneLog2 + 1)'(read_bank) << LaneLog2);
   assign values_q = bank_q;
-  assign value_data = values_q[from_q[1]];
   always_ff @(posedge clk) begin
     if (value_read) from_q[0] <= from;
     from_q[1] <= from_q[0];
+    value_data <= values_q[from_q[1]];
   end
   for (genvar b = 0; b < 2; b++) begin : g_bank
     logic [Lanes*DataWidth-1:0] read_values;

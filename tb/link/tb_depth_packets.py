@@ -44,8 +44,8 @@ PROOFS = (
 
 
 FORMATS = (DepthFormat.WORDS, DepthFormat.SHORT, DepthFormat.AVERAGED)
-LONGEST_SILENCE = 8  # clocks
-LOAD_CLOCKS = 5  # of a value of one code
+LONGEST_SILENCE = 9  # clocks
+LOAD_CLOCKS = 6  # of a value of one code
 TRAILER_WAITS = WORDS  # a clock before each word of the record
 
 
@@ -78,7 +78,7 @@ class Bench:
         self.packet = b""
         self.reading, self.silent = False, 0
         self.held: tuple[int, bool] | None = None  # a byte that was offered and not taken
-        self.pending: int | None = None  # a value that was read in the clock before
+        self.pending: list[int | None] = [None, None]  # values that were read in the last two clocks
         self.reads = self.waits = 0  # values that were read; clocks without a byte while a frame is sent
         self.sent = 0 if cold else self.sent
 
@@ -132,16 +132,16 @@ class Bench:
     def store(self) -> None:
         """Do as depth_store does in the clock that ends: a value stands until the next one that is read."""
         take, done, reads = (bool(self.read(pin)) for pin in ("frame_take", "frame_done", "value_read"))
-        if self.pending is not None:
-            self.drive(value_data=self.pending % (1 << self.width))
-            self.pending = None
+        value, self.pending = self.pending[0], [self.pending[1], None]
+        if value is not None:
+            self.drive(value_data=value % (1 << self.width))
         if self.reading:
             self.drive(record_data=self.words[self.read("record_word") % WORDS])
         if reads:
             self.reads += 1
             assert self.reading, "no frame is taken"
             assert not done, "the frame is given back"
-            self.pending = int(self.codes.flat[self.read("value_address")])
+            self.pending[1] = int(self.codes.flat[self.read("value_address")])
         if take:
             assert self.read("frame_valid"), "no frame waits"
             assert not self.reading, "a frame is taken"

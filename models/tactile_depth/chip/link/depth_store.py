@@ -42,7 +42,7 @@ class DepthStore:
     ended: int | None = None
     values: dict[tuple[int | None, int], int] = field(default_factory=dict)
     words: dict[tuple[int | None, int], int] = field(default_factory=dict)
-    read: list[int | None] = field(default_factory=lambda: [None, None])
+    read: list[int | None] = field(default_factory=lambda: [None] * 3)
     _record: int | None = None
 
     @property
@@ -55,10 +55,10 @@ class DepthStore:
         begins = pins["s_axis_tvalid"] and pins["s_axis_tuser"]
         ends = pins["s_axis_tvalid"] and not begins and self.last_beat
         publish = self.awaited and pins["s_event_tvalid"] and pins["s_event_tlast"]
-        out: dict[str, int | None] = {"value_data": self.read[1], "record_data": self._record}
+        out: dict[str, int | None] = {"value_data": self.read[2], "record_data": self._record}
         source = self.banks.read
         read = self.values.get((source, pins["value_address"])) if pins["value_read"] else self.read[0]
-        self.read = [read, self.read[0]]
+        self.read = [read, *self.read[:2]]
         self._record = self.words.get((source, pins["record_word"]))
         banks = self.banks.clock(
             rst=pins["rst"],
