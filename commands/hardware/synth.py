@@ -168,7 +168,7 @@ def mapped(
 ) -> dict[str, dict[str, Counter[str]]]:
     """Return the cells of each module in each mapping of a target; the mappings run at the same time.
 
-    The mapping to logic leaves out the modules `boxes`. Raises RuntimeError.
+    The mapping to logic leaves out the modules `boxes`, of which `sta` knows no delay. Raises RuntimeError.
     """
     shutil.copy(Path(__file__).with_name("wide_dsp.v"), folder)
     keep = [f"setattr -mod -set keep_hierarchy 1 {core}" for core in cores]
@@ -180,7 +180,7 @@ def mapped(
             f"tee -q -o {name}.json stat -json",
         ]
         if name == "logic" and target.delays:
-            commands += [*target.delays, f"tee -q -o {DEPTH} sta"]
+            commands += [*target.delays, *(f"delete t:{box}" for box in boxes), f"tee -q -o {DEPTH} sta"]
         script = folder / f"{name}.ys"
         script.write_text("\n".join([*lines, *keep, *commands]) + "\n")
         scripts.append(script)

@@ -77,6 +77,23 @@ def test_a_multiplication_of_27_by_18_bits_is_one_dsp_with_its_registers(tmp_pat
     assert synth.depth_text(design) == [f"logic depth: {path['ns']:.2f} ns, {path['start']} -> {path['end']}"]
 
 
+def test_a_memory_that_is_left_out_of_the_mapping_has_no_delay(tmp_path: Path) -> None:
+    """Map a sum behind an UltraRAM: the longest path is in the sum."""
+    (tmp_path / "top.sv").write_text("""module top (input wire clk, input wire [7:0] in, output logic [7:0] out);
+  logic [7:0] word;
+  td_ram #(.Width(8), .Depth(4096), .Style(2)) u_ram (.clk, .write_en(1'b1), .write_address({4'd0, in}),
+    .write_data(in), .read_en(1'b1), .read_address({4'd1, in}), .read_data(word));
+  always_ff @(posedge clk) out <= word + out;
+endmodule
+""")
+    sources = " ".join(str(file) for file in (*repository.packages(), *repository.sources("td_ram")))
+    lines = [f"read_slang --threads 1 -DSYNTHESIS --top top --keep-hierarchy {sources} top.sv", "hierarchy -top top"]
+    target = replace(XCZU7EV, mappings={"logic": XCZU7EV.mappings["logic"]})
+    cells = synth.mapped(target, lines, [], ["td_ram$top.u_ram"], tmp_path, "a memory")
+    assert cells["logic"]["top"]["td_ram$top.u_ram"] == 1
+    assert 1.0 < synth.logic_depth(tmp_path / synth.DEPTH)["ns"] < 2.0
+
+
 def test_the_7_series_has_multipliers_of_25_bits_and_no_ultraram(tmp_path: Path) -> None:
     """Map two products and a memory for UltraRAM: 25 x 18 bits are one DSP, 26 x 18 two, and the memory is blocks."""
     (tmp_path / "top.sv").write_text(f"""
