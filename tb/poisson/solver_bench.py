@@ -76,8 +76,9 @@ async def many_frames(dut: Any, amplitude: float) -> None:
 
 @cocotb.test
 async def full_scale_saturates(dut: Any) -> None:
-    f = codes(3, 1.0)
+    f = codes(3 + MANY, 1.0)
     f[1], f[2] = f.max(), f.min()
+    f[3:] = codes(MANY, None)[..., :1]  # rows of one word clip in many paths at once
     assert await check(dut, f), "full scale everywhere must clip somewhere"
 
 
