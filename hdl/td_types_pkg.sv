@@ -225,6 +225,15 @@ package td_types_pkg;
     side = lanes > 1 << block_log2 ? lanes / (1 << block_log2) : 1;
   endfunction
 
+  // A threshold that fits one bit more than depths of `width` bits have; beyond those of depths it stays beyond them.
+  function automatic logic signed [31:0] near_depths(input logic signed [31:0] code, input int width);
+    logic [31:0] low, word;
+    low = (32'd1 << (width - 1)) - 32'd1;
+    word = $unsigned(code);
+    near_depths = $signed((low & word) | (~low & {32{word[31]}}));
+    near_depths[width-1] = word[31] ? &(word | low) : |(word & ~low);
+  endfunction
+
 endpackage
 
 `default_nettype wire

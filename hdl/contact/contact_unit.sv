@@ -80,18 +80,14 @@ module contact_unit
   end
   assign frame_leaves = m_axis_tvalid & m_axis_tready & m_position.frame_end;
 
-  // Thresholds of one bit more than depths; those beyond depths stay beyond them. A change counts a clock later.
+  // A change of a threshold counts a clock later.
 
-  logic [2:0][31:0] settings_given;
-  logic signed [2:0][DataWidth:0] limited;
   logic signed [DataWidth:0] on_threshold, off_threshold, area_threshold;
-  assign settings_given = {settings.threshold, settings.off_threshold, settings.area_threshold};
-  for (genvar number = 0; number < 3; number++) begin : g_threshold
-    td_round_saturate #(.InWidth(32), .Drop(0), .OutWidth(DataWidth + 1)) u_limit (
-      .in(settings_given[number]), .out(limited[number]), .clipped()
-    );
+  always_ff @(posedge clk) begin
+    on_threshold <= (DataWidth + 1)'(near_depths(settings.threshold, DataWidth));
+    off_threshold <= (DataWidth + 1)'(near_depths(settings.off_threshold, DataWidth));
+    area_threshold <= (DataWidth + 1)'(near_depths(settings.area_threshold, DataWidth));
   end
-  always_ff @(posedge clk) {on_threshold, off_threshold, area_threshold} <= limited;
 
   logic [Lanes-1:0] tap_above;
   threshold_comparator #(.Width(DataWidth), .Lanes(Lanes)) u_comparator (
