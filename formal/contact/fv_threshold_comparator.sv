@@ -2,11 +2,14 @@
 // fv_threshold_comparator: contact rises in the clock after a beat with a depth above the threshold leaves, and at no other time.
 // While hold is high it does not fall. Otherwise it is high from such a depth on until the clock after the first depth of
 // the next frame, so it falls in the clock after hold is cleared if this frame has had no depth above the threshold.
+// The threshold is any code of 32 bits, as near_depths gives it to the core.
 
 parameter int Width = 24, Lanes = 1;
+input logic signed [31:0] code;
+always_comb assume (threshold == (Width + 1)'(td_types_pkg::near_depths(code, Width)));
 
-logic signed [Width:0] of_frame, in_force;  // threshold when the frame began; that which counts now
-assign in_force = in_valid & in_frame_start ? threshold : of_frame;
+logic signed [31:0] of_frame, in_force;  // threshold when the frame began; that which counts now
+assign in_force = in_valid & in_frame_start ? code : of_frame;
 logic [Lanes-1:0] exceeds;  // depths of the beat above the threshold
 for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
   logic signed [Width-1:0] depth;
