@@ -33,7 +33,11 @@ def built(choices: Any, store: Any = {}, **runs: Any) -> Structure:  # noqa: B00
 STRUCTURES = (
     built(CHOICES, on=VERILATOR),
     built(CHOICES | {"rows": 21, "neumann": True}, on=ICARUS),
-    built(CHOICES | {"lanes": 2, "rows": 9, "data_width": 12, "coefficient_width": 10}, on=ICARUS, mutants=BOTH),
+    built(
+        CHOICES | {"lanes": 2, "rows": 9, "neumann": True, "data_width": 12, "coefficient_width": 10},
+        on=ICARUS,
+        mutants=BOTH,
+    ),
     built(CHOICES | {"columns": 32, "rows": 11, "lanes": 8}, on=VERILATOR),
     built(CHOICES | {"lanes": 8, "rows": 9, "neumann": True}, on=ICARUS),
     built(CHOICES | {"columns": 32, "rows": 11}, PACKED, on=ICARUS),
