@@ -15,7 +15,7 @@ from tactile_depth.chip.registers.table_banks import CAPTURES
 from tactile_depth.chip.registers.table_signatures import GRADIENT, REFERENCE, ZERO, TableSignatures
 from tactile_depth.chip.rom_files import write_words
 from tb import structs
-from tb.lockstep import Pins, play
+from tb.lockstep import CLOCKS, Pins, play
 from tb.registers.bus import OFFSET, STROBES
 from tb.structures import ICARUS, VERILATOR, Structure
 
@@ -115,6 +115,11 @@ class Writers:
             pins["write_offset"], pins["write_mask"] = OFFSET["TABLE_HIGH" if upper else "TABLE_LOW"], STROBES[0]
             for name in CAPTURES:
                 pins[f"{name}_captured"] = chance.choice(self.words) if name == self.kind else 0
+            if chance.random() < 0.05:  # a word that is not whole, or another register
+                pins["write_mask"] = chance.choice(STROBES)
+                pins["write_offset"] = chance.choice((OFFSET["TABLE_INDEX"], pins["write_offset"])) ^ (
+                    chance.random() < 0.5
+                ) << chance.randrange(2, 32)
         writes = pins["write"] and pins["write_offset"] == OFFSET["TABLE_LOW"] and not pins["rst"]
         index = chance.randrange(4) if stray and chance.random() < 0.3 else signatures.index
         command = {"write": int(writes), "read": int(stray and chance.random() < 0.3), "select": table}
@@ -142,4 +147,4 @@ async def signatures(dut: Any) -> None:
         **{f"{name}_captured": writers.words for name in CAPTURES},
     }
     model = TableSignatures(WORDS if dut.File.value else [0] * 8, int(dut.Side.value))
-    await play(dut, Signatures(model), pins, writers.drive)
+    await play(dut, Signatures(model), pins, writers.drive, clocks=4 * CLOCKS)
