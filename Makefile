@@ -47,9 +47,9 @@ override need_icarus := command -v iverilog > /dev/null || { \
   echo 'Icarus Verilog is missing: run `apt-get install iverilog` as root, or `make system-tools`' >&2; exit 2; }
 
 # Targets that run the command of their name; those of WITH_ICARUS need Icarus whatever the variables say.
-override WITH_ICARUS := lint mutate netlists quick regress sign-off test upsets
+override WITH_ICARUS := lint mutate netlists quick regress sign-off test
 override COMMANDS := $(WITH_ICARUS) asic baselines budget calibrate certify extremes figures formal fpga presses \
-  reflex registers report sim sweep synth trade tune wrap
+  reflex registers report sim sweep synth trade tune upsets wrap
 
 .PHONY: help live-test system-tools setup clean $(COMMANDS)
 override .DEFAULT_GOAL := sim
@@ -145,7 +145,7 @@ formal: $(TOOLS)
 # Run mutants of cores through their testbenches, and settle survivors by proof. CORE=a,b
 mutate: $(TOOLS)
 
-# Flip bits of registers and memories while frames stream through, and count the damage.
+# Flip bits of registers and memories while frames stream through, and measure the damage; go on where it ended. UPSETS=1000
 upsets: $(STAMP)
 
 # Run proof and mutants of each core without results of today's sources; go on where it ended. CORE=a,b CHECK=1: say which.

@@ -17,7 +17,7 @@ from commands.__main__ import COMMANDS
 from commands.common.repository import ROOT
 
 WITHOUT_COMMAND = ("help", "live-test", "system-tools", "setup", "clean")
-WITH_ICARUS = ("lint", "mutate", "netlists", "quick", "regress", "test", "upsets")
+WITH_ICARUS = ("lint", "mutate", "netlists", "quick", "regress", "test")
 SPY = """#!/usr/bin/env -S python3 -IS
 import json, os, sys
 arguments = sys.argv[1:]
