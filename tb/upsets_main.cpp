@@ -2,21 +2,21 @@
 // Flips bits of a pipeline while frames stream through, and compares its frames with those of a run without a flip.
 //
 // The top is a wrapper of one configuration; registers and words of memory are public in it. Standard input holds
-// numbers:
-//   places whose bits are all inverted before the first frame; places to record: how many, then their numbers
+// numbers, lists with their length before them:
+//   places to invert before the first frame; places to record
 //   writes of registers: how many, then offset and value of each; offset of STATUS
 //   pixels of a frame; values a beat; bytes a value; frames before the one that enters as bits flip
-//   words of s_axis: how many, then tuser in 25, tlast in 24, tdata below. They repeat without a pause
-//   flips, up to the end: place, bit (numbered through all words), clock; clock 0 is the first of the frame that enters
+//   words of s_axis: tuser in 25, tlast in 24, tdata below. They repeat without a pause
+//   flips, up to the end: place, bit (numbered through all words), clock from the first of the frame that enters
 // Without flips the output lists the places (scope, module, signal, bits and bytes of a word, words, and 1 if its bits
-// stay flipped when all combinational logic has followed, else it is no register but a copy) and the codes of each
-// frame, and history.bin gets the values of the recorded places in each clock of the frame that enters.
-// Otherwise it has a line for each flip: of the frames in flight, the frame after and the frame after that, the largest
-// change in codes, the largest change in % of its frame's peak, and 1 if a frame did not come out whole; then what the
-// run without a flip has not: marks in word 12 of records, bits of STATUS (all ones: the registers do not answer).
+// stay flipped when all combinational logic has followed, else it is a copy) and the codes of each frame; history.bin
+// gets the recorded places in each clock of the frame that enters.
+// Otherwise a line for each flip: of the frames in flight, the next and the one after it, the largest change in codes
+// and in % of its frame's peak, and 1 if a frame did not come whole; then what the run without a flip lacks: marks in
+// word 12 of records, bits of STATUS (all ones: no answer).
 //
-// An experiment begins from the last state that was kept before the flip. A bit that does not stay flipped ends the
-// program. An experiment ends when the state, all of it, is again that of the run without a flip.
+// An experiment begins from the last state kept before the flip, and ends when all state is again that of the run
+// without a flip. A bit that does not stay flipped ends the program.
 
 #include <algorithm>
 #include <cstdint>
@@ -145,7 +145,6 @@ class Run {
     no_flip_ = Status();
   }
 
-  // Prints the places.
   void PrintPlaces() {
     for (const auto& place : places_) {
       Restore(0);
@@ -158,7 +157,6 @@ class Run {
     }
   }
 
-  // Prints the frames that are compared.
   void PrintFrames() const {
     for (long number = 0; number < before_ + kFrames; number++) {
       for (const int32_t code : frames_[number].words) std::printf("%d ", code);
@@ -174,7 +172,7 @@ class Run {
     Vtop___024root___eval_settle(top_.rootp);
     if (place.IsSet(bit) == before) Fail("a flip does not stay");
     bool healed = false;
-    while (clock_ < end_ && !healed) {
+    while (clock_ < end_ + std::min(late_, 2 * pixels_) && !healed) {
       Clock();
       const std::size_t number = clock_ / period_;
       if (clock_ % period_ == 0 && number < kept_.size()) healed = IsAt(kept_[number]);
@@ -214,6 +212,8 @@ class Run {
     const Kept& kept = kept_[number];
     std::memcpy(State(), kept.registers.data(), kept.registers.size());
     sent_ = kept.sent;
+    late_ = 0;
+    lates_.assign(sent_ / pixels_, 0);
     clock_ = static_cast<long>(number) * period_;
     depth_.assign(all_depth_.begin(), all_depth_.begin() + kept.depth);
     records_.assign(all_records_.begin(), all_records_.begin() + kept.records);
@@ -233,7 +233,8 @@ class Run {
     top_.s_axis_tuser = pixel >> 25 & 1;
     Settle();
     if (streams_) {
-      sent_ += top_.s_axis_tready;
+      if (!top_.s_axis_tready) late_++;
+      else if (++sent_ % pixels_ == 0) lates_.push_back(late_);
       if (top_.m_axis_tvalid) depth_.push_back({clock_, top_.m_axis_tuser != 0, Codes(), top_.m_axis_tlast != 0});
       const bool begins = records_.empty() || records_.back().last;
       const int32_t word = static_cast<int32_t>(top_.m_event_tdata);
@@ -294,8 +295,10 @@ class Run {
     return packets;
   }
 
-  // The packet nearest to the clock in which one is due, if it has the same form; nullptr: none within half a frame.
-  const Packet* Due(const std::vector<Packet>& packets, const Packet& due) const {
+  // The packet nearest to the clock in which that of a frame is due, which may have entered late, if it has the same
+  // form; nullptr: none within half a frame.
+  const Packet* Due(const std::vector<Packet>& packets, Packet due, std::size_t number) const {
+    if (number < lates_.size()) due.clock += lates_[number];
     const Packet* nearest = nullptr;
     long distance = pixels_ / 2;
     for (const auto& packet : packets) {
@@ -316,7 +319,7 @@ class Run {
     for (long number = 0; number < after + kFrames - 1; number++) {
       const long column = std::max(0L, number - after + 1);
       const Packet& expected = frames_[number];
-      if (const Packet* frame = Due(frames, expected)) {
+      if (const Packet* frame = Due(frames, expected, number)) {
         int32_t peak = 1, largest = 0;
         for (std::size_t i = 0; i < expected.words.size(); i++) {
           peak = std::max(peak, std::abs(expected.words[i]));
@@ -328,7 +331,7 @@ class Run {
         torn[column] = true;
       }
       const Packet& due = frame_records_[number];
-      const Packet* record = Due(records, due);
+      const Packet* record = Due(records, due, number);
       if (record) marks |= static_cast<uint32_t>(record->words[kMarksWord] & ~due.words[kMarksWord]) & kMarks;
     }
     for (int i = 0; i < kFrames; i++) std::printf("%d %.4g %d ", change[i], percent[i], torn[i]);
@@ -338,8 +341,8 @@ class Run {
   Vtop& top_;
   std::vector<std::pair<long, long>> writes_;
   const std::vector<Place>& places_;
-  std::vector<long> inverted_, recorded_, words_;
-  long status_, pixels_, before_, period_, sent_ = 0, clock_ = 0, end_ = 0;
+  std::vector<long> inverted_, recorded_, words_, lates_;  // lates_: clocks by which each frame entered late
+  long status_, pixels_, before_, period_, sent_ = 0, late_ = 0, clock_ = 0, end_ = 0;
   int lanes_, bytes_;
   bool streams_ = false;
   uint32_t no_flip_ = 0;
