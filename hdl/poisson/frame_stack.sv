@@ -183,8 +183,8 @@ module frame_stack #(
     logic [AddressWidth-1:0] write_address, read_address;
     logic [RowWords*Width-1:0] words;
     td_ram #(.Width(RowWords * Width), .Depth(Depth), .Style(Style)) u_ram (
-      .clk, .write_en(en & stores[side]), .write_address(write_address), .write_data(ahead),
-      .read_en(en & reads[side]), .read_address(read_address), .read_data(words)
+      .clk, .write_en (en & stores[side]), .write_address(write_address), .write_data (ahead),
+      .read_en (en & reads[side]), .read_address (read_address), .read_data (words)
     );
     always_ff @(posedge clk) begin
       if (en) begin
