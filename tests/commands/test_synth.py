@@ -3,6 +3,7 @@
 
 import json
 import re
+import shutil
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -86,8 +87,11 @@ def test_a_memory_that_is_left_out_of_the_mapping_has_no_delay(tmp_path: Path) -
   always_ff @(posedge clk) out <= word + out;
 endmodule
 """)
-    sources = " ".join(str(file) for file in (*repository.packages(), *repository.sources("td_ram")))
-    lines = [f"read_slang --threads 1 -DSYNTHESIS --top top --keep-hierarchy {sources} top.sv", "hierarchy -top top"]
+    sources = [*repository.packages(), *repository.sources("td_ram")]
+    for source in sources:
+        shutil.copy(source, tmp_path)
+    files = " ".join(dict.fromkeys(source.name for source in sources))
+    lines = [f"read_slang --threads 1 -DSYNTHESIS --top top --keep-hierarchy {files} top.sv", "hierarchy -top top"]
     target = replace(XCZU7EV, mappings={"logic": XCZU7EV.mappings["logic"]})
     cells = synth.mapped(target, lines, [], ["td_ram$top.u_ram"], tmp_path, "a memory")
     assert cells["logic"]["top"]["td_ram$top.u_ram"] == 1
