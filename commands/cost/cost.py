@@ -25,11 +25,10 @@ CLOCK_MHZ = 166.0  # of the power
 MACRO_BITS = 1024  # a larger memory is a macro, a smaller one is flip-flops or gates
 ACCESS_PJ, WORD_BITS = 5.3, 64
 """Energy of reading or writing a word of a macro of 512 words, see commands/hardware/memory_model.py."""
-PRODUCT_UW, LUT_UW = 3.94, 3.07
+PRODUCT_UW, LUT_UW = 4.51, 2.04
 """Power of the logic for each bit of a product (bits of one operand times bits of the other) and for each LUT of the
-XCZU7EV. The first is multipliers' part of the power: 674 of 1,050 mW at 0.18 um in version 0.1.0. Both are then
-scaled to the two figures at 45 nm, 89.5 and 181.5 mW of logic with 128 x 128, tridiagonal and spectral, which they
-meet within 7 %."""
+XCZU7EV: least squares of relative errors to the logic at 45 nm of three configurations ("At 45 nm" in
+docs/hardware.md), which they meet within 3 %."""
 
 
 class CameraCost(NamedTuple):

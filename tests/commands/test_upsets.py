@@ -24,7 +24,7 @@ def test_registers_of_every_form_are_found() -> None:
 
 
 def test_places_of_a_list() -> None:
-    """What no core assigns, and what does not stay flipped, is no place."""
+    """A name that no core assigns, and a bit that does not stay flipped, is no place."""
     lines = [
         "TOP.bench.u_a frame_tags full 2 1 1 1",
         "TOP.bench.u_a frame_tags held 1 1 1 1",
@@ -76,7 +76,7 @@ def test_outcome_of_a_line() -> None:
 
 
 def test_shares_of_harm() -> None:
-    """Of four: one with a mark, one with a sticky bit and a lost frame, one that is lost, one that is unseen."""
+    """Count four: one with a mark, one with a sticky bit and a lost frame, one that is lost, one that is unseen."""
     lost = ["0", "0", "1", *LINE[3:]]
     lines = [[*LINE[:9], "1", "0"], [*lost[:10], "64"], lost, LINE, ["0", "0", "0", *LINE[3:]]]
     assert shares([Outcome.of(line) for line in lines], 0.5) == ["4", "50.0", "25.0", "25.0"]
@@ -123,7 +123,7 @@ def test_flips_of_a_register_a_stored_word_and_a_table(model: Model) -> None:
 
 @pytest.mark.regress
 def test_copy_cannot_be_flipped(model: Model) -> None:
-    """What follows a register by combinational logic would be harmless for the wrong reason."""
+    """A flip of what follows a register by combinational logic would be harmless for the wrong reason."""
     lines = simulated(model.built, model.folder, [model.start])
     number = next(number for number, line in enumerate(lines) if " td_delay_line out " in line and line.endswith(" 0"))
     copy = Place(number, "out", ("td_delay_line",), 1, 1, 1)
