@@ -44,8 +44,8 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
     bit counts as registered, because the other bits are unknown before their first clock too. They stay where one comes
     from a block memory through logic: a memory takes more than half of a clock, so its register has to be near it; and
     where one comes from logic and has other readers than multipliers, which would be far from the multiplier. The
-    product of such a multiplier, moved or not, moves when every bit goes into one register without reset and nowhere
-    else, all with one enable.
+    product moves when every bit goes into one register without reset and nowhere else, all with one enable, whether the
+    operands moved or not.
 
     Returns
     -------
@@ -64,9 +64,8 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
     for multiplier in multipliers:
         ports = multiplier["connections"]
         sources, controls = _sources(ports, cells, registers)
-        if len(controls) != len(SIDES) or not _compatible(controls):
-            continue
-        if any(register["connections"]["DI"][0] in near for register in sources.values()):
+        registered = len(controls) == len(SIDES) and _compatible(controls)
+        if not registered or any(register["connections"]["DI"][0] in near for register in sources.values()):
             controls = {}
         else:
             operands += 1
@@ -91,6 +90,39 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
             del cells[name]
     removed = before - len(cells)
     return {"multipliers": len(multipliers), "operands": operands, "products": products, "registers": removed}
+
+
+def pack_memories(module: dict[str, Any]) -> dict[str, int]:
+    """Move the registers behind block memories into them, in a flat module of Yosys' JSON after synth_ecp5.
+
+    A word leaves such a register 1.0 ns after the clock, the memory itself only after 5.8 ns, with the wire to the
+    register still to come. The registers of a port move when every bit that is read goes into one register without
+    reset and nowhere else, all with one enable and the clock of the port.
+
+    Returns
+    -------
+    number of ports of memories that became registered, and of registers that were removed
+    """
+    cells: Cells = module["cells"]
+    behind = {ports["DI"][0]: name for name, ports in _registers(cells).items()}
+    readers: Counter[Bit] = Counter(bit for _, bit in _pins(cells, "input"))
+    before, ports = len(cells), 0
+    for memory in [cell for cell in cells.values() if cell["type"] == MEMORY]:
+        pins, parameters = memory["connections"], memory["parameters"]
+        wide = int(str(parameters["DATA_WIDTH_A"]), 2) == 2 * WIDTH  # both halves of a word leave with the clock of B
+        for side, halves in (("B", "AB"),) if wide else (("A", "A"), ("B", "B")):
+            outputs = {pin: pins[pin][0] for half in halves for pin in pins if pin.startswith(f"DO{half}")}
+            read = {pin: bit for pin, bit in outputs.items() if readers[bit]}
+            if not read or any(readers[bit] > 1 or bit not in behind for bit in read.values()):
+                continue
+            controls = {_control(cells[behind[bit]]) for bit in read.values()}
+            if _compatible({side: controls, "": {Control(pins[f"CLK{side}"][0], "1")}}) and pins[f"RST{side}"] == ["0"]:
+                ports += 1
+                parameters |= {f"REGMODE_{half}": "OUTREG" for half in halves}
+                pins[f"OCE{side}"] = [next(control.enable for control in controls if control)]
+                for pin, bit in read.items():
+                    pins[pin] = cells.pop(behind[bit])["connections"]["Q"]
+    return {"memory_ports": ports, "memory_registers": before - len(cells)}
 
 
 def _registers(cells: Cells) -> dict[str, dict[str, list[Bit]]]:

@@ -245,7 +245,7 @@ def synthesize(request: BoardRun, twin: Twin, camera: CameraConfiguration | None
     design = yosys.design(folder, top, [*lines, *steps])
     module = design["modules"][top]
     if request.board.camera_top:
-        counts: dict[str, Any] = {"registers_packed": ecp5.pack(module)}
+        counts: dict[str, Any] = {"registers_packed": {**ecp5.pack_memories(module), **ecp5.pack(module)}}
         ecp5.copy_enables(module)
     else:
         counts = {"products_in_luts": nexus.products_in_luts(config)}

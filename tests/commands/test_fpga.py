@@ -20,14 +20,23 @@ from tactile_depth.sensor.synthetic import synthetic_for
 
 A_WIDTH, B_WIDTH = 27, 18
 
-WRAPPER = """\
+WRAPPERS = {
+    "td_dot_product": """\
 module td_dot_product #(parameter int AWidth = 27, parameter int BWidth = 18) (
   input logic clk, en, input logic signed [AWidth-1:0] a0, a1, input logic signed [BWidth-1:0] b0, b1,
   output logic signed [AWidth+BWidth:0] sum
 );
   netlist u_netlist (.clk, .en, .a0, .a1, .b0, .b1, .sum);
 endmodule
-"""
+""",
+    "td_delay_line": """\
+module td_delay_line #(parameter int Width = 54, parameter int Delay = 64, parameter int Style = 3) (
+  input logic clk, rst, en, input logic [Width-1:0] in, output logic [Width-1:0] out
+);
+  netlist u_netlist (.clk, .rst, .en, .in, .out);
+endmodule
+""",
+}
 
 
 def netlist_of(core: str, parameters: Any, folder: Path) -> Any:
@@ -44,30 +53,24 @@ def netlist_of(core: str, parameters: Any, folder: Path) -> Any:
     return yosys.design(folder, "netlist", [*lines, f"synth_ecp5 -top {core}"])
 
 
-def test_packed_multipliers_compute_the_same(tmp_path: Path) -> None:
-    """Run the testbench of a dot product on its netlist, in which every possible register is packed."""
-    design = netlist_of("td_dot_product", {"AWidth": A_WIDTH, "BWidth": B_WIDTH}, tmp_path)
-    packed = ecp5.pack(design["modules"]["td_dot_product"])
-    assert packed["multipliers"] == packed["operands"] == packed["products"] == 4
-    design["modules"] = {"netlist": design["modules"]["td_dot_product"]}
-    folder = tmp_path / "netlist"
+def plays_as_the_core(core: str, parameters: Any, module: Any, cell: str, folder: Path) -> None:
+    """Run the testbench of a core on its netlist, with our model of one kind of cell."""
     folder.mkdir()
-    (folder / "packed.json").write_text(json.dumps(design))
+    (folder / "packed.json").write_text(json.dumps({"modules": {"netlist": module}}))
     script = folder / "write.ys"
-    shutil.copy(repository.ROOT / "tb" / "MULT18X18D.v", folder)
+    shutil.copy(repository.ROOT / "tb" / f"{cell}.v", folder)
     script.write_text(
         "read_json packed.json\ndelete =A:blackbox\n"
-        "read_verilog -nooverwrite +/ecp5/cells_sim.v\nread_verilog -sv MULT18X18D.v\n"
+        f"read_verilog -sv {cell}.v\nread_verilog -nooverwrite +/ecp5/cells_sim.v\n"
         "hierarchy -top netlist\nproc\nflatten\nopt_clean\nwrite_verilog -noattr netlist.v\n"
     )
     assert not yosys.run(script, timeout_s=300)
-    (folder / "td_dot_product.sv").write_text(WRAPPER)
-    files = [folder / "netlist.v", folder / "td_dot_product.sv"]
-    widths = {"AWidth": A_WIDTH, "BWidth": B_WIDTH}
-    simulation.build("icarus", "td_dot_product", files, widths, folder, log=folder / "build.log")
+    (folder / f"{core}.sv").write_text(WRAPPERS[core])
+    files = [folder / "netlist.v", folder / f"{core}.sv"]
+    simulation.build("icarus", core, files, parameters, folder, log=folder / "build.log")
     ran, failed = simulation.run(
-        "td_dot_product",
-        repository.testbench("td_dot_product"),
+        core,
+        repository.testbench(core),
         folder,
         folder,
         simulator="icarus",
@@ -76,6 +79,26 @@ def test_packed_multipliers_compute_the_same(tmp_path: Path) -> None:
     )
     assert ran
     assert not failed, (folder / "run.log").read_text()[-2000:]
+
+
+def test_packed_multipliers_compute_the_same(tmp_path: Path) -> None:
+    """Run the testbench of a dot product on its netlist, in which every possible register is packed."""
+    core, widths = "td_dot_product", {"AWidth": A_WIDTH, "BWidth": B_WIDTH}
+    module = netlist_of(core, widths, tmp_path)["modules"][core]
+    packed = ecp5.pack(module)
+    assert packed["multipliers"] == packed["operands"] == packed["products"] == 4
+    plays_as_the_core(core, widths, module, ecp5.MULTIPLIER, tmp_path / "netlist")
+
+
+@pytest.mark.parametrize("width", [18, 36])
+def test_packed_memories_answer_the_same(tmp_path: Path, width: int) -> None:
+    """Run the testbench of a delay line on its netlist, in which the register is in the memory."""
+    core, parameters = "td_delay_line", {"Width": width, "Delay": 300, "Style": 1}
+    module = netlist_of(core, parameters, tmp_path)["modules"][core]
+    assert ecp5.pack_memories(module) == {"memory_ports": 1, "memory_registers": width}
+    for each in module["cells"].values():  # no contents at power-up
+        each["parameters"] = {name: value for name, value in each["parameters"].items() if "INITVAL" not in name}
+    plays_as_the_core(core, parameters, module, ecp5.MEMORY, tmp_path / "netlist")
 
 
 def test_logic_and_memories_read_copies_of_a_wide_enable(monkeypatch: pytest.MonkeyPatch) -> None:
