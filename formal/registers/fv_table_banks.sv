@@ -12,13 +12,13 @@ logic [1:0] pick_was;
 always_comb if (started) assume (pick == pick_was);
 
 // The followed table: a request that no frame has taken, its bank, and its capture.
-logic has, requested, bank, waits, busy, done, commits, is_reference, is_zero, shown;
+logic has, requested, bank, in_use, waits, busy, done, commits, is_reference, is_zero, shown;
 assign has = Present[pick];
 assign is_reference = 32'(pick) == TableSelectReference;
 assign is_zero = 32'(pick) == TableSelectZero;
 assign busy = (is_reference && reference_status.busy) || (is_zero && zero_status.busy);
 assign done = (is_reference && reference_status.done) || (is_zero && zero_status.done);
-assign waits = requested || (has && bank != table_in_use[pick]);
+assign waits = requested || (has && bank != in_use);
 assign commits = write && write_offset == TableCommitOffset && write_ones[pick] && has && !waits && !busy;
 assign shown = table_bank[pick];
 logic asks, may_start;
@@ -28,6 +28,7 @@ assign may_start = has && !(is_zero && (waits || done));
 
 always_ff @(posedge clk) begin
   pick_was <= pick;
+  in_use <= table_in_use[pick];
   if (frame_start && !rst && requested) bank <= !bank;
   if (frame_start) requested <= 1'b0;
   if (commits || (done && has)) requested <= 1'b1;

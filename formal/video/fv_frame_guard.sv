@@ -23,6 +23,7 @@ logic hunts, hunts_next;
 state_e state, state_next;
 logic [CountWidth-1:0] count, count_next;
 logic [31:0] silence;  // enabled clocks without a word since the last one of an open frame
+logic expired;         // they have reached the timeout of the last of them
 logic pixel, filler, row_now, whole_now, short_now, long_now, missing_now, early_now, timed_out_now, fault;
 always_comb begin
   pixel = s_valid && (state == Idle ? s_user : state == Open && !s_user);
@@ -33,7 +34,7 @@ always_comb begin
   long_now = pixel && !s_last && row_now;
   missing_now = state == Idle && s_valid && !s_user && !hunts;
   early_now = state == Open && s_valid && s_user;
-  timed_out_now = state == Open && !s_valid && timeout != 0 && silence >= timeout;
+  timed_out_now = state == Open && !s_valid && expired;
   fault = short_now || long_now || early_now || timed_out_now;
   count_next = pixel || filler ? count + One : count;
   state_next = state;
@@ -65,6 +66,7 @@ always_ff @(posedge clk) begin
     leaves_test <= s_test;
     count <= count_next;
     silence <= s_valid || state != Open ? '0 : silence + 32'd1;
+    expired <= !s_valid && state == Open && timeout != 0 && silence + 32'd1 >= timeout;
     leaves <= pixel | filler;
     place <= count;
     if (pixel) data <= s_data;
@@ -78,6 +80,7 @@ always_ff @(posedge clk) begin
     count <= '0;
     leaves <= 1'b0;
     silence <= '0;
+    expired <= 1'b0;
     waited <= '0;
     behind_fault <= 1'b0;
   end

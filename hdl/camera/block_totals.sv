@@ -67,7 +67,7 @@ module block_totals #(
   // Operands of the multipliers, beside the memory's word; products, beside the sums of the block's earlier rows; the
   // total, beside what the memory takes: the total, or, as the block ends, the part of the row in the next one.
 
-  logic ends_q, ends_q2, ends_q3, complete_q, complete_q2, first_q, blue_q, blue_q2;
+  logic ends_q, ends_q2, ends_q3, complete_q, complete_q2, first_q, first_q2, blue_q, blue_q2;
   logic [ColumnWidth-1:0] column_q, column_q2, column_q3;
   logic [WeightWidth-1:0] weight_q;
   logic [Sums*SumWidth-1:0] sums_q;
@@ -76,8 +76,8 @@ module block_totals #(
     if (en) begin
       {ends_q, ends_q2, ends_q3} <= {in_ends, ends_q, ends_q2};
       {complete_q, complete_q2, out_valid} <= {in_ends & ends_row, complete_q, complete_q2};
-      first_q <= in_first_row;
-      earlier_q <= first_q ? '0 : earlier;
+      {first_q, first_q2} <= {in_first_row, first_q};
+      earlier_q <= earlier;
       {blue_q, blue_q2} <= {in_blue_row, blue_q};
       {column_q, column_q2, column_q3} <= {column, column_q, column_q2};
       weight_q <= weight;
@@ -119,7 +119,7 @@ module block_totals #(
       assign part = parts[c/2*TotalWidth+:TotalWidth];
       assign whole = wholes[c/2*TotalWidth+:TotalWidth];
     end
-    assign total = earlier_q[c*TotalWidth+:TotalWidth] + (counts ? part : '0);
+    assign total = (first_q2 ? '0 : earlier_q[c*TotalWidth+:TotalWidth]) + (counts ? part : '0);
     always_ff @(posedge clk) begin
       if (en) begin
         out_totals[c*TotalWidth+:TotalWidth] <= total;

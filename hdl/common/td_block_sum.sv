@@ -56,7 +56,7 @@ module td_block_sum #(
   logic row_ends, begins, completes;
   logic [3:0] row_ends_q = '0;  // a cycle before the first reset writes nothing
   logic [3:0] completes_q;
-  logic [1:0] begins_q;
+  logic [2:0] begins_q;
   logic [BlockWidth-1:0] block;
   logic [3:0][BlockWidth-1:0] block_q;
   assign row_ends = valid_q & (column & InBlock) == InBlock & row < RowWidth'($unsigned(BlockRows << BlockLog2));
@@ -78,7 +78,7 @@ module td_block_sum #(
       if (in_frame_start) {first_frame, last_frame} <= {in_first_frame, in_last_frame};
     end
     row_ends_q <= {row_ends_q[2:0], row_ends};
-    begins_q <= {begins_q[0], begins};
+    begins_q <= {begins_q[1:0], begins};
     completes_q <= {completes_q[2:0], completes};
     block_q <= {block_q[2:0], block};
     if (rst) begin
@@ -100,8 +100,9 @@ module td_block_sum #(
             + (Signed != 0 ? RowSumWidth'($signed(word)) : RowSumWidth'(word));
       end
       row_sum_q <= {row_sum_q[0], row_sum};
-      sum_read <= begins_q[1] ? '0 : read_sums[c*SumWidth+:SumWidth];
-      sum <= sum_read + {{(SumWidth - RowSumWidth) {Signed != 0 & row_sum_q[1][RowSumWidth-1]}}, row_sum_q[1]};
+      sum_read <= read_sums[c*SumWidth+:SumWidth];
+      sum <= (begins_q[2] ? '0 : sum_read)
+          + {{(SumWidth - RowSumWidth) {Signed != 0 & row_sum_q[1][RowSumWidth-1]}}, row_sum_q[1]};
     end
   end
 

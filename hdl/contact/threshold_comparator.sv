@@ -26,19 +26,18 @@ module threshold_comparator #(
   output logic                    contact
 );
 
-  logic signed [Width:0] threshold_q, threshold_now;
-  assign threshold_now = in_frame_start ? threshold : threshold_q;
+  logic signed [Width:0] threshold_q;  // of the frame that has begun: which one counts is chosen behind the comparison
   for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
     logic signed [Width-1:0] depth;
     assign depth = in_data[lane*Width+:Width];
-    assign above[lane] = (Width + 1)'(depth) > threshold_now;
+    assign above[lane] = in_frame_start ? (Width + 1)'(depth) > threshold : (Width + 1)'(depth) > threshold_q;
   end
 
   logic raised, raised_next;  // by a depth of this frame
   assign raised_next = in_valid ? above != '0 | (raised & ~in_frame_start) : raised;
 
   always_ff @(posedge clk) begin
-    if (in_valid) threshold_q <= threshold_now;
+    if (in_valid && in_frame_start) threshold_q <= threshold;
     raised <= raised_next;
     contact <= raised_next | (hold & contact);
     if (rst) begin

@@ -133,11 +133,13 @@ module depth_unit
     );
     assign table_in_use = 4'(in_use) << TableSelectZero;
     assign busy = tags_held | active | zero_active;
-    logic depth_test, tested_q;  // of the frame that came in last, and of that which leaves
-    assign tested = depth_position.frame_start ? depth_test : tested_q;
+    // `tested` is of the frame that leaves, or leaves next: while none leaves, of that which came in last.
+    logic depth_test, leaving;
     always_ff @(posedge clk) begin
       if (en && whole_valid && whole_position.frame_start) {depth_time, depth_test} <= {tag_time, tag_test};
-      if (en && leaves) tested_q <= tested;
+      if (en && leaves) leaving <= ~depth_position.frame_end;
+      if (en && (leaves ? depth_position.frame_end : ~leaving)) tested <= depth_test;
+      if (rst) leaving <= 1'b0;
     end
   end else begin : g_as_solved
     assign leaves = whole_valid;

@@ -63,11 +63,11 @@ module frame_marks
 
   // Pixels. A steep one counts a cycle late.
 
-  logic steep;
+  logic [1:0] steep;  // along each axis
   logic [1:0][7:0] steepness;
   logic [1:0][CountWidth-1:0] counts, counts_now;  // dark, steep
   logic [1:0] pixels, pixels_end;
-  assign pixels = {steep, dark};
+  assign pixels = {|steep, dark};
   assign pixels_end = {out_valid, relative_ends};
   for (genvar axis = 0; axis < 2; axis++) begin : g_axis
     logic [Width-1:0] slope;
@@ -88,7 +88,7 @@ module frame_marks
   logic [CountWidth-1:0] dark_count;
   logic [2:0][GainWidth-1:0] gains;
   always_ff @(posedge clk) begin
-    steep <= en & slope_valid & (steepness[0] > slope_limit | steepness[1] > slope_limit);
+    for (int n = 0; n < 2; n++) steep[n] <= en & slope_valid & steepness[n] > slope_limit;
     if (en) out_valid <= slope_ends;
     if (en && relative_ends) begin
       {gains, moves} <= {light_gains, light_moves};

@@ -81,7 +81,9 @@ module gradient_unit
   localparam int ColourWidth = Polynomial != 0 ? DeviationWidth : CodeWidth;
   logic [ColourWidth-1:0] red, green, blue;
   logic [1:0] ratio_saturations, light_saturations, slope_saturations;
-  assign saturations = 4'(ratio_saturations) + 4'(light_saturations) + 4'(slope_saturations);
+  always_ff @(posedge clk) begin
+    saturations <= rst ? '0 : 4'(ratio_saturations) + 4'(light_saturations) + 4'(slope_saturations);
+  end
   if (FlatField != 0) begin : g_flat_field
     localparam int NodeWidth = $clog2(nodes(Rows, Columns, BlockLog2));
     localparam int RelativeWidth = LightGains != 0 ? RatioWidth : ColourWidth;

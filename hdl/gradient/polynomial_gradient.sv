@@ -169,16 +169,18 @@ module polynomial_gradient
 
       // Along the raster, by differences. Those of a row's first pixel are in a ring, in the order D, A, B, E, H, F.
       // From row to row one a cycle rises by the one two behind it or by a word; a frame's first row takes words. A
-      // row's first pixel takes D, A and B while B is on its way into the ring.
+      // row's first pixel takes D and A while B is on its way into the ring; the clock after it takes B from there.
       logic [TotalWidth-1:0] coarse, fine;  // the word, with all fraction bits
       logic [Differences-1:0][TotalWidth-1:0] ring;
-      logic [TotalWidth-1:0] rise, next, third, value, step, second;
-      logic loads, moves, by_word, begins_row;
+      logic [TotalWidth-1:0] rise, next, third, value, step, step_now, second;
+      logic loads, moves, by_word, comes, begins_row, begins_row_q;
+      assign comes = valid_q[ToCoefficient-2+colour];
       assign begins_row = row_q[ToCoefficient-2+colour];
       assign coarse = TotalWidth'(word) << FineBits;
       assign fine = TotalWidth'($signed(word));
       assign rise = by_word ? fine : ring[2];
       assign next = loads ? coarse : ring[0] + rise;
+      assign step_now = begins_row_q ? ring[Differences-1] : step;
       always_ff @(posedge clk) begin
         if (en) begin
           loads <= |first[ToFirst+colour+:Differences];
@@ -186,13 +188,14 @@ module polynomial_gradient
           by_word <= row[ToFirst+colour] | row[ToFirst+4+colour] | row[ToFirst+5+colour];
           if (moves) ring <= {next, ring[Differences-1:1]};
           if (first_q[1+colour]) third <= fine;
-          if (valid_q[ToCoefficient-2+colour]) begin
-            value <= begins_row ? ring[Differences-1] : value + step;
-            step <= begins_row ? next : step + second;
+          begins_row_q <= begins_row;
+          if (comes) begin
+            value <= begins_row ? ring[Differences-1] : value + step_now;
             second <= begins_row ? ring[Differences-2] : second + third;
           end
+          if (comes || begins_row_q) step <= step_now + (comes ? second : '0);
         end
-        if (rst) {loads, moves, by_word} <= '0;
+        if (rst) {loads, moves, by_word, begins_row_q} <= '0;
       end
 
       // The product.

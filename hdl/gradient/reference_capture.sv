@@ -106,14 +106,15 @@ module reference_capture
   assign map_write_node = gains_valid ? divide_node : sum_write_node;
   assign map_write_gains = gains_valid ? word : sums;
 
-  logic steps;
+  logic steps, has_word;
   logic [Width-1:0] step_word;
-  assign captured = {map_write, last, steps, done, 32'(step_word)};
+  assign captured = {map_write, last, steps, done, has_word ? 32'(step_word) : 32'd0};
 
   always_ff @(posedge clk) begin
     step <= step + 3'd1;
     steps <= (divided | gains_valid) & ~request & ~rst;
-    step_word <= divided & ~request & ~rst ? gain : '0;
+    has_word <= divided & ~request & ~rst;
+    step_word <= gain;
     fetched <= map_read_gains;
     divide_start <= 1'b0;
     gains_valid <= node_ends;

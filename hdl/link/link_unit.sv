@@ -119,8 +119,15 @@ module link_unit #(
 
   logic reply_valid, reply_ready, reply_last;
   logic [7:0] reply_data;
+  logic asked_valid, asked_ready, asked_last, asked_write;
+  logic [7:0] asked_data;
+  td_axis_skid #(.Width(10)) u_request_slice (
+    .clk, .rst, .s_valid(request_valid), .s_ready(request_ready), .s_data({request_write, request_last, request_data}),
+    .m_valid(asked_valid), .m_ready(asked_ready), .m_data({asked_write, asked_last, asked_data})
+  );
   register_access #(.AddressWidth(AddressWidth)) u_access (
-    .clk, .rst, .forget(ask), .request_valid, .request_ready, .request_data, .request_last, .request_write,
+    .clk, .rst, .forget(ask), .request_valid(asked_valid), .request_ready(asked_ready), .request_data(asked_data),
+    .request_last(asked_last), .request_write(asked_write),
     .m_axil_awaddr, .m_axil_awvalid, .m_axil_awready, .m_axil_wdata, .m_axil_wvalid, .m_axil_wready, .m_axil_bresp,
     .m_axil_bvalid, .m_axil_bready, .m_axil_araddr, .m_axil_arvalid, .m_axil_arready, .m_axil_rdata, .m_axil_rresp,
     .m_axil_rvalid, .m_axil_rready, .reply_valid, .reply_ready, .reply_data, .reply_last

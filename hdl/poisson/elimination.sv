@@ -131,11 +131,14 @@ module elimination #(
   logic [4*Words-1:0] clipped;
   for (genvar word = 0; word < Words; word++) begin : g_word
     // Difference, product, shift, rounding.
+    localparam int AboveClocks = ToState - 2;  // from the read to the sum
+    logic [AboveClocks-1:0][Width-1:0] above_q;
     logic [1:0][Width-1:0] data_q;
     logic signed [Width-1:0] above, difference, difference_q, rounded;
     logic signed [ProductWidth-1:0] product;
     logic signed [ShiftedWidth-1:0] shifted;
     logic [3:0] clipped_now;
+    assign above = first_q[3] ? '0 : above_q[0];
     td_round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
       .in((Width + 1)'($signed(data_q[1])) - (Width + 1)'(above)), .out(difference), .clipped(clipped_now[0])
     );
@@ -149,8 +152,6 @@ module elimination #(
     assign singular = Neumann != 0 && word == 0 && start_q[ToState-2] && last_q[ToState-2];
 
     // A row ahead: d of the row above less c times d.
-    localparam int AboveClocks = ToState - 2;  // from the read to the sum
-    logic [AboveClocks-1:0][Width-1:0] above_q;
     logic [AboveClocks-2:0][CoeffWidth-1:0] above_c_q;
     logic [1:0][Width-1:0] d_q;
     logic signed [ProductWidth-1:0] ahead_product;
@@ -168,7 +169,6 @@ module elimination #(
     always_ff @(posedge clk) begin
       if (en) begin
         data_q <= {data_q[0], in_data[word*Width+:Width]};
-        above <= first_q[2] ? '0 : above_d[word*Width+:Width];
         difference_q <= difference;
         shifted <= ShiftedWidth'(product) <<< shifts_q[word*LastShiftWidth+:LastShiftWidth];
         d[word*Width+:Width] <= singular ? mean : rounded;

@@ -69,7 +69,7 @@ module substitution #(
   logic [ToWords-1:0] start_q, frame_start_q, alone_start_q;
   logic [ToSum:0] active_q;
   logic [ToSum-1:0] alone_q;
-  logic [ToBelow-1:0] first_q;  // the last two rows: nothing is below
+  logic [ToBelow+1:0] first_q;  // the last two rows: nothing is below
   logic [ToSum:0][BeatWidth-1:0] position_q;
   always_ff @(posedge clk) begin
     if (en) begin
@@ -80,7 +80,7 @@ module substitution #(
       alone_start_q <= {alone_start_q[ToWords-2:0], in_alone};
       active_q <= {active_q[ToSum-1:0], active};
       alone_q <= {alone_q[ToSum-2:0], in_start ? in_alone : alone_q[0]};
-      first_q <= {first_q[ToBelow-2:0], pair == PairWidth'(Pairs - 1)};
+      first_q <= {first_q[ToBelow:0], pair == PairWidth'(Pairs - 1)};
       position_q <= {position_q[ToSum-1:0], position};
     end
     if (rst) {position, start_q, frame_start_q, active_q} <= '0;
@@ -117,8 +117,9 @@ module substitution #(
     );
     always_ff @(posedge clk) begin
       if (en) begin
-        below_q <= first_q[ToBelow-1] ? '0 : below;
-        sum <= (SumWidth'($signed(in_data[word*InWidth+:InWidth])) <<< Align) - SumWidth'(product);
+        below_q <= below;
+        sum <= (SumWidth'($signed(in_data[word*InWidth+:InWidth])) <<< Align)
+            - (first_q[ToBelow+1] ? '0 : SumWidth'(product));
         out_data[word*Width+:Width] <= none ? '0 : rounded;
       end
       clipped_q[word] <= en & active_q[ToSum-1] & clipped & ~none;

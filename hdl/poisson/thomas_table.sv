@@ -61,19 +61,20 @@ module thomas_table #(
   );
 
   if (HasLastRow) begin : g_last_row
-    logic [2:0][PositionWidth-1:0] last_position;
+    logic [1:0][PositionWidth-1:0] last_position;
     logic [2:0] last_row;  // behind row_q
-    logic signed [CoeffWidth-1:0] last;
-    logic [LastShiftWidth-1:0] last_shift;
+    logic signed [CoeffWidth-1:0] last, last_q;
+    logic [LastShiftWidth-1:0] last_shift, last_shift_q;
     td_rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Columns), .File({TableFolder, Table, "_last.hex"})) u_last (
-      .clk, .en, .address(last_position[2]), .data({last_shift, last})
+      .clk, .en, .address(last_position[1]), .data({last_shift, last})
     );
     always_ff @(posedge clk) begin
       if (en) begin
-        last_position <= {last_position[1:0], position};
+        last_position <= {last_position[0], position};
         last_row <= {last_row[1:0], row_q == RowWidth'(Rows - 1)};
-        coefficient <= last_row[2] ? last : inner_q;
-        shift <= last_row[2] ? last_shift : '0;
+        {last_shift_q, last_q} <= {last_shift, last};
+        coefficient <= last_row[2] ? last_q : inner_q;
+        shift <= last_row[2] ? last_shift_q : '0;
       end
     end
   end else begin : g_inner_rows

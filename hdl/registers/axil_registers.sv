@@ -120,11 +120,11 @@ module axil_registers
 
   logic write, entry_refused, capture_refused, read, read_refused, read_late, late_refused;
   logic [31:0] write_offset, write_ones, write_mask, read_offset, late_data;
-  logic [6:0][31:0] read_data;  // each that of a source
+  logic [8:0][31:0] read_data;  // each that of a source
   register_answer_t camera_answer;
   assign camera_answer = Camera != 0 ? register_answer : '0;
   assign register_command = {write && !rst, write_offset, write_ones, write_mask, read_offset};
-  axil_port #(.Sources(7)) u_port (
+  axil_port #(.Sources(9)) u_port (
     .clk, .rst, .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
     .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arvalid, .s_axil_arready,
     .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready, .write, .write_offset, .write_ones, .write_mask,
@@ -227,8 +227,8 @@ module axil_registers
     end
   end
 
-  logic [31:0] word;  // that no core above holds, and signatures
-  always_comb begin
+  logic [31:0] word;  // that no core above holds
+  always_comb
     case (read_offset)
       IdOffset: word = IdReset;
       GridOffset: word = GridWord;
@@ -237,11 +237,12 @@ module axil_registers
       DepthUnitOffset: word = DepthUnitWord;
       SlopeUnitOffset: word = SlopeUnitWord;
       ArithmeticOffset: word = ArithmeticWord;
-      default: word = signature_data;
+      default: word = '0;
     endcase
-    word = word | record_word;
-  end
-  assign read_data = {word, 32'(gain_read), setting_data, event_data, bank_data, entry_data, camera_answer.data};
+  assign read_data = {
+    word, record_word, signature_data, 32'(gain_read), setting_data, event_data, bank_data, entry_data,
+    camera_answer.data
+  };
   assign read_refused = !(is_register(read_offset) || camera_answer.readable);
 
 endmodule

@@ -3,11 +3,11 @@
 //
 // A 1 written to TABLE_COMMIT, or `done` of a capture, requests that a table change over to its other bank:
 // docs/streams.md, Tables. table_bank changes with the next frame_start, in that cycle; table_in_use says which bank
-// the table uses. A table is `closed`, to writes and to commits, while its change-over is pending or it is captured. A
-// capture's request is high in the cycle of the write that starts it, but not in a reset; from the next cycle to that
-// of `done`, `busy` shall be high. A start is refused for a table that the build has not, and for the zero offset while
-// its change-over is pending. rst forgets what no frame has taken and leaves the banks; cold_rst, together with rst,
-// clears them.
+// the table uses, and comes from afar, so it counts a cycle later. A table is `closed`, to writes and to commits, while
+// its change-over is pending or it is captured. A capture's request is high in the cycle of the write that starts it,
+// but not in a reset; from the next cycle to that of `done`, `busy` shall be high. A start is refused for a table that
+// the build has not, and for the zero offset while its change-over is pending. rst forgets what no frame has taken and
+// leaves the banks; cold_rst, together with rst, clears them.
 // Model: models/tactile_depth/chip/registers/table_banks.py.
 
 `default_nettype none
@@ -42,12 +42,13 @@ module table_banks
 
   logic [3:0] requested;    // a change-over that no frame has taken
   logic [3:0] bank = '0;    // no reset: it says where the tables are, which no reset touches
+  logic [3:0] in_use = '0;  // no reset: as the banks
   logic [3:0] pending, commits, captured;
   logic starts, starts_reference, starts_zero, no_reference, no_zero;
 
   assign starts = frame_start && !rst;
   assign table_bank = bank ^ (requested & {4{starts}});
-  assign pending = requested | ((bank ^ table_in_use) & Has);
+  assign pending = requested | ((bank ^ in_use) & Has);
   assign captured =
     (4'(reference_status.done) << TableCommitReferenceBit) | (4'(zero_status.done) << TableCommitZeroBit);
   assign closed = pending
@@ -65,6 +66,7 @@ module table_banks
   always_ff @(posedge clk) begin
     requested <= (requested & {4{!frame_start}}) | ((commits | captured) & Has);
     if (starts) bank <= table_bank;
+    in_use <= table_in_use;
     if (rst) requested <= '0;
     if (cold_rst) bank <= '0;
   end

@@ -25,7 +25,7 @@ module frame_guard
   input  wire         clk,
   input  wire         rst,
   input  wire         en,
-  input  wire  [31:0] timeout,   // cycles
+  input  wire  [31:0] timeout,   // cycles; counts a cycle later
   input  wire         s_valid,
   output logic        s_ready,
   input  wire  [23:0] s_data,    // three codes of 8 bits
@@ -52,7 +52,8 @@ module frame_guard
   logic [ColumnWidth-1:0] column;
   logic [RowWidth-1:0] row;
   position_t place;  // of the pixel that comes, as row and column: in registers, since s_ready depends on it
-  logic [31:0] silence;
+  logic [31:0] silence;  // cycles of it, this one too
+  logic silent, expired;  // expired: before this cycle
   logic filling;  // completing a broken frame
 
   logic origin, take, emit;
@@ -72,7 +73,8 @@ module frame_guard
   assign row_long = en & take & ~s_last & row_ends;
   assign start_missing = en & s_valid & between & ~s_user & ~hunting;
   assign start_early = en & s_valid & ~origin & ~filling & s_user;
-  assign timed_out = en & ~s_valid & ~origin & ~filling & (timeout != '0) & (silence >= timeout);
+  assign silent = ~s_valid & ~origin & ~filling;
+  assign timed_out = en & silent & expired;
   assign fault_in_frame = row_short | row_long | start_early | timed_out;
   assign faults.timed_out = timed_out;
   assign faults.start_early = start_early;
@@ -100,7 +102,8 @@ module frame_guard
           place.last_row <= ~frame_ends & (row == RowWidth'(Rows - 2));
         end
       end
-      silence <= (s_valid | origin | filling) ? '0 : silence + 32'd1;
+      silence <= silent ? silence + 32'd1 : 32'd1;
+      expired <= silent & (timeout != '0) & (silence >= timeout);
       filling <= (filling | fault_in_frame) & ~(emit & frame_ends);
       if (s_test) hunting <= hunting;
       else if (emit & frame_ends) hunting <= filling | row_long;
@@ -114,7 +117,8 @@ module frame_guard
       column <= '0;
       row <= '0;
       {place.first_column, place.first_row, place.last_column, place.last_row} <= 4'b1100;
-      silence <= '0;
+      silence <= 32'd1;
+      expired <= 1'b0;
       filling <= 1'b0;
       hunting <= 1'b0;
     end

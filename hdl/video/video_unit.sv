@@ -68,16 +68,19 @@ module video_unit
     .m_test(testing)
   );
 
+  faults_t faults_now;  // behind long paths
   frame_guard #(.Rows(Rows), .Columns(Columns)) u_guard (
     .clk, .rst, .en, .timeout,
     .s_valid(tested_valid), .s_ready(tested_ready), .s_data(tested_data), .s_last(tested_last), .s_user(tested_user),
     .s_test(testing), .between, .row_ends, .frame_ends, .out_valid(pixel_valid), .out_data(pixel_data),
     .out_position(pixel_position), .out_frame_start(pixel_frame_start), .out_frame_end(pixel_frame_end),
-    .out_bad(pixel_bad), .out_test(pixel_test), .faults, .hunting
+    .out_bad(pixel_bad), .out_test(pixel_test), .faults(faults_now), .hunting
   );
 
+  logic counts, counts_last, counts_user;  // a pixel that was taken in the cycle before
+  always_ff @(posedge clk) {counts, counts_last, counts_user} <= {held_valid & held_ready & ~rst, held_last, held_user};
   td_frame_size #(.CountWidth(14)) u_size (
-    .clk, .rst, .in_valid(held_valid & held_ready), .in_last(held_last), .in_user(held_user),
+    .clk, .rst, .in_valid(counts), .in_last(counts_last), .in_user(counts_user),
     .columns(arrived_columns), .rows(arrived_rows), .silent()
   );
 
@@ -88,12 +91,13 @@ module video_unit
   always_ff @(posedge clk) begin
     now <= now + 32'd1;
     if (s_axis_tvalid && s_axis_tready && s_axis_tuser) arrival_time <= now;
+    faults <= faults_now;
     if (en) hunted <= hunting;
     if (en && pixel_frame_start) {frame_time, frame_resumed} <= {arrival_time, hunted};
     if (en && pixel_frame_end) resumed <= frame_resumed;
     if (en) taking <= (pixel_frame_start | taking) & ~pixel_frame_end;
     if (rst) begin
-      now <= '0;
+      {now, faults} <= '0;
       taking <= 1'b0;
     end
   end

@@ -94,6 +94,8 @@ class Registers:
     ----------
     asked, had_entry : str, bool
         Port to a table that was read last, and whether there was an entry.
+    in_use : int
+        Bank that each table used a clock before.
     waiting : set of str
         Channels whose word of the clock before was not taken.
     """
@@ -103,6 +105,7 @@ class Registers:
         p = build.parameters
         self.signatures = TableSignatures(side=side(p["Lanes"], p["BlockLog2"]))
         self.asked, self.had_entry = "", False
+        self.in_use = 0
         self.waiting: set[str] = set()
 
     def settings(self) -> dict[str, int | None]:
@@ -130,7 +133,7 @@ class Registers:
             **unpack("levels_t", pins["levels"]),  # type: ignore[arg-type]
             capturing=busy,
             ending=done,
-            in_use=pins["table_in_use"],
+            in_use=self.in_use,
             record=words(pins["record"], len(RECORD), 32),
             light_gains=words(pins["light_gains"], len(GAINS), LIGHT_GAIN.width),
             signature=self.signatures.shown,
@@ -194,6 +197,7 @@ class Registers:
         if pins["cold_rst"]:
             model.cold_reset()
         port.advance(pins | answers)
+        self.in_use = pins["table_in_use"]
         taken = {channel for channel in ("aw", "w", "ar") if bus[f"s_axil_{channel}ready"] or pins["rst"]}
         self.waiting = {channel for channel in ("aw", "w", "ar") if pins[f"s_axil_{channel}valid"]} - taken
         return out

@@ -23,13 +23,14 @@ class Banks:
 
     def __init__(self, present: int) -> None:
         self.model = TableBanks(present)
+        self.in_use = 0  # a cycle ago
 
     def clock(self, **pins: int) -> dict[str, int]:
         """Advance by one clock edge; return the outputs before it."""
         model, name, ones = self.model, NAME_AT.get(pins["write_offset"], ""), pins["write_ones"]
         status = {table: structs.unpack("capture_status_t", pins[f"{table}_status"]) for table in CAPTURES}
         busy, done = ([table for table in CAPTURES if status[table][flag]] for flag in ("busy", "done"))
-        in_use, starts = pins["table_in_use"], bool(pins["frame_start"] and not pins["rst"])
+        in_use, starts = self.in_use, bool(pins["frame_start"] and not pins["rst"])
         shown = {register.name: register.pack(busy=status[table]["busy"]) for table, register in CAPTURES.items()}
         shown[COMMIT.name] = model.pending(in_use)
         refused = model.refuses(name, ones, in_use, done)
@@ -44,6 +45,7 @@ class Banks:
         if pins["write"]:
             model.write(name, ones, in_use, busy)
         model.clock(starts, done)
+        self.in_use = pins["table_in_use"]
         if pins["rst"]:
             model.reset()
         if pins["cold_rst"]:

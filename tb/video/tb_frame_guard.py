@@ -44,8 +44,8 @@ async def words(dut: Any) -> None:
             if chance.getrandbits(1):
                 bit = chance.randrange(32)
                 core.silence = 1 << bit | chance.choice((0, chance.getrandbits(bit)))
-                dut.silence.value = core.silence
-            pins |= {"s_valid": 0, "timeout": core.silence + (chance.random() < 0.7)}
+                dut.silence.value = core.silence + 1
+            pins |= {"s_valid": 0, "timeout": core.silence + 1 + (chance.random() < 0.7)}
 
     rows, columns = parameters(dut, "Rows", "Columns")
     await play(dut, FrameGuard(rows, columns), pins, legal, clocks=max(CLOCKS, 18_000))

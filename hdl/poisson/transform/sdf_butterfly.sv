@@ -81,11 +81,12 @@ module sdf_butterfly #(
   );
 
   logic leaves_first_q, frame_start_q;
-  assign out_start = active & (position == PositionWidth'(Delay));  // the first sum of a burst is formed
   assign out_frame_start = out_start & frame_start_q;
   logic signed [Width:0] leaving_re, leaving_im;
   always_ff @(posedge clk) begin
     if (en) begin
+      // With the first sum of a burst; worked out a cycle ahead, since it goes far.
+      out_start <= active & (position == PositionWidth'(Delay - 1)) & ~start_q[0];
       start_q <= {start_q[0], in_start};
       start_of_frame_q <= {start_of_frame_q[0], in_frame_start};
       if (start) frame_start_q <= start_of_frame_q[1];
@@ -93,7 +94,7 @@ module sdf_butterfly #(
       leaving_re <= second ? sum_re : a_re;
       leaving_im <= second ? sum_im : a_im;
     end
-    if (rst) {start_q, leaves_first_q} <= '0;
+    if (rst) {out_start, start_q, leaves_first_q} <= '0;
   end
 
   logic leaving;

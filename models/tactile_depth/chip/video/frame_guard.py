@@ -76,8 +76,8 @@ class FrameGuard:
     filling, hunting : bool
         A broken frame is filled up; words up to the next start are dropped and not flagged, but for those of a
         self-test.
-    silence : int
-        Cycles without a word inside a frame.
+    silence, expired : int, bool
+        Cycles without a word inside a frame; they have reached the timeout of the last of them.
     out : dict
         Pins of the pixel that leaves, if one does.
     """
@@ -88,6 +88,7 @@ class FrameGuard:
     filling: bool = False
     hunting: bool = False
     silence: int = 0
+    expired: bool = False
     out: dict[str, int] = field(default_factory=dict)
 
     def _leave(self, data: int, bad: bool, is_test: bool = False) -> None:
@@ -114,11 +115,12 @@ class FrameGuard:
         An early start is not taken: it breaks the frame, and then begins the next.
         """
         self.out, fault = {}, ""
-        waited, self.silence = self.silence, 0
+        waited, self.silence, self.filling, self.expired = self.silence, 0, self.expired, False
         if word is None and self.pixels:
             self.silence = waited + 1
-            self.filling = 0 < timeout <= waited
+            self.expired = 0 < timeout <= self.silence
             return "timed_out" if self.filling else ""
+        self.filling = False
         if word is None:
             return ""
         if self.pixels and word.user:
@@ -147,6 +149,7 @@ class FrameGuard:
             fault = self.take(word, pins["timeout"], bool(pins["s_test"]))
         if pins["rst"]:
             self.pixels, self.filling, self.hunting, self.silence, self.out = [], False, False, 0, {}
+            self.expired = False
         return {"s_ready": ready, "faults": sum((name == fault) << bit for bit, name in enumerate(FAULTS)), **out}
 
 
