@@ -53,7 +53,7 @@ async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, strays: 
     return monitor.saturations
 
 
-def codes(frames: int, amplitude: float) -> Any:
+def codes(frames: int, amplitude: float | None) -> Any:
     """Return a random divergence, whose depth fits at 0.002 of full scale. None: mostly the lowest and the highest
     word."""
     config = configuration()
@@ -69,7 +69,7 @@ async def frames(dut: Any, gap: float, pause: float) -> None:
 
 @cocotb.test
 @parametrize(amplitude=[0.002, 0.05, None])
-async def many_frames(dut: Any, amplitude: float) -> None:
+async def many_frames(dut: Any, amplitude: float | None) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     await check(dut, codes(MANY, amplitude))
 
