@@ -130,24 +130,29 @@ module block_totals #(
   end
 
   if (Bayer != 0) begin : g_areas
-    // Red has its rows times its columns, blue the others of both, green the rest of the block.
+    // Red has its rows times its columns, blue the others of both, green the rest of the block. The others are counted
+    // beside the rows of red, because their weight comes late.
     logic blue_row;
-    logic [BlockWidth-1:0] carried, red_rows, row_red_rows, red_rows_q, red_columns_q, blue_rows_q, blue_columns_q;
+    logic [BlockWidth-1:0] carried, red_rows, row_red_rows, red_rows_q, red_columns_q, red_weight;
+    logic [BlockWidth-1:0] carried_blue, blue_rows, row_blue_rows, blue_rows_q, blue_columns_q;
     logic signed [2*BlockWidth+1:0] red, blue;
     assign carried = ~row_ends ? row_red_rows : blue_row ? '0 : BlockWidth'(Pixel - row_weight);
+    assign carried_blue = ~row_ends ? row_blue_rows : blue_row ? Block : Block - BlockWidth'(Pixel - row_weight);
+    assign red_weight = in_blue_row ? '0 : BlockWidth'(new_weight);
     always_comb begin
-      red_rows = row_red_rows;
+      {red_rows, blue_rows} = {row_red_rows, row_blue_rows};
       if (in_row_start) begin
-        red_rows = (in_frame_start ? '0 : carried) + (in_blue_row ? '0 : BlockWidth'(new_weight));
+        red_rows = (in_frame_start ? '0 : carried) + red_weight;
+        blue_rows = (in_frame_start ? Block : carried_blue) - red_weight;
       end
     end
     always_ff @(posedge clk) begin
       if (en) begin
-        row_red_rows <= red_rows;
+        {row_red_rows, row_blue_rows} <= {red_rows, blue_rows};
         if (in_row_start) blue_row <= in_blue_row;
         red_rows_q <= red_rows;
         red_columns_q <= in_red_columns;
-        blue_rows_q <= Block - red_rows;
+        blue_rows_q <= blue_rows;
         blue_columns_q <= Block - in_red_columns;
         out_areas <= {blue[AreaWidth-1:0], Area - red[AreaWidth-1:0] - blue[AreaWidth-1:0], red[AreaWidth-1:0]};
       end

@@ -204,8 +204,8 @@ module light_gains
     assign kept = moved[GainWidth] ? '1 : moved[GainWidth-1-:2] == '0 ? One >> 1 : moved[GainWidth-1:0];
     assign sets = write[c] | commits;
     assign next = write[c] ? least_write : kept;
-    assign slower[c] = used[c] < One - GainWidth'(Step);
     always_ff @(posedge clk) begin
+      slower[c] <= used[c] < One - GainWidth'(Step);
       if (en) begin
         out[c] <= blank_q ? '0 : deviations[c];
         near_deviation <= is_near ? NearWidth'(out[c]) : '0;

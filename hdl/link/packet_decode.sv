@@ -57,7 +57,7 @@ module packet_decode
     return length >= header + part && length <= header + part * most;
   endfunction
 
-  logic known, fits, fits_q, wrong_q, asks_q, judged;  // _q: of the kind that is offered since the cycle before
+  logic known, known_q, fits, fits_q, judged;  // _q: of the kind that is offered since the cycle before
   logic even, takes, takes_kind, ends_select, good_select;
   assign even = ~in_length[0];
   always_comb begin
@@ -101,10 +101,10 @@ module packet_decode
 
   always_ff @(posedge clk) begin
     judged <= in_valid & (at == AtKind) & ~judged;
-    {begins_q, fits_q, wrong_q, asks_q} <= {begins, fits, known & ~fits, fits & (begins == AtKind)};
-    bad_kind <= takes_kind & wrong_q;
+    {begins_q, fits_q, known_q} <= {begins, fits, known};
+    bad_kind <= takes_kind & known_q & ~fits_q;
     bad_select <= ends_select & ~good_select;
-    ask <= takes_kind & asks_q;
+    ask <= takes_kind & fits_q & (begins_q == AtKind);
     select <= ends_select & good_select;
     select_shift <= in_data[4:0];
     if (takes_kind) begin
