@@ -36,6 +36,10 @@ if (Lanes > 1) begin : g_lanes
       end
     end
   end
+end else begin : g_lane
+  always_comb begin
+    if (started) registered: assert (dut.take == take && {dut.frame_start, dut.u_sum.in_data} == {frame_start, data_q});
+  end
 end
 typedef enum logic [1:0] {Idle, Armed, Summing, Closing} state_e;
 state_e state;

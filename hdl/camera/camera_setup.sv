@@ -66,15 +66,14 @@ module camera_setup #(
 
   // Transmissions. A symbol is a start, a bit, or a stop, of four quarters; a released bit is a 1.
 
-  logic sending, quarter_ends, sent;
+  logic sending, quarter_ends, stops, sent;
   logic [QuarterWidth-1:0] clocks;
   logic [1:0] quarter;
   logic [SymbolWidth-1:0] symbol, stop_symbol;
   logic [LongestBits-1:0] bits;  // the next on top
   logic [8:0] caught;            // bits on the line, the last of them lowest
   logic [1:0] line_q;            // two registers for the crossing into this clock
-  assign quarter_ends = clocks == '0;
-  assign sent = sending & quarter_ends & quarter == 2'd3 & symbol == stop_symbol;
+  assign sent = quarter_ends & quarter == 2'd3 & stops;  // of symbols and quarters that have stood for clocks
 
   logic load;
   step_e step, load_step;
@@ -83,6 +82,8 @@ module camera_setup #(
 
   always_ff @(posedge clk) begin
     line_q <= {line_q[0], sio_d};
+    quarter_ends <= sending & ~load & clocks == QuarterWidth'(1);
+    stops <= symbol == stop_symbol;
     sio_c <= 1'b1;
     sio_d_low <= 1'b0;
     if (sending) begin
@@ -126,7 +127,7 @@ module camera_setup #(
         default: ;
       endcase
     end
-    if (rst || restart) sending <= 1'b0;
+    if (rst || restart) {sending, quarter_ends} <= '0;
   end
 
   // Entries, one after the other.
@@ -137,7 +138,7 @@ module camera_setup #(
   logic [MillisecondWidth-1:0] fraction;
   logic [7:0] milliseconds;
   logic differs, advance;
-  assign differs = caught[8:1] != data;
+  always_ff @(posedge clk) differs <= caught[8:1] != data;
   assign done = state == Done;
   assign failed = state == Failed;
 

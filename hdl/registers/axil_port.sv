@@ -15,7 +15,8 @@
 module axil_port
   import td_register_map_pkg::*;
 #(
-  parameter int Sources = 1  // of read_data
+  parameter int Sources = 1,  // of read_data
+  parameter int Copies  = 1   // of read_offset, which is far from some who read it
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -44,7 +45,7 @@ module axil_port
   output logic [31:0]             write_mask,    // ones in bytes with strobe
   input  wire                     write_refused,
   output logic                    read = 1'b0,
-  output logic [31:0]             read_offset,
+  output logic [Copies-1:0][31:0] read_offset,
   input  wire  [32*Sources-1:0]   read_data,     // the word is the OR of all, behind registers
   input  wire                     read_refused,
   input  wire                     read_late,
@@ -59,7 +60,7 @@ module axil_port
   logic [AddressWidth-1:0] address;
   logic [31:0] data;
   logic [3:0] strobe;
-  logic [AddressWidth-1:0] read_address;
+  (* dont_touch = "true" *) logic [Copies-1:0][AddressWidth-1:0] read_address;
   logic [3:0] waiting;  // for late_data, one bit a cycle
   logic [Sources-1:0][31:0] words;
   logic [31:0] any_word, late_word;
@@ -71,13 +72,19 @@ module axil_port
   assign write_offset = 32'(address) & ~32'd3;
   assign write_mask = {{8{strobe[3]}}, {8{strobe[2]}}, {8{strobe[1]}}, {8{strobe[0]}}};
   assign write_ones = data & write_mask;
-  assign read_offset = 32'(read_address) & ~32'd3;
 
   always_comb begin
     any_word = '0;
     for (int n = 0; n < Sources; n++) any_word = any_word | words[n];
   end
   assign s_axil_rdata = is_late ? late_word : any_word;
+
+  for (genvar c = 0; c < Copies; c++) begin : g_copy
+    assign read_offset[c] = 32'(read_address[c]) & ~32'd3;
+  end
+  (* keep *) always_ff @(posedge clk) begin  // tools would make one register of them
+    if (s_axil_arvalid && s_axil_arready) read_address <= {Copies{s_axil_araddr}};
+  end
 
   always_ff @(posedge clk) begin
     if (s_axil_awvalid && s_axil_awready) begin
@@ -102,7 +109,6 @@ module axil_port
     end
 
     read <= s_axil_arvalid && s_axil_arready;
-    if (s_axil_arvalid && s_axil_arready) read_address <= s_axil_araddr;
     waiting <= {waiting[2:0], read && read_late};
     if (s_axil_rready) s_axil_rvalid <= 1'b0;
     if (read) begin

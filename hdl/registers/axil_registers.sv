@@ -119,12 +119,13 @@ module axil_registers
     (SlopeMantissa << SlopeUnitMantissaLsb) | (SlopeExponent << SlopeUnitExponentLsb);
 
   logic write, entry_refused, capture_refused, read, read_refused, read_late, late_refused;
-  logic [31:0] write_offset, write_ones, write_mask, read_offset, late_data;
+  logic [31:0] write_offset, write_ones, write_mask, late_data;
+  logic [3:0][31:0] read_offset;  // copies: of settings; of events and banks; of what is read here; of all others
   logic [8:0][31:0] read_data;  // each that of a source
-  register_answer_t camera_answer;
-  assign camera_answer = Camera != 0 ? register_answer : '0;
-  assign register_command = {write && !rst, write_offset, write_ones, write_mask, read_offset};
-  axil_port #(.Sources(9)) u_port (
+  wire [31:0] own_offset = read_offset[2];
+  wire register_answer_t camera_answer = Camera != 0 ? register_answer : '0;
+  assign register_command = {write && !rst, write_offset, write_ones, write_mask, read_offset[3]};
+  axil_port #(.Sources(9), .Copies(4)) u_port (
     .clk, .rst, .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
     .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arvalid, .s_axil_arready,
     .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready, .write, .write_offset, .write_ones, .write_mask,
@@ -132,13 +133,13 @@ module axil_registers
     .read, .read_offset, .read_data, .read_refused, .read_late, .late_data, .late_refused
   );
 
-  logic [31:0] setting_data;
+  logic [31:0] setting_data, event_data, bank_data, entry_data, signature_data;
   logic [Settings-1:0][31:0] settings;
   setting_registers #(
     .Resets(SettingResets | ((32 * Settings)'($unsigned(PitchNm)) << (32 * PitchSetting)))
   ) u_settings (
-    .clk, .rst, .write(write && !capture_refused), .write_offset, .write_ones, .write_mask, .read_offset,
-    .read_data(setting_data), .settings
+    .clk, .rst, .write(write && !capture_refused), .write_offset, .write_ones, .write_mask,
+    .read_offset(read_offset[0]), .read_data(setting_data), .settings
   );
   assign contact_settings.threshold = settings[ThresholdSetting];
   assign contact_settings.off_threshold = settings[OffThresholdSetting];
@@ -167,25 +168,23 @@ module axil_registers
     for (int c = 0; c < 3; c++) begin
       gain_writes[c] = write && write_offset == light_offsets[c] && !rst;
       if (write_offset == light_offsets[c]) gain_before = light_gains[c];
-      if (LightGains != 0 && read_offset == light_offsets[c]) gain_read = light_gains[c];
+      if (LightGains != 0 && own_offset == light_offsets[c]) gain_read = light_gains[c];
     end
   end
 
   events_t events_q;  // so that no path from the pipeline ends in the logic of the counters
   always_ff @(posedge clk) events_q <= rst ? '0 : events;
-  logic [31:0] event_data;
   event_registers u_events (
-    .clk, .rst, .write, .write_offset, .write_ones, .read_offset, .read_data(event_data),
+    .clk, .rst, .write, .write_offset, .write_ones, .read_offset(read_offset[1]), .read_data(event_data),
     .events(events_q), .levels, .first_depth_latency, .first_depth_latency_valid,
     .interrupt_mask(settings[InterruptMaskSetting]), .irq
   );
 
-  logic [31:0] bank_data;
   logic [3:0] closed;
   logic reference_request, zero_request;
   table_banks #(.Present(Present)) u_banks (
     .clk, .rst, .cold_rst, .write, .write_offset, .write_ones, .write_refused(capture_refused),
-    .read_offset, .read_data(bank_data), .frame_start, .table_bank, .table_in_use, .closed,
+    .read_offset(read_offset[1]), .read_data(bank_data), .frame_start, .table_bank, .table_in_use, .closed,
     .reference_request, .reference_status, .zero_request, .zero_status
   );
   assign reference_command.request = reference_request;
@@ -193,20 +192,18 @@ module axil_registers
   assign zero_command.request = zero_request;
   assign zero_command.log2_frames = settings[ZeroCaptureSetting][ZeroCaptureLog2FramesLsb+:4];
 
-  logic [31:0] entry_data;
   table_access #(
     .GradientWords(GradientWords), .CoefficientWords(CoefficientWords), .ReferenceWords(ReferenceWords),
     .ZeroWords(ZeroWords)
   ) u_access (
     .clk, .rst, .write, .write_offset, .write_ones, .write_mask, .write_refused(entry_refused),
-    .read, .read_offset, .read_data(entry_data), .read_late, .late_data, .late_refused,
+    .read, .read_offset(read_offset[3]), .read_data(entry_data), .read_late, .late_data, .late_refused,
     .select(settings[TableSelectSetting][TableSelectSelectLsb+:TableSelectSelectWidth]), .closed, .table_command,
     .table_answer
   );
 
-  logic [31:0] signature_data;
   table_signatures #(.File(SignatureFile), .Side(side(Lanes, BlockLog2))) u_signatures (
-    .clk, .rst, .cold_rst, .write, .write_offset, .write_mask, .read_offset, .read_data(signature_data),
+    .clk, .rst, .cold_rst, .write, .write_offset, .write_mask, .read_offset(read_offset[3]), .read_data(signature_data),
     .table_command, .table_in_use, .reference_captured(reference_status.captured), .zero_captured(zero_status.captured)
   );
 
@@ -217,19 +214,19 @@ module axil_registers
   logic is_record;
   logic [31:0] record_word;
   logic [31:0][31:0] record_at;
-  assign record_word = is_record ? record_at[read_offset[6:2]] : '0;
+  assign record_word = is_record ? record_at[own_offset[6:2]] : '0;
   always_comb begin
     is_record = 1'b0;
     record_at = '0;
     for (int n = 0; n < RecordWords; n++) begin
-      is_record = is_record | (read_offset == RecordOffsets[32*n+:32]);
+      is_record = is_record | (own_offset == RecordOffsets[32*n+:32]);
       record_at[RecordOffsets[32*n+2+:5]] = record[32*n+:32];
     end
   end
 
   logic [31:0] word;  // that no core above holds
   always_comb
-    case (read_offset)
+    case (own_offset)
       IdOffset: word = IdReset;
       GridOffset: word = GridWord;
       FormatOffset: word = FormatWord;
@@ -243,7 +240,7 @@ module axil_registers
     word, record_word, signature_data, 32'(gain_read), setting_data, event_data, bank_data, entry_data,
     camera_answer.data
   };
-  assign read_refused = !(is_register(read_offset) || camera_answer.readable);
+  assign read_refused = !(is_register(own_offset) || camera_answer.readable);
 
 endmodule
 

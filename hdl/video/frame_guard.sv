@@ -61,7 +61,6 @@ module frame_guard
   assign origin = place.first_column & place.first_row;
   assign row_ends = place.last_column;
   assign frame_ends = row_ends & place.last_row;
-  assign between = origin & ~filling;
 
   // A start of frame is taken only where a frame begins; all else is taken at once, as a pixel or to be dropped.
   logic accept;
@@ -93,6 +92,7 @@ module frame_guard
       out_bad <= filling | row_long | s_test;  // at the end of a frame nothing else can be wrong
       out_test <= s_test;
       if (emit) begin
+        between <= frame_ends;
         column <= row_ends ? '0 : column + ColumnWidth'(1);
         place.first_column <= row_ends;
         place.last_column <= ~row_ends & (column == ColumnWidth'(Columns - 2));
@@ -114,6 +114,7 @@ module frame_guard
       out_valid <= 1'b0;
       out_frame_start <= 1'b0;
       out_frame_end <= 1'b0;
+      between <= 1'b1;
       column <= '0;
       row <= '0;
       {place.first_column, place.first_row, place.last_column, place.last_row} <= 4'b1100;
