@@ -60,11 +60,13 @@ module round_divide #(
     end
   end
 
-  logic [WeightWidth:0] twice, whole;
-  logic up;
+  // Rounded up where the weight less twice the remainder is negative, a tie counting as more where it is to go up.
+  logic [WeightWidth:0] twice;
+  logic tie_up, up;
+  logic [WeightWidth+1:0] unused_rest;
   assign twice = {remainders[Bits], half[Bits]};
-  assign whole = {1'b0, weights[Bits]};
-  assign up = twice > whole | (twice == whole & (more[Bits] | quotients[Bits][0]));
+  assign tie_up = more[Bits] | quotients[Bits][0];
+  assign {up, unused_rest} = {2'b00, weights[Bits], 1'b1} + {1'b1, ~twice, ~tie_up};
   always_ff @(posedge clk) begin
     if (en) mean <= clipped[Bits] | quotients[Bits] == '1 ? '1 : quotients[Bits] + Bits'(up);
   end
