@@ -25,10 +25,10 @@ module status_packet
 
   localparam int PlaceWidth = $clog2(FieldBytes + 2);
 
-  logic due, after_reset, first, leaves;
+  logic due, after_reset, leaves;
+  logic first;                       // the next byte is the first of a packet
   logic [PlaceWidth-1:0] place;      // of the next byte in its packet
   logic [8*FieldBytes-1:0] left;     // fields of this packet that have not left
-  assign first = place == '0;
   assign status_valid = due | ~first;
   assign status_last = place == PlaceWidth'(FieldBytes + 1);
   assign leaves = status_valid & status_ready;
@@ -38,12 +38,13 @@ module status_packet
     after_reset <= rst;
     due <= request | after_reset | (due & ~(leaves & first));
     if (leaves) begin
+      first <= status_last;
       place <= status_last ? '0 : place + PlaceWidth'(1);
       if (first) left <= fields;
       else if (place != PlaceWidth'(1)) left <= left >> 8;
     end
     if (rst) begin
-      due <= 1'b0;
+      {due, first} <= 2'b01;
       place <= '0;
     end
   end
