@@ -4,8 +4,8 @@
 // word of its block, nothing else is, nothing while idle; no sum is read before it was written, or in the clock that
 // writes it. In a second part (Sums 1): an arbitrary depth of a capture, the only one that is not zero, is added once
 // to its node and to no other, and the zero offset of a node is its sum's mean, ties to even; what does nothing but add does
-// so to all. All is so for beats one clock after they came. With several lanes the depths of a beat that belong to one block
-// are added up: then what is proven of one lane is so for their sum.
+// so to all. With several lanes the first part is so for beats one clock after they came, and the depths of a beat that
+// belong to one block are added up: then what is proven of one lane is so for their sum.
 
 parameter int Rows = 3, Columns = 4, Width = 4, MaxLog2 = 1, Sums = 0, Lanes = 1;
 localparam int BlockLog2 = 1;
@@ -18,15 +18,14 @@ localparam int ToMap = 6;   // from a block's last word to its zero offset
 wire [15:0] row_in = u_protocol.row, column_in = u_protocol.column;
 logic [15:0] row, column;
 
-logic take, frame_start;
-logic [Lanes*Width-1:0] data_q;
-always_ff @(posedge clk) begin
-  take <= en && in_valid && !rst;
-  {frame_start, row, column, data_q} <= {in_frame_start, row_in, column_in, in_data};
-end
-
 // With several lanes the two depths of a block in a beat are added up first.
+logic take, frame_start;
 if (Lanes > 1) begin : g_lanes
+  logic [Lanes*Width-1:0] data_q;
+  always_ff @(posedge clk) begin
+    take <= en && in_valid && !rst;
+    {frame_start, row, column, data_q} <= {in_frame_start, row_in, column_in, in_data};
+  end
   for (genvar s = 0; s < Side; s++) begin : g_side
     logic signed [Width-1:0] left, right;
     assign {right, left} = data_q[2*s*Width+:2*Width];
@@ -37,9 +36,8 @@ if (Lanes > 1) begin : g_lanes
     end
   end
 end else begin : g_lane
-  always_comb begin
-    if (started) registered: assert (dut.take == take && {dut.frame_start, dut.u_sum.in_data} == {frame_start, data_q});
-  end
+  assign take = en && in_valid;
+  assign {frame_start, row, column} = {in_frame_start, row_in, column_in};
 end
 typedef enum logic [1:0] {Idle, Armed, Summing, Closing} state_e;
 state_e state;
@@ -106,7 +104,7 @@ end else begin : g_sums
   logic signed [Width-1:0] depth;        // that of the watched node, in this capture; zero: it is not there
   logic signed [SumWidth-1:0] held_sum;  // of the watched node, as the memory holds it
   assign in_watched = 32'(row) < Rows / 2 * 2 && node == watched;
-  assign data = data_q;
+  assign data = in_data;
   assign zero = map_write_zero;
   assign fresh = first && state == Armed;
   assign counts = take && (state == Summing || fresh);

@@ -109,7 +109,8 @@ module depth_unit
   if (ZeroOffset != 0) begin : g_zero_offset
     localparam int Side = side(Lanes, BlockLog2);  // nodes that are captured at once
     localparam int NodeWidth = $clog2(nodes(Rows, Columns, BlockLog2) / Side);
-    logic in_use, zero_active, zero_write;
+    logic in_use, zero_active, zero_write, captures, capture_start, capture_end;
+    logic [Lanes*DataWidth-1:0] capture_data;
     logic [NodeWidth-1:0] zero_write_node;
     logic [Side*DataWidth-1:0] zero_written;
     zero_offset #(
@@ -125,12 +126,22 @@ module depth_unit
       .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(DataWidth), .MaxLog2(ZeroLog2),
       .Lanes(Lanes)
     ) u_capture (
-      .clk, .rst, .en, .request(capture_command.request), .log2_frames(capture_command.log2_frames),
+      .clk, .rst, .en(1'b1), .request(capture_command.request), .log2_frames(capture_command.log2_frames),
       .busy(capture_status.busy), .done(capture_status.done), .captured(capture_status.captured),
-      .in_valid(whole_valid & ~whole_test), .in_frame_start(whole_position.frame_start),
-      .in_frame_end(whole_position.frame_end), .in_data(whole_data),
+      .in_valid(captures), .in_frame_start(capture_start), .in_frame_end(capture_end), .in_data(capture_data),
       .map_write(zero_write), .map_write_node(zero_write_node), .map_write_zero(zero_written)
     );
+    if (Lanes == 1) begin : g_depth  // behind long paths; several lanes have a register behind their first sums
+      always_ff @(posedge clk) begin
+        captures <= en & whole_valid & ~whole_test & ~rst;
+        {capture_start, capture_end} <= {whole_position.frame_start, whole_position.frame_end};
+        capture_data <= whole_data;
+      end
+    end else begin : g_depths
+      assign captures = en & whole_valid & ~whole_test;
+      assign {capture_start, capture_end} = {whole_position.frame_start, whole_position.frame_end};
+      assign capture_data = whole_data;
+    end
     assign table_in_use = 4'(in_use) << TableSelectZero;
     assign busy = tags_held | active | zero_active;
     // `tested` is of the frame that leaves, or leaves next: while none leaves, of that which came in last.

@@ -10,9 +10,8 @@
 // Stream in: frames of depth before the zero offset is taken off, whole but for a reset; gaps and en low change no zero
 // offset. Lanes depths of a beat, or those of a block, are added up first; with several blocks to a beat the zero
 // offsets of as many neighbouring nodes leave at once. Latency: from the last beat of the last row of blocks to done 7
-// cycles, and one for each level of that sum, log2(min(Lanes, 2^BlockLog2)), or one for a single lane's register, en or
-// not; a request counts for beats that come as many cycles earlier. Bit-accurate model:
-// models/tactile_depth/chip/depth/zero_capture.py.
+// cycles, and one for each level of that sum, log2(min(Lanes, 2^BlockLog2)), en or not; a request counts for beats that
+// come as many cycles earlier. Bit-accurate model: models/tactile_depth/chip/depth/zero_capture.py.
 
 `default_nettype none
 
@@ -58,13 +57,8 @@ module zero_capture
     logic valid;
     logic [1:0] marks;  // frame_start, frame_end
     logic [(Lanes>>l)*(Width+l)-1:0] words;
-    if (l == 0 && Levels > 0) begin : g_depths
+    if (l == 0) begin : g_depths
       assign {valid, marks, words} = {en & in_valid, in_frame_start, in_frame_end, in_data};
-    end else if (l == 0) begin : g_depth  // behind long paths
-      always_ff @(posedge clk) begin
-        valid <= en & in_valid & ~rst;
-        {marks, words} <= {in_frame_start, in_frame_end, in_data};
-      end
     end else begin : g_sums
       always_ff @(posedge clk) begin
         valid <= g_level[l-1].valid & ~rst;

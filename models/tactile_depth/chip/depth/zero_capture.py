@@ -20,8 +20,8 @@ LARGEST_LOG2 = 8
 
 
 def levels(lanes: int, block_log2: int) -> int:
-    """Return the cycles in which the depths of a beat, or of a block, are added up; a single one is in a register."""
-    return max(1, min(lanes.bit_length() - 1, block_log2))
+    """Return the levels in which the depths of a beat, or of a block, are added up; each takes a cycle."""
+    return min(lanes.bit_length() - 1, block_log2)
 
 
 def cycles(lanes: int, block_log2: int) -> int:
