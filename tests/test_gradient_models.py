@@ -156,7 +156,7 @@ def test_codes_and_deviations_are_the_ratio_rounded(seed: int, choices: Any) -> 
     monitor = Monitor()
     code = pixel_gains(gains, config).codes(frames, monitor=monitor)
     assert np.abs(code - np.minimum(128 * exact, 255)).max() <= 0.5
-    assert monitor.saturations["flat_field"] == np.count_nonzero(128 * exact > 255.5)
+    assert monitor.saturations["flat_field"] == np.count_nonzero(np.rint(128 * exact) > 255)  # a tie clips
     deviation = pixel_gains(gains, config).deviations(frames) * DEVIATION.lsb
     assert np.abs(deviation - np.minimum(exact - 1, 2 - DEVIATION.lsb)).max() <= DEVIATION.lsb / 2
 

@@ -67,7 +67,6 @@ module link_unit #(
 );
 
   // From the line.
-
   logic piece_valid, piece_end, piece_bad;
   logic [7:0] piece_data;
   cobs_decode u_cobs_decode (
@@ -134,7 +133,6 @@ module link_unit #(
   );
 
   // Settings and counts.
-
   localparam logic [4:0] FirstShift = DataWidth > 16 ? 5'(DataWidth - 16) : 5'd0;
 
   logic [1:0] format;        // of the next frame
@@ -160,7 +158,6 @@ module link_unit #(
   end
 
   // Depth frames and records, in registers first: they come at the end of a path of the pipeline.
-
   logic [8*DepthBytes-1:0] depth_tdata;
   logic depth_tvalid, depth_tlast, depth_tuser, event_tvalid, event_tlast;
   logic [31:0] event_tdata;
@@ -210,7 +207,6 @@ module link_unit #(
   );
 
   // To the line.
-
   logic mixed_valid, mixed_ready, mixed_last, packet_out_valid, packet_out_ready, packet_out_last;
   logic checked_valid, checked_ready, checked_last;
   logic [7:0] mixed_data, packet_out_data, checked_data;
