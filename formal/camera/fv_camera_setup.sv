@@ -32,6 +32,8 @@ if (Bus == 0) begin : g_list
   logic [1:0] pins_q;
   logic [2:0] wrong;    // comparisons in a row
   logic [9:0] waiting;  // clocks in Wait
+  logic [15:0] pair, pair_q;  // the byte on the line, and the entry's: of the clock before, as they stand for quarters
+  assign pair = {dut.caught[8:1], dut.data};
   assign compares = watched == EntryWidth'(1) || 32'(watched) >= 3;
   assign compared = dut.state == Send && dut.sent && dut.step == ReadBack;
   assign agrees = dut.caught[8:1] == dut.data;
@@ -41,6 +43,7 @@ if (Bus == 0) begin : g_list
     entry_q <= entry;
     ended <= (done | failed) & ~fresh;
     done_q <= done;
+    pair_q <= pair;
     pins_q <= {power_down, reset_n};
     if (compared) wrong <= agrees ? '0 : wrong + 3'd1;
     if (compared && agrees && entry == watched) right <= 1'b1;
@@ -52,7 +55,7 @@ if (Bus == 0) begin : g_list
   end
 
   always_comb begin
-    assume (!dut.sent || dut.sending);
+    assume (!dut.sent || (dut.sending && pair == pair_q));
     if (started) begin
       in_order: assert (fresh_q ? entry == '0 : entry == entry_q || entry == entry_q + EntryWidth'(1));
       in_list: assert (32'(entry) < Entries);

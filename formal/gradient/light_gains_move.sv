@@ -178,13 +178,13 @@ module light_gains_move #(
       in_limits[c] = int'(gains[c*GainWidth+:GainWidth]) >= Least;
       differs[c] = gains[c*GainWidth+:GainWidth] != wanted_q[c*GainWidth+:GainWidth];
       slow_fits[c] = 1'b1;
-      if (turn[(c+2)%3] && steady >= 3'd1) slow_fits[c] = int'(slow_q) == slow && from_slow == '1 << slow;
-      if (turn[c] && steady >= 3'd2) slow_fits[c] = int'(slow_qq) == slow / 4;
+      if (turn[(c+2)%3] && steady >= 3'd2) slow_fits[c] = int'(slow_q) == slow && from_slow == '1 << slow;
+      if (turn[c] && steady >= 3'd3) slow_fits[c] = int'(slow_qq) == slow / 4;
       begun[c] = int'(high_q) == int'(sum[c]) >>> (Drop - 1 + slow % 4)
           && (rest_q == rest || high == -1) && {up_q, down_q} == {up, down};
       ready[c] = int'(high_qq) == high && (rest_qq == rest || high == -1) && {up_qq, down_qq} == {up, down};
       kept_since = turn[(c+1)%3] ? 3 : turn[(c+2)%3] ? 1 : 2;
-      is_kept[c] = int'(quiet) < 4 + kept_since || int'(steady) < 3 + kept_since
+      is_kept[c] = int'(quiet) < 4 + kept_since || int'(steady) < 4 + kept_since
           || (int'($signed(moved[c*(GainWidth+1)+:GainWidth+1])) == move[c] && moves_far[c] == far[c]);
     end
   end
@@ -207,8 +207,8 @@ module light_gains_move #(
       cleared: assert (!(clears[0] && quiet != '0) && !(clears[1] && quiet > 3'd1) && !(clears[2] && quiet > 3'd2));
       two_rows: assert (!(valid_q && position_q[2] && position_q[0]) && !(out_valid && out_position[2] && out_position[0]));
       shifts: assert (slow_fits == '1);
-      if (known && quiet >= 3'd3 && steady >= 3'd2) begins_in_turn: assert ((begun & turn) == turn);
-      if (known && quiet >= 3'd4 && steady >= 3'd3) is_ready: assert ((ready & {turn[0], turn[2:1]}) == {turn[0], turn[2:1]});
+      if (known && quiet >= 3'd3 && steady >= 3'd3) begins_in_turn: assert ((begun & turn) == turn);
+      if (known && quiet >= 3'd4 && steady >= 3'd4) is_ready: assert ((ready & {turn[0], turn[2:1]}) == {turn[0], turn[2:1]});
       if (known) kept: assert (is_kept == '1);
       if (pixels != '0) goes_on: assert (in_frame && rate_q == frame_rate);
       stays: assert (16'(steady) >= pixels || steady == '1);

@@ -68,8 +68,7 @@ always_comb begin
     if (in_valid && place == '0) judged_first: assert (in_ready == offered);
     as_judged: assert (dut.judged == offered);
     if (offered && in_valid && !rst) begin
-      judged_well: assert ({dut.begins_q, dut.fits_q, dut.wrong_q, dut.asks_q}
-          == {dut.begins, dut.fits, dut.known & ~dut.fits, dut.fits & (dut.begins == 2'd0)});
+      judged_well: assert ({dut.begins_q, dut.fits_q, dut.known_q} == {dut.begins, dut.fits, dut.known});
     end
     if (in_valid && place != '0 && kind_q == IsSelect) at_once: assert (in_ready);
     if (in_valid && in_ready && !rst) begin

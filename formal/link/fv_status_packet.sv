@@ -24,11 +24,12 @@ always_comb begin
     if (status_valid) begin
       whole: assert (status_last == (sent == 5'(FieldBytes + 1)));
       if (sent == 5'd0) its_kind: assert (status_data == 8'h81);
-      if (sent == 5'd1) the_version: assert (status_data == 8'd1);
+      if (sent == 5'd1) the_version: assert (status_data == td_link_pkg::Version);
       if (sent > 5'd1) fields_as_taken: assert (status_data == 8'(taken >> {sent - 5'd2, 3'd0}));
     end
     // What makes it inductive: the place and the rest of the packet.
     in_place: assert (dut.place == sent && sent <= 5'(FieldBytes + 1) && sending == (sent != '0) && dut.due == asked);
+    first_place: assert (dut.first == !sending);
     if (sending) rest: assert (dut.left == taken >> {sent - 5'd1 - 5'(sent > 5'd1), 3'd0});
     after_reset: cover (status_valid && status_last && asked);
     asked_as_it_begins: cover (leaves && !sending && request);
