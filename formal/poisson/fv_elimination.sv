@@ -266,12 +266,11 @@ if (1) begin : g_steps
           && dut.u_table.g_last_row.last_row[0] == last && (last
           || dut.u_table.address == base + (32'(row_q) < 32'(settled) ? AddressWidth'(row_q)
           : AddressWidth'(settled))));
-      if (old[2]) inner_read: assert (dut.u_table.g_last_row.last_position[2] == column
-          && dut.u_table.g_last_row.last_row[1] == last
-          && (last || dut.u_table.inner == line[CoeffsWidth-1:0]));
-      if (old[3]) last_read: assert (dut.u_table.g_last_row.last_row[2] == last
-          && (last ? {dut.u_table.g_last_row.last_shift,
-          dut.u_table.g_last_row.last} == line
+      if (old[2]) read: assert (dut.u_table.g_last_row.last_row[1] == last
+          && (last ? {dut.u_table.g_last_row.last_shift, dut.u_table.g_last_row.last} == line
+          : dut.u_table.inner == line[CoeffsWidth-1:0]));
+      if (old[3]) read_q: assert (dut.u_table.g_last_row.last_row[2] == last
+          && (last ? {dut.u_table.g_last_row.last_shift_q, dut.u_table.g_last_row.last_q} == line
           : dut.u_table.inner_q == line[CoeffsWidth-1:0]));
       if (old[4]) coefficient: assert (dut.coefficients[Word*CoeffWidth+:CoeffWidth] == c
           && dut.shifts[Word*LastShiftWidth+:LastShiftWidth] == by);
