@@ -65,6 +65,12 @@ logic [Tables-1:0] bank = '0;
 logic [3:0] waits, closed;  // to the bus: while waiting, reference and zero offset while they are captured too
 logic [31:0] next_index;
 logic [31:0] index;
+
+// A table says late which bank it uses, and changes over to the bank asked for alone.
+logic [3:0] in_use = '0;
+always_ff @(posedge clk) in_use <= table_in_use;
+always_comb if (started) assume (((table_in_use ^ in_use) & (table_in_use ^ bank)) == '0);
+
 always_comb begin
   size = select == TableSelectGradient ? GradientWords : select == TableSelectCoefficients ? CoefficientWords
       : select == TableSelectReference ? ReferenceWords : ZeroWords;
@@ -73,7 +79,7 @@ always_comb begin
   has[TableCommitCoefficientsBit] = CoefficientWords != 0;
   has[TableCommitReferenceBit] = ReferenceWords != 0;
   has[TableCommitZeroBit] = ZeroWords != 0;
-  waits = 4'(requested | ((bank ^ table_in_use) & has));
+  waits = 4'(requested | ((bank ^ in_use) & has));
   closed = waits;
   if (reference_status.busy) closed[TableCommitReferenceBit] = 1'b1;
   if (zero_status.busy) closed[TableCommitZeroBit] = 1'b1;
