@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Steps of the flow for an ECP5: registers packed into multipliers, wide enables copied, memories built of slices.
+"""Steps of the flow for an ECP5: registers packed into multipliers and memories, enables copied, memories of slices.
 
 A MULT18X18D has registers at its inputs and at its output, which Yosys leaves outside. With them the routes between a
 product and its registers disappear, and so does most of the delay.
