@@ -48,21 +48,17 @@ module transpose #(
   // Writer: row counts bursts, transposed says whether rows of this frame lie along the memory's columns.
   logic [IndexWidth-1:0] row, row_q, write_position, write_column;
   logic write_active, write_transposed, write_transposed_q, read_transposed, last_row_start;
-  td_burst_counter #(.Words(Columns)) u_write (
-    .clk, .rst, .en, .start, .position(write_position), .active(write_active)
-  );
+  assign write_active = start | (write_position != '0);
   assign row = start & frame_start ? '0 : row_q;
   assign write_transposed = start & frame_start ? ~read_transposed : write_transposed_q;
   assign write_column = MakhoulIn != 0 ? makhoul(write_position) : write_position;
   assign last_row_start = start & (row == IndexWidth'(Columns - 1));
 
-  // Reader: one burst of Columns^2 from the cycle after the last row begins.
+  // Reader: one burst of Columns^2 from the cycle after the last row begins. Both counters rest at 0.
   logic read_start, read_active;
   logic [2*IndexWidth-1:0] read_position;
   logic [IndexWidth-1:0] column, read_row;
-  td_burst_counter #(.Words(Columns * Columns)) u_read (
-    .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
-  );
+  assign read_active = read_start | (read_position != '0);
   assign column = read_position[2*IndexWidth-1:IndexWidth];
   assign read_row = MakhoulOut != 0 ? makhoul(read_position[IndexWidth-1:0]) : read_position[IndexWidth-1:0];
 
@@ -82,12 +78,14 @@ module transpose #(
       start_q <= {start_q[0], in_start};
       frame_start_q <= {frame_start_q[0], in_frame_start};
       out_data <= word;
+      if (write_active) write_position <= write_position + IndexWidth'(1);
+      if (read_active) read_position <= read_position + (2 * IndexWidth)'(1);
       row_q <= row + IndexWidth'(write_active & (write_position == IndexWidth'(Columns - 1)));
       write_transposed_q <= write_transposed;
       if (last_row_start) read_transposed <= write_transposed;
       read_start <= last_row_start;
     end
-    if (rst) {start_q, read_start, read_transposed} <= '0;
+    if (rst) {start_q, read_start, read_transposed, write_position, read_position} <= '0;
   end
   assign out_frame_start = read_start;
   assign out_start = read_active & (read_position[IndexWidth-1:0] == '0);
