@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""block_totals against its model: frames of random sums and of extremes, whole and cut short, gaps, pauses, resets."""
+"""block_totals against its model: frames of random sums and of extremes, whole and cut short, gaps, pauses, resets;
+frames that no camera sends, with a sum in each clock and rows of any colours.
+"""
 
 from typing import Any
 
@@ -59,7 +61,7 @@ class Bench:
         self.stimuli: list[Slot] = []
         self.expected: list[tuple[int, Any]] = []  # slot in which a block is complete, word that leaves
 
-    def frame(self, kind: str, gap: float = 0.0, rows: int | None = None) -> None:
+    def frame(self, kind: str, gap: float = 0.0, rows: int | None = None, is_of_camera: bool = True) -> None:
         """Append a frame, of which only `rows` rows are sent."""
         window, lanes, first = self.window, self.lanes, self.slots.random.getrandbits(1)
         limit = self.numerator << (self.width - 1)
@@ -67,7 +69,9 @@ class Bench:
         sums = self.rng.integers(-limit, limit - self.numerator, shape, endpoint=True)
         if kind != "random":
             sums[:] = {"lowest": -limit, "highest": limit - self.numerator}[kind]
-        blue = np.arange(window.height) + first & 1 == 1
+        alternating = np.arange(window.height) + first & 1
+        blue = (alternating if is_of_camera else self.rng.integers(0, 2, window.height)) == 1
+        column_ends = window.column_ends if is_of_camera else [True] * self.columns
         red_columns = self.rng.integers(0, self.numerator, self.columns, endpoint=True)
         args = (self.numerator, self.denominator)
         totals = block_totals(sums, blue if self.bayer else None, *args)
@@ -76,10 +80,9 @@ class Bench:
             areas = block_areas(sums_over_blocks((~blue).astype(np.int64), *args), red_columns, self.numerator)
         for row in range(window.height if rows is None else rows):
             block = 0
-            for column in range(window.width):
+            for column, ends in enumerate(map(bool, column_ends)):
                 while self.slots.random.random() < gap:
                     self.stimuli.append(self.slots.idle())
-                ends = bool(window.column_ends[column])
                 pins = {"in_row_start": column == 0, "in_frame_start": row == column == 0, "in_blue_row": blue[row]}
                 if ends:
                     pins |= {"in_ends": 1, "in_sums": packed(sums[row, block], self.sum_width)}
@@ -108,6 +111,7 @@ class Bench:
 async def frames(bench: Bench, gap: float, pause: float) -> None:
     for kind in ("lowest", "highest", *["random"] * FRAMES):
         bench.frame(kind, gap)
+        bench.frame(kind, gap, is_of_camera=False)
         if kind == "random":
             bench.frame(kind, gap, rows=bench.slots.random.randrange(bench.window.height))
     await bench.check(pause)
