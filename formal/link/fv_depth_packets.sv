@@ -223,12 +223,19 @@ always_comb begin
   end
 end
 
-// Protocol: shifts up to 16; `resets` stands while a frame is sent; a cold reset comes with a reset. Bytes count
-// while they are valid, an address with its read, a word of the record behind the 18 bytes in front of it.
+// Protocol: shifts up to 16; `resets` stands while a frame is sent; a cold reset comes with a reset; a value stands but in
+// the third clock behind a read, and a word of the record until the next one is asked for. Bytes count while they are
+// valid, an address with its read, a word of the record behind the 18 bytes in front of it.
 module protocol_depth_packets;
   logic was_sending = 1'b0, trailer = 1'b0;
   logic [4:0] bytes = '0;  // of the packet that were taken, up to 18
   logic [15:0] resets_q;
+  logic [2:0] read_q;
+  logic [1:0][$bits(record_word)-1:0] word_q;
+  logic [$bits(value_data)-1:0] value_q;
+  logic [$bits(record_data)-1:0] record_q;
+  assign given_value_data = read_q[2] ? value_data : value_q;
+  assign given_record_data = word_q[0] != word_q[1] ? record_data : record_q;
   assign holds = shift <= 5'd16 & (~cold_rst | rst) & (rst | ~was_sending | ~sending | resets == resets_q);
   assign counts = live & ~reset;
   assign counts_value_address = counts & value_read;
@@ -237,6 +244,9 @@ module protocol_depth_packets;
   always_ff @(posedge clk) begin
     was_sending <= sending & ~reset;
     resets_q <= resets;
+    read_q <= {read_q[1:0], value_read & ~reset};
+    word_q <= {word_q[0], record_word};
+    {value_q, record_q} <= {given_value_data, given_record_data};
     if (depth_valid && depth_ready) begin
       if (bytes == '0) trailer <= depth_data == 8'h98;
       if (depth_last) bytes <= '0;
