@@ -230,9 +230,10 @@ class WholeTable:
             self.writes = [("TABLE_SELECT", 0), ("TABLE_INDEX", 0)]
             self.writes += [(name, self.chance.getrandbits(32)) for _ in range(self.entries) for name in entry]
             self.writes.append(("TABLE_COMMIT", 1))
-            self.left, self.sent, self.offered = 15 * len(self.writes), {"aw": 0, "w": 0}, set()
+            self.left, self.sent, self.offered = 10 * len(self.writes), {"aw": 0, "w": 0}, set()
         self.left -= 1
         pins |= {"rst": 0, "cold_rst": 0, "table_in_use": 0, **{f"{table}_status": 0 for table in CAPTURES}}
+        pins |= {"s_axil_bready": 1, "s_axil_rready": 1}
         for channel in self.offered - registers.waiting:
             self.sent[channel] += 1
         self.offered = set()
