@@ -242,7 +242,9 @@ class WholeTable:
             if done < len(self.writes):
                 self.offered.add(channel)
                 name, word = self.writes[done]
-                pins |= {"s_axil_awaddr": OFFSET[name]} if channel == "aw" else {"s_axil_wdata": word, "s_axil_wstrb": 15}
+                pins |= (
+                    {"s_axil_awaddr": OFFSET[name]} if channel == "aw" else {"s_axil_wdata": word, "s_axil_wstrb": 15}
+                )
         if "ar" not in registers.waiting:
             pins["s_axil_araddr"] = OFFSET["TABLE_SIGNATURE"]
 
