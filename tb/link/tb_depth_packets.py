@@ -14,7 +14,7 @@ from cocotb.triggers import RisingEdge
 
 from formal.entries import Proof
 from tactile_depth.chip.contact.contact_events import WORDS, record
-from tactile_depth.chip.link.depth_formats import DepthFormat, sent_shape, to_bytes, value_bytes
+from tactile_depth.chip.link.depth_formats import DepthFormat, sent_shape, span_of, to_bytes, value_bytes
 from tactile_depth.chip.link.packets import LARGEST_SHIFT, Depth, Trailer
 from tb.axis import PROFILES, profile
 from tb.cases import on_bench
@@ -173,7 +173,7 @@ class Bench:
         assert self.packets == want, f"{[p.hex() for p in self.packets]}, expected {[p.hex() for p in want]}"
         assert not self.reading, "the frame was not given back"
         rows, columns = sent_shape(depth_format, self.rows, self.columns)
-        span = 2 if depth_format == DepthFormat.AVERAGED else 1
+        span = span_of(depth_format)
         places = np.arange(self.codes.size).reshape(self.codes.shape)[: span * rows, : span * columns]
         in_order = places.reshape(rows, span, columns, span).swapaxes(1, 2)
         assert self.reads == in_order.ravel().tolist(), "each code is read once, in its order"
