@@ -82,7 +82,6 @@ module tactile_depth
     .arrived_rows(levels.arrived_rows), .busy(video_busy), .pixel_valid, .pixel_data, .pixel_position,
     .pixel_frame_start, .pixel_frame_end, .pixel_bad, .pixel_test, .resumed, .now, .frame_time
   );
-
   table_command_t table_command;
   table_answer_t slope_answer, zero_answer;
   capture_command_t reference_command, zero_command;
@@ -91,48 +90,48 @@ module tactile_depth
   logic [3:0] table_bank, slope_in_use, zero_in_use, slope_saturations;
   light_command_t light_command;
   logic [2:0][LightGainWidth-1:0] light_gains;
-  logic slope_valid, slope_flags_valid;
+  logic slope_valid, slope_flags_valid, beyond;
+  logic [2:0] flipped;  // in the slopes, the solver, the depth
   frame_flags_t slope_flags, depth_flags;
   position_t slope_position;
   logic signed [GradientWidth-1:0] slope_gx, slope_gy;
   gradient_unit #(.TableFolder(TableFolder), .Config(Config)) u_gradient (
     .clk, .rst, .en(gradient_en), .table_command, .table_answer(slope_answer), .table_bank, .table_in_use(slope_in_use),
     .dark_level, .slope_limit, .capture_command(reference_command), .capture_status(reference_status),
-    .dark(events.dark), .light_command, .light_gains, .saturations(slope_saturations), .pixel_valid, .pixel_data,
-    .pixel_position, .pixel_bad, .resumed, .slope_valid, .slope_position, .slope_gx, .slope_gy, .slope_flags_valid,
-    .slope_flags
+    .dark(events.dark), .light_command, .light_gains, .saturations(slope_saturations), .flipped(flipped[0]),
+    .pixel_valid, .pixel_data, .pixel_position, .pixel_bad, .resumed, .slope_valid, .slope_position, .slope_gx,
+    .slope_gy, .slope_flags_valid, .slope_flags
   );
-
   logic burst_start, solved_frame_start, out_of_step, depth_busy, depth_valid, first_depth_latency_valid;
   logic [Lanes*DataWidth-1:0] solved_data;
   logic [7+$clog2(Lanes):0] solver_saturations;
   logic [$clog2(Lanes):0] depth_saturations;
   poisson_unit #(.TableFolder(TableFolder), .Config(Config)) u_poisson (
-    .clk, .rst, .en(poisson_en), .slope_valid, .slope_position, .slope_gx, .slope_gy,
-    .burst_start, .depth_frame_start(solved_frame_start), .depth_data(solved_data), .saturations(solver_saturations)
+    .clk, .rst, .en(poisson_en), .slope_valid, .slope_position, .slope_gx, .slope_gy, .burst_start,
+    .depth_frame_start(solved_frame_start), .depth_data(solved_data), .saturations(solver_saturations),
+    .flipped(flipped[1]), .residual(levels.residual), .beyond
   );
-
   depth_position_t depth_position;
   logic [Lanes*DataWidth-1:0] depth_data;
   depth_unit #(.TableFolder(TableFolder), .Config(Config)) u_depth (
     .clk, .rst, .en(depth_en), .table_command, .table_answer(zero_answer), .table_bank, .table_in_use(zero_in_use),
     .capture_command(zero_command), .capture_status(zero_status), .saturations(depth_saturations), .out_of_step,
-    .busy(depth_busy), .pixel_frame_start, .pixel_frame_end, .pixel_bad, .pixel_test, .frame_time, .slope_flags_valid,
-    .slope_flags, .burst_start, .solved_frame_start, .solved_data, .solver_clipped(solver_saturations != '0),
-    .depth_valid, .depth_position, .depth_data, .depth_time, .depth_flags, .self_test, .test_signature(levels.self_test)
+    .flipped(flipped[2]), .busy(depth_busy), .pixel_frame_start, .pixel_frame_end, .pixel_bad, .pixel_test, .frame_time,
+    .slope_flags_valid, .slope_flags, .burst_start, .solved_frame_start, .solved_data,
+    .solver_clipped(solver_saturations != '0), .depth_valid, .depth_position, .depth_data, .depth_time, .depth_flags,
+    .self_test, .test_signature(levels.self_test)
   );
-
   contact_settings_t contact_settings;
   logic [32*RecordWords-1:0] record;
   contact_unit #(.Config(Config)) u_contact (
     .clk, .rst, .en_next, .settings(contact_settings), .now, .frame_leaves(events.frame_out),
     .depth_dropped(events.depth_dropped), .stalled(levels.stalled), .record_valid(events.record_valid),
     .record_lost(events.record_lost), .touching(levels.touching), .record, .first_depth_latency,
-    .first_depth_latency_valid, .depth_valid, .depth_position, .depth_data, .depth_time, .depth_flags, .m_axis_tdata,
-    .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact, .m_event_tdata, .m_event_tvalid,
-    .m_event_tready, .m_event_tlast
+    .first_depth_latency_valid, .depth_valid, .depth_position, .depth_data, .depth_time, .depth_flags, .flipped,
+    .flip_found(events.flipped), .residual_found(events.residual), .beyond, .m_axis_tdata, .m_axis_tvalid,
+    .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact, .m_event_tdata, .m_event_tvalid, .m_event_tready,
+    .m_event_tlast
   );
-
   assign events.out_of_step = depth_en & out_of_step;
   assign events.frame_in = video_en & pixel_frame_end & ~pixel_bad;
   assign events.saturations = 14'(solver_saturations) + 14'(slope_saturations) + 14'(depth_saturations);

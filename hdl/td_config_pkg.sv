@@ -23,7 +23,7 @@ package td_config_pkg;
   localparam int ZeroLog2 = 8;  // base-2 logarithm of the most frames in a capture of the zero offset
 
   // A configuration is one vector: 32 bits for each number, by its field.
-  localparam int ConfigBits = 1920;
+  localparam int ConfigBits = 2144;
   localparam int ColumnsField = 0;
   localparam int RowsField = 1;
   localparam int LanesField = 2;
@@ -55,35 +55,42 @@ package td_config_pkg;
   localparam int FineBitsField = 28;
   localparam int CorrectionUnitField = 29;
   localparam int ZeroOffsetField = 30;
-  localparam int DepthMantissaField = 31;
-  localparam int DepthExponentField = 32;
-  localparam int SlopeMantissaField = 33;
-  localparam int SlopeExponentField = 34;
-  localparam int PitchNmField = 35;
-  localparam int DownWordsField = 36;
-  localparam int DownTableWordsField = 37;
-  localparam int DownSettledWidthField = 38;
-  localparam int LastShiftWidthField = 39;
-  localparam int UpTableWordsField = 40;
-  localparam int UpSettledWidthField = 41;
-  localparam int MomentDropField = 42;
-  localparam int MeanReciprocalField = 43;
-  localparam int MeanDropField = 44;
-  localparam int WordsPerRowField = 45;
-  localparam int CameraField = 46;
-  localparam int CameraNumeratorField = 47;
-  localparam int CameraDenominatorField = 48;
-  localparam int CameraFormatField = 49;
-  localparam int CameraPhaseField = 50;
-  localparam int CameraPictureColumnsField = 51;
-  localparam int CameraPictureRowsField = 52;
-  localparam int CameraWindowXField = 53;
-  localparam int CameraWindowYField = 54;
-  localparam int CameraBlackLevelField = 55;
-  localparam int CameraRedGainField = 56;
-  localparam int CameraGreenGainField = 57;
-  localparam int CameraBlueGainField = 58;
-  localparam int TablesCrcField = 59;
+  localparam int ParityField = 31;
+  localparam int CheckDroppedField = 32;
+  localparam int CheckInDroppedField = 33;
+  localparam int CheckScaleField = 34;
+  localparam int CheckScaleFractionField = 35;
+  localparam int CheckSumWidthField = 36;
+  localparam int ResidualBoundField = 37;
+  localparam int DepthMantissaField = 38;
+  localparam int DepthExponentField = 39;
+  localparam int SlopeMantissaField = 40;
+  localparam int SlopeExponentField = 41;
+  localparam int PitchNmField = 42;
+  localparam int DownWordsField = 43;
+  localparam int DownTableWordsField = 44;
+  localparam int DownSettledWidthField = 45;
+  localparam int LastShiftWidthField = 46;
+  localparam int UpTableWordsField = 47;
+  localparam int UpSettledWidthField = 48;
+  localparam int MomentDropField = 49;
+  localparam int MeanReciprocalField = 50;
+  localparam int MeanDropField = 51;
+  localparam int WordsPerRowField = 52;
+  localparam int CameraField = 53;
+  localparam int CameraNumeratorField = 54;
+  localparam int CameraDenominatorField = 55;
+  localparam int CameraFormatField = 56;
+  localparam int CameraPhaseField = 57;
+  localparam int CameraPictureColumnsField = 58;
+  localparam int CameraPictureRowsField = 59;
+  localparam int CameraWindowXField = 60;
+  localparam int CameraWindowYField = 61;
+  localparam int CameraBlackLevelField = 62;
+  localparam int CameraRedGainField = 63;
+  localparam int CameraGreenGainField = 64;
+  localparam int CameraBlueGainField = 65;
+  localparam int TablesCrcField = 66;
 
   // The default configuration; options that it leaves out have the numbers of a configuration with the option.
   localparam logic [ConfigBits-1:0] DefaultConfig = {
@@ -116,6 +123,13 @@ package td_config_pkg;
     32'd8388608,  // SlopeMantissa
     -32'sd41,  // DepthExponent
     32'd9437184,  // DepthMantissa
+    32'd0,  // ResidualBound
+    32'd0,  // CheckSumWidth
+    32'd0,  // CheckScaleFraction
+    32'd0,  // CheckScale
+    32'd0,  // CheckInDropped
+    32'd0,  // CheckDropped
+    32'd0,  // Parity
     32'd0,  // ZeroOffset
     32'd2097152,  // CorrectionUnit
     32'd4,  // FineBits
@@ -150,7 +164,7 @@ package td_config_pkg;
   };
 
   // The fields that the register ARITHMETIC holds.
-  localparam logic [ConfigBits/32-1:0] ArithmeticFields = 60'b000000000000000111001000011111111011111110111111000111111011;
+  localparam logic [ConfigBits/32-1:0] ArithmeticFields = 67'he43c07bfbf1fb;
 
   // Return the number in a field of a configuration.
   function automatic int value(input logic [ConfigBits-1:0] config_word, input int field);

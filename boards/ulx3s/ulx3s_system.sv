@@ -4,14 +4,16 @@
 //   ftdi_txd -> uart_receive -> link_unit <-> tactile_depth;  link_unit -> uart_transmit -> ftdi_rxd
 //
 // Packets: docs/link.md. With Camera 0 pictures come from the serial line; with Camera 1 they come on s_axis, and those
-// on the line are dropped. recorded changes with every record. tactile_depth_ulx3s, with Camera tactile_sensor_ulx3s,
-// is a wrapper, which `make fpga` writes for a configuration.
+// on the line are dropped. recorded changes with every record, doubted with every one that has a flipped bit or a
+// residual beyond its bound. tactile_depth_ulx3s, with Camera tactile_sensor_ulx3s, is a wrapper, which
+// `make fpga` writes for a configuration.
 // Model: models/tactile_depth/chip/link/device.py around models/tactile_depth/chip/tactile_depth.py.
 
 `default_nettype none
 
 module ulx3s_system
   import td_register_map_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter int ClockMhz    = 100,      // of clk
   parameter int Baud        = 3000000,
@@ -40,6 +42,7 @@ module ulx3s_system
   input  wire   [7:0] setup_found,
   output logic        contact,
   output logic        recorded,
+  output logic        doubted,
   output logic        irq
 );
 
@@ -127,9 +130,15 @@ module ulx3s_system
       setup_failed, setup_entry, setup_found};
   end
 
+  localparam int FlagsWord = RecordWords - $bits(frame_flags_t) / 32;  // the flags end a record
+  wire frame_flags_t flags = $bits(frame_flags_t)'(event_tdata);  // in the first of their words
+  logic [3:0] event_word;
   always_ff @(posedge clk) begin
+    if (event_tvalid) event_word <= event_tlast ? '0 : event_word + 4'd1;
     if (event_tvalid && event_tlast) recorded <= ~recorded;
-    if (rst) recorded <= 1'b0;
+    if (event_tvalid && event_word == 4'(FlagsWord)
+        && (flags.flipped || flags.residual)) doubted <= ~doubted;
+    if (rst) {event_word, recorded, doubted} <= '0;
   end
 
 endmodule

@@ -17,7 +17,7 @@ from commands.common.variables import Several
 from tactile_depth.base.errors import InputError
 from tactile_depth.base.npy import is_file
 from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoice, CameraConfiguration
-from tactile_depth.chip.configuration import CHOICES, DEFAULTS, NUMBERS, WORDS, Configuration
+from tactile_depth.chip.configuration import CHOICES, DEFAULTS, NUMBERS, WORDS, Configuration, can_check
 from tactile_depth.chip.limits import BOUNDARIES, COLUMNS, MODELS
 from tactile_depth.pictures.frames import REST_SCENE
 from tactile_depth.sensor.built_in import load, read
@@ -64,6 +64,8 @@ class Request:
     reference: str | None
     zero: str | None
     light_gains: bool | None  # None: unless the model is lut
+    parity: bool
+    self_check: bool
     calibration: str
     camera_size: tuple[int, int] | None  # rows, columns
     crop: str | None  # what pictures show; None: what those of the calibration show
@@ -126,13 +128,15 @@ def of_values(
         return x, y
 
     by_preset = None if PRESETS[name].light_gains else False
+    columns, lanes = number("COLS", 0), number("LANES", 1)  # the configuration file sets the solver: it bounds them
+    checks = PRESETS[name].self_check and can_check(columns, lanes)
     return Request(
         preset=name,
-        rows=number("ROWS", 0),  # the configuration file sets the solver
-        columns=number("COLS", 0),
+        rows=number("ROWS", 0),
+        columns=columns,
         solver=choice("SOLVER", SOLVERS),
         boundary=choice("BOUNDARY", BOUNDARIES[::-1]),
-        lanes=number("LANES", 1),  # see rows
+        lanes=lanes,
         simulator=choice("SIM", BOTH),
         numbers={name: number(each.variable, DEFAULTS[name]) for name, each in NUMBERS.items()},
         deepest_mm=math.inf if values.get(DEPTH_RANGE) == WORST else number(DEPTH_RANGE, 0, 1e-6, 1e6, float) or None,
@@ -145,6 +149,8 @@ def of_values(
         reference=values.get("REFERENCE"),
         zero=values.get("ZERO"),
         light_gains=bool(number("LIGHT_GAINS", 0, 0, 1)) if "LIGHT_GAINS" in values else by_preset,
+        parity=bool(number("PARITY", PRESETS[name].parity, 0, 1)),
+        self_check=bool(number("SELF_CHECK", checks, 0, 1)),
         calibration=_calibration(values),
         camera_size=_camera_size(values),
         crop=values.get("CROP"),
@@ -337,4 +343,6 @@ def configure(request: Request, calibration: Sensor) -> Configuration:
         **request.numbers,
         depth_range_px=depth_range_px,
         zero_offset=request.zero is not None,
+        parity=request.parity,
+        self_check=request.self_check,
     )

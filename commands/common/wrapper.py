@@ -120,7 +120,7 @@ package td_config_pkg;
   }};
 
   // The fields that the register ARITHMETIC holds.
-  localparam logic [ConfigBits/32-1:0] ArithmeticFields = {len(fields)}'b{arithmetic};
+  localparam logic [ConfigBits/32-1:0] ArithmeticFields = {len(fields)}'h{int(arithmetic, 2):x};
 
   // Return the number in a field of a configuration.
   function automatic int value(input logic [ConfigBits-1:0] config_word, input int field);

@@ -29,9 +29,10 @@ RUNS = Path(__file__).with_name("luts.json")
 REST = "small cores"
 RIDGE = 0.1
 SMALLEST = 100  # LUTs: smaller cores have no more weight in the fit
-OPTIONS = ("flat_field", "light_gains", "polynomials", "zero_offset")  # each with registers
+OPTIONS = ("flat_field", "light_gains", "polynomials", "zero_offset", "parity", "self_check")  # each with registers
 SEVERAL = " of several words"  # in a clock: other butterflies, and cores without a constant
-TABLES = "bits of tables"  # one LUT each, which is not fitted
+TABLES = "bits of tables"  # one LUT each, which is not fitted, as the next
+PARITY = "trees of parity"
 PROPORTIONAL = ("flat", "reference", "spectral", "zero")  # beginnings of names: cores without a constant
 
 Terms = dict[str, dict[str, float]]  # amount by core and term
@@ -79,14 +80,14 @@ def coefficients(device: Device) -> dict[str, float]:
         if run["fitted"] and run["device"] == device.name:
             config = Configuration(**run["configuration"])
             rows += [(amounts, run["logic"].get(core, 0)) for core, amounts in terms(config, device).items()]
-    number = np.array([luts - amounts.pop(TABLES, 0) for amounts, luts in rows], float)
+    number = np.array([luts - amounts.pop(TABLES, 0) - amounts.pop(PARITY, 0) for amounts, luts in rows], float)
     names = sorted({name for amounts, _ in rows for name, amount in amounts.items() if amount})
     weights = 1 / np.maximum(number, SMALLEST)
     counts = np.array([[amounts.get(name, 0.0) for name in names] for amounts, _ in rows]) * weights[:, None]
     scale = counts.max(0)
     ridge = np.eye(len(names)) * RIDGE  # shares between terms that no run tells apart
     solution, _ = nnls(np.vstack([counts / scale, ridge]), np.hstack([number * weights, np.zeros(len(names))]))
-    return {TABLES: 1.0} | dict(zip(names, (solution / scale).tolist(), strict=True))
+    return {TABLES: 1.0, PARITY: 1.0} | dict(zip(names, (solution / scale).tolist(), strict=True))
 
 
 def terms(config: Configuration, device: Device) -> Terms:
@@ -99,6 +100,8 @@ def terms(config: Configuration, device: Device) -> Terms:
             if name.startswith("dst"):
                 core["product"] += part.a + part.b
         elif isinstance(part, Memory):
+            trees = config.parity * (2 if not part.rom and not part.banked else 1)  # two banks share that of the read
+            core[PARITY] += trees * math.ceil((part.width - 1) / (device.lut_inputs - 1))
             if part.rom and _of_luts(part, device):
                 core[TABLES] += part.width * math.ceil(part.words / 2**device.lut_inputs)
             elif _of_luts(part, device):

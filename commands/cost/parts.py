@@ -10,7 +10,7 @@ from importlib import import_module
 from commands.common import repository
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import by_core
-from tactile_depth.chip.resources import Parts
+from tactile_depth.chip.resources import Memory, Parts
 
 
 @cache
@@ -20,5 +20,7 @@ def parts(config: Configuration) -> Parts:
     for name in dict.fromkeys(core.partition(",")[0] for _, core, _ in by_core(config)):
         if core := repository.cores().get(name):
             model = import_module(".".join(["tactile_depth.chip", *core.block.split("/"), name]))
-            found += [replace(part, core=name) for part in getattr(model, "parts", lambda _: [])(config)]
+            for part in getattr(model, "parts", lambda _: [])(config):
+                wider = {"width": part.width + config.parity} if isinstance(part, Memory) else {}
+                found.append(replace(part, core=name, **wider))
     return found

@@ -117,7 +117,7 @@ def counts(config: Configuration, clipped_per_frame: int, clocks_per_frame: int)
     largest = (1 << WORD_BITS) - 1
     model = EventRegisters()
     model.values.update(dict.fromkeys(COUNTERS, largest))
-    model.clock(tuple(EVENT_COUNTERS), 1, None, 0)
+    model.clock(tuple(EVENT_COUNTERS), 1, 0, None, 0)
     each: Mapping[str, int] = {
         SATURATIONS: clipped_per_frame,
         "DARK_PIXELS": config.rows * config.columns,

@@ -32,6 +32,7 @@ from tb.settings import RunSettings
 
 GRIDS = (16, 128, 512)
 TOP = "tactile_depth"
+CHECKS = {"parity": True, "self_check": True}
 FOLDER = repository.ROOT / "build" / "lint"
 TOOLS = repository.ROOT / "requirements-verification.txt"  # their versions
 BIN = Path(sys.executable).parent
@@ -82,14 +83,14 @@ def modules(files: Iterable[Path]) -> list[str]:
 def structures() -> list[Structure]:
     """Return the top with both solvers and boundaries, at the smallest, the default and the largest square grid.
 
-    Three more have colours relative to a reference, and one of these a zero offset and light gains.
+    Three more have colours relative to a reference, and one of these all other options.
     """
     flat = [
         Structure(TOP, Configuration(**{"flat_field": True, **choices}))
         for choices in (
             {"columns": 16, "gradient_model": "quadratic"},
             {"solver": "tridiagonal"},
-            {**COLOURS, "columns": 16, "solver": "tridiagonal", "lanes": 4, "zero_offset": True},
+            {**COLOURS, **CHECKS, "columns": 32, "solver": "tridiagonal", "lanes": 4, "zero_offset": True},
         )
     ]
     return flat + [
@@ -254,7 +255,7 @@ def checks() -> list[Check]:
     with_boards = [*files, *boards, *wrappers_of_boards()]
     others = [*boards, *benches, *repository.TECHNOLOGY]
     tops, designs = [Structure(name) for name in modules(boards)], structures()
-    small = [structure for structure in designs if structure.config and structure.config.columns == GRIDS[0]]
+    small = [structure for structure in designs if structure.config and structure.config.columns < GRIDS[1]]
     python = [sys.executable, "-m"]
     product = ["--package=tactile_depth", "--package=commands", "--package=formal", f"--cache-dir={FOLDER / 'mypy'}"]
     return [

@@ -92,6 +92,11 @@ WAIVERS = (
         lambda f: re.search(r"'s_axi(s_tlast|l_a[rw]prot)'", f.text) is not None,
         "a bus has all its pins",
     ),
+    Waiver(
+        "unused-package-subroutine",
+        lambda f: "td_check_pkg" in f.place,
+        "of cores that a board has in some configurations",
+    ),
     Waiver("empty-output-connection", lambda f: True, "an output that nothing reads is connected to nothing"),
     Waiver(
         "unused-package-parameter",

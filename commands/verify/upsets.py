@@ -19,11 +19,12 @@ from commands.verify.upset_places import CONTROL, DATA, MEMORIES, POPULATIONS, S
 from tactile_depth.base import files
 
 INTERRUPTED = "every flip is kept, run it again to go on"
+CHECKS = {"PARITY": "1", "SELF_CHECK": "1"}
 CASES = {
     "chip": {"PRESET": "chip", "ROWS": "24", "COLS": "32"},
-    "24 bits": {"PRESET": "sensor", "N": "16", "BOUNDARY": "dirichlet"},
-    "24 bits, 8 values a clock": {"PRESET": "sensor", "ROWS": "16", "COLS": "32", "LANES": "8"},
-    "24 bits, spectral": {"PRESET": "sensor", "N": "16", "SOLVER": "spectral", "BOUNDARY": "dirichlet"},
+    "24 bits": {"PRESET": "sensor", "ROWS": "16", "COLS": "32", "BOUNDARY": "dirichlet", **CHECKS},
+    "24 bits, 8 values a clock": {"PRESET": "sensor", "ROWS": "16", "COLS": "64", "LANES": "8", **CHECKS},
+    "24 bits, spectral": {"PRESET": "sensor", "N": "32", "SOLVER": "spectral", "BOUNDARY": "dirichlet", **CHECKS},
 }
 FOLDER = repository.ROOT / "build" / "upsets"
 PROCESSORS = os.cpu_count() or 1

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_contact_events: a record Latency clocks after the last depth of each frame, kept until the next; touching moves
 // only 3 clocks after a last depth, and the record says so; in it are the number of the frame, the time of its first
-// depth and the flags at its last.
+// depth and the flags at its last, with those that come with the record.
 //
 // Sums, decision, centroid, packets and the delay of the positions are proven of the cores in it.
 
@@ -15,7 +15,7 @@ localparam int ToDivision = ToSums + 2, Division = (Latency - ToDivision) / 2;  
 logic [Latency-1:0] due;
 logic [32*Words-1:0] record_q;
 logic [31:0] number, begun, begun_last;
-frame_flags_t flags_last;
+frame_flags_t flags_last, flags_told;  // told: of the record
 logic was_reset, touching_q;
 depth_position_t [ToLate-1:0] positions;
 always_ff @(posedge clk) begin
@@ -27,6 +27,9 @@ always_ff @(posedge clk) begin
   positions <= {positions[ToLate-2:0], in_position};
   due <= Latency'({due, in_valid & in_position.frame_end});
   if (due[1]) number <= number + 32'd1;
+  flags_told <= flags_last;
+  flags_told.flipped <= in_flipped;
+  flags_told.residual <= in_residual;
   record_q <= record;
   touching_q <= touching;
   if (rst) begin
@@ -71,7 +74,7 @@ always_comb begin
     if (record_valid) begin
       status: assert (record[0] == touching && !(record[1] && !touching) && !(record[2] && touching));
       of_frame: assert (record[63:32] == number && record[95:64] == begun_last);
-      flags_of_frame: assert (record[32*Words-1-:96] == flags_last);
+      flags_of_frame: assert (record[32*Words-1-:96] == flags_told);
     end
     if (was_reset) quiet: assert (!m_event_tvalid && !touching && record == '0);
     begins: cover (record_valid && record[1]);

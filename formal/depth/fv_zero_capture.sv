@@ -138,4 +138,4 @@ end else begin : g_sums
   end
 end
 
-bind dut.u_sums ram_check #(.Depth(Depth)) u_check (.*);
+bind dut.u_sums.u_ram ram_check #(.Depth(Depth)) u_check (.*);

@@ -168,10 +168,10 @@ if (1) begin : g_steps
   assign last = row_q == RowWidth'(Rows - 1);
   assign left_some = left != '0;
   assign entered = known || old[7:0] != '0;
-  assign d_entry = dut.u_d_above.g_distributed.words[column];
-  assign d_read = dut.u_d_above.read_data;
-  assign c_entry = dut.u_c_above.g_distributed.words[column];
-  assign c_read = dut.u_c_above.read_data;
+  assign d_entry = dut.u_d_above.u_ram.g_distributed.words[column];
+  assign d_read = dut.u_d_above.u_ram.read_data;
+  assign c_entry = dut.u_c_above.u_ram.g_distributed.words[column];
+  assign c_read = dut.u_c_above.u_ram.read_data;
   assign line = square[32'(row_q)*Clocks+32'(column)];
   always_ff @(posedge clk) begin
     if (en && old[7]) known <= 1'b1;
@@ -246,13 +246,13 @@ if (1) begin : g_steps
   // The coefficient: in the table, which stays as it is, and behind it.
   logic [AddressWidth-1:0] base;
   logic [SettledWidth-1:0] settled;
-  assign {base, settled} = dut.u_table.u_index.g_distributed.words[column];
+  assign {base, settled} = dut.u_table.u_index.u_rom.g_distributed.words[column];
   for (genvar r = 0; r < Rows; r++) begin : g_row
     logic [LineWidth-1:0] stored;
     logic [AddressWidth-1:0] address;
     assign address = base + (r < 32'(settled) ? AddressWidth'(r) : AddressWidth'(settled));
-    assign stored = r == Rows - 1 ? dut.u_table.g_last_row.u_last.g_distributed.words[column]
-        : LineWidth'(dut.u_table.u_inner.g_distributed.words[address]);
+    assign stored = r == Rows - 1 ? dut.u_table.g_last_row.u_last.u_rom.g_distributed.words[column]
+        : LineWidth'(dut.u_table.u_inner.u_rom.g_distributed.words[address]);
     always_comb if (started) tables_agree: assert (stored == square[r*Clocks+32'(column)]);
   end
   always_comb begin
@@ -267,11 +267,11 @@ if (1) begin : g_steps
           || dut.u_table.address == base + (32'(row_q) < 32'(settled) ? AddressWidth'(row_q)
           : AddressWidth'(settled))));
       if (old[2]) read: assert (dut.u_table.g_last_row.last_row[1] == last
+          && (last ? dut.u_table.g_last_row.u_last.word == line
+          : dut.u_table.u_inner.word == line[CoeffsWidth-1:0]));
+      if (old[3]) read_q: assert (dut.u_table.g_last_row.last_row[2] == last
           && (last ? {dut.u_table.g_last_row.last_shift, dut.u_table.g_last_row.last} == line
           : dut.u_table.inner == line[CoeffsWidth-1:0]));
-      if (old[3]) read_q: assert (dut.u_table.g_last_row.last_row[2] == last
-          && (last ? {dut.u_table.g_last_row.last_shift_q, dut.u_table.g_last_row.last_q} == line
-          : dut.u_table.inner_q == line[CoeffsWidth-1:0]));
       if (old[4]) coefficient: assert (dut.coefficients[Word*CoeffWidth+:CoeffWidth] == c
           && dut.shifts[Word*LastShiftWidth+:LastShiftWidth] == by);
       if (old[5]) shift: assert (dut.shifts_q[Word*LastShiftWidth+:LastShiftWidth] == by);
@@ -293,13 +293,15 @@ if (1) begin : g_steps
       if (old[7]) state: assert (dut.d[Word*Width+:Width] == d);
 
       // A row ahead, which has no meaning in the first row.
-      for (int n = 3; n < 9; n++) begin
+      if (old[3] && row_q != '0) read_above_q: assert (dut.above_d[Word*Width+:Width] == d
+          && dut.above_c[Word*CoeffWidth+:CoeffWidth] == c_d);
+      for (int n = 4; n < 9; n++) begin
         if (old[n] && (n < 7 ? row_q : row_d) != '0)
-          assert (dut.g_word[Word].above_q[n-3] == (n < 7 ? d : above));
+          assert (dut.g_word[Word].above_q[n-4] == (n < 7 ? d : above));
       end
-      for (int n = 3; n < 8; n++) begin
+      for (int n = 4; n < 8; n++) begin
         if (old[n] && (n < 7 ? row_q : row_d) != '0)
-          assert (dut.g_word[Word].above_c_q[n-3] == (n < 7 ? c_d : c_above));
+          assert (dut.g_word[Word].above_c_q[n-4] == (n < 7 ? c_d : c_above));
       end
       if (old[8]) state_kept: assert (dut.g_word[Word].d_q[0] == d);
       if (old[9]) state_out: assert (dut.g_word[Word].d_q[1] == d);

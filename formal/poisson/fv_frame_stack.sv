@@ -181,9 +181,10 @@ if (1) begin : g_steps
             assert (dut.alone_q[i] == (Rows % 2 != 0 && Due > i + (Pairs - 1) * Period));
         end
         if (Read > 0 && Read <= Leaves && (Read - 1) % Period < Beats) behind: assert (dut.past_q[0] == (Read <= Period)
-            && 32'(dut.word_serve) == (Beats - 1 - (Read - 1) % Period) % Serve);
+            && 32'(dut.serve_q[0]) == (Beats - 1 - (Read - 1) % Period) % Serve);
         if (Read > 1 && Read <= Leaves + 1 && (Read - 2) % Period < Beats)
-          out: assert (dut.past_q[1] == (Read <= Period + 1));
+          out: assert (dut.past_q[1] == (Read <= Period + 1)
+              && 32'(dut.serve_q[1]) == (Beats - 1 - (Read - 2) % Period) % Serve);
         if (Read > 0 && (starts & from_to(Begins, n)) == '0) way_back: assert (leaves_down == ~dut.down);
         if (n >= Lead && Read <= Leaves && known && 32'(written_q) < Rows && (starts & from_to(Lead, n)) == '0)
           next_way: assert (comes_down == ~leaves_down);
@@ -276,7 +277,7 @@ if (1) begin : g_steps
           if (Pair > 0) begin : g_stored
             logic [RowWords*Width-1:0] entry;
             logic gathers;
-            assign entry = dut.g_side[s].u_ram.g_block
+            assign entry = dut.g_side[s].u_ram.u_ram.g_block
                 .words[at((Row - Odd) / 2, Burst - 1 - (Clocks - 1 - At) / Gather, word_down)];
             assign gathers = age == '0 && now <= Came + Until;
             always_comb begin
@@ -287,8 +288,8 @@ if (1) begin : g_steps
                 else if (32'(age) <= ReadAt) way_back: assert (leaves_down == word_down);
                 if (32'(age) <= ReadAt && !gathers) stands: assert (entry[Entry*Width+:Width] == value);
                 if (32'(age) > ReadAt && 32'(age) <= Reads + 1 + l)
-                  was_read: assert (dut.g_side[s].words[Entry*Width+:Width] == value);
-                if (32'(age) == Reads + 2 + l) taken: assert (dut.g_side[s].word_q[h*Width+:Width] == value);
+                  was_read: assert (dut.g_side[s].u_ram.word[Entry*Width+:Width] == value);
+                if (32'(age) == Reads + 2 + l) taken: assert (dut.g_side[s].word[h*Width+:Width] == value);
               end
             end
             if (Until > 0) begin : g_gather
@@ -302,7 +303,7 @@ if (1) begin : g_steps
             logic [(RowWords-InWords)*Width-1:0] kept;
             if (s == 0) assign kept = dut.g_side[s].g_buffer.g_last.kept;
             else assign kept = dut.g_gather.kept;
-            assign entry = dut.g_side[s].g_buffer.u_row.g_distributed.words[Time];
+            assign entry = dut.g_side[s].g_buffer.u_row.u_ram.g_distributed.words[Time];
             always_comb begin
               if (here) begin
                 came: assert (32'(age) >= Lead + At);
@@ -311,7 +312,7 @@ if (1) begin : g_steps
                 if (32'(age) >= Lead + At + Until && 32'(age) <= ReadAt)
                   stands: assert (entry[Entry*Width+:Width] == value);
                 if (32'(age) == ReadAt + 1)
-                  was_read: assert (dut.g_side[s].g_buffer.buffered[Entry*Width+:Width] == value);
+                  was_read: assert (dut.g_side[s].g_buffer.u_row.word[Entry*Width+:Width] == value);
                 if (32'(age) == ReadAt + 2) taken: assert (dut.g_side[s].past[h*Width+:Width] == value);
               end
             end

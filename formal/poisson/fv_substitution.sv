@@ -107,7 +107,7 @@ end
 // What makes the proof of a z that waits end: places go down the pipeline as here, and the memory has the last z.
 if (Beats > 4) begin : g_waits
   logic known;  // a z of the column was written since the reset
-  wire [Width-1:0] entry = dut.g_word[Word].g_waits.u_below.g_distributed.words[column];
+  wire [Width-1:0] entry = dut.g_word[Word].g_waits.u_below.u_ram.g_distributed.words[column];
   always_ff @(posedge clk) begin
     if (en && old[ToWords-1]) known <= 1'b1;
     if (rst) known <= 1'b0;

@@ -7,7 +7,7 @@
 // answers is proven of itself.
 
 parameter int Polynomial = 0, Corrections = 0, Camera = 0, DepthMantissa = 24'hABCDEF, DepthExponent = -41,
-    SlopeMantissa = 24'h812345, SlopeExponent = 3, PitchNm = 63400;
+    SlopeMantissa = 24'h812345, SlopeExponent = 3, PitchNm = 63400, ResidualBound = 1234567;
 localparam logic [ConfigBits-1:0] Config = configuration();
 
 assign allowed = 1'b1;
@@ -41,6 +41,7 @@ function automatic logic [ConfigBits-1:0] configuration();
   configuration[32*SlopeExponentField+:32] = SlopeExponent;
   configuration[32*PitchNmField+:32] = PitchNm;
   configuration[32*CameraField+:32] = Camera;
+  configuration[32*ResidualBoundField+:32] = ResidualBound;
 endfunction
 
 // What the bus carried.
@@ -132,8 +133,10 @@ assign writes_gain = {writes(LightGainBlueOffset), writes(LightGainGreenOffset),
 logic [LightGainWidth-1:0] gain_before;
 assign gain_before = writes_gain[0] ? light_gains[0] : writes_gain[1] ? light_gains[1] : light_gains[2];
 logic [31:0] dim, steepest, averaged, zero_averaged, off, level, area, frames_needed, dark, given_up, lost;
-logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, latency;
-logic clears;
+logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, flips, residuals, largest, latency;
+logic clears, clears_q, record_q;  // of the clock before, with its residual
+logic [31:0] residual_q;
+wire [3:0][31:0] of_checks = {32'(ResidualBound), largest, residuals, flips};  // at FLIPS and behind it
 assign clears = writes(ControlOffset) & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
 // Events reach status and counters a clock later; those of a clock in reset do not.
 events_t seen;
@@ -153,9 +156,13 @@ always_comb begin
   happened[StatusSaturationBit] = seen.saturations != 0;
   happened[StatusDarkBit] = seen.dark;
   happened[StatusDepthDroppedBit] = seen.depth_dropped;
+  happened[StatusFlippedBit] = seen.flipped;
+  happened[StatusResidualBit] = seen.residual;
   interrupts_happened = '0;
   interrupts_happened[InterruptStatusRecordBit] = seen.record_valid;
   interrupts_happened[InterruptStatusFrameDroppedBit] = seen_frame_dropped;
+  interrupts_happened[InterruptStatusFlippedBit] = seen.flipped;
+  interrupts_happened[InterruptStatusResidualBit] = seen.residual;
 end
 
 // What a read of this clock shall return.
@@ -208,6 +215,7 @@ always_comb begin
   else if (read_offset == DarkPixelsOffset) word = dark;
   else if (read_offset == DepthDroppedOffset) word = given_up;
   else if (read_offset == RecordsLostOffset) word = lost;
+  else if (read_offset >= FlipsOffset && read_offset <= ResidualBoundOffset) word = of_checks[read_offset[3:2] ^ 2'd2];
   else if (read_offset == ArrivedOffset) word = {16'(levels.arrived_columns), 16'(levels.arrived_rows)};
   else if (read_offset == SelfTestOffset) word = levels.self_test;
   else if (read_offset == OffThresholdOffset) word = off;
@@ -313,7 +321,7 @@ always_ff @(posedge clk) begin
     if (zero_status.done && table_number == TableSelectZero && has[table_number]) requested[table_number] <= 1'b1;
   end
   interrupts <= (interrupts & ~(writes(InterruptStatusOffset) ? data & mask : '0)) | interrupts_happened;
-  if (writes(InterruptMaskOffset)) unmasked <= written(unmasked) & 32'h3;
+  if (writes(InterruptMaskOffset)) unmasked <= written(unmasked) & 32'hf;
   if (writes(PitchOffset)) width_nm <= written(width_nm);
   if (writes(LightOffset)) light <= written(light) & 32'h71;
   raised <= |(interrupts & unmasked);
@@ -324,6 +332,13 @@ always_ff @(posedge clk) begin
   clipped <= counted(clears ? '0 : clipped, 32'(seen.saturations));
   dark <= counted(clears ? '0 : dark, 32'(seen.dark));
   given_up <= counted(clears ? '0 : given_up, 32'(seen.depth_dropped));
+  flips <= counted(clears ? '0 : flips, 32'(seen.flipped));
+  residuals <= counted(clears ? '0 : residuals, 32'(seen.residual));
+  if (clears_q) largest <= '0;
+  if (record_q && (clears_q || residual_q > largest)) largest <= residual_q;
+  clears_q <= clears;
+  record_q <= seen.record_valid;
+  residual_q <= levels.residual;
   lost <= counted(clears ? '0 : lost, 32'(seen.record_lost));
   if (first_depth_latency_valid) latency <= first_depth_latency;
 
@@ -340,7 +355,9 @@ always_ff @(posedge clk) begin
     width_nm <= PitchNm;
     light <= 32'd1;
     steepest <= 32'hff;
-    {silence, index, select, high, sticky, frames_in, frames_out, frames_dropped, clipped, latency} <= '0;
+    {silence, index, select, high, sticky, frames_in, frames_out, frames_dropped, clipped, flips, residuals, largest, latency}
+      <= '0;
+    {clears_q, record_q} <= '0;
   end
   if (cold_rst) bank <= '0;
 end

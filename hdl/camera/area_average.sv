@@ -68,7 +68,7 @@ module area_average #(
   );
   td_delay_line #(.Width(3), .Delay(RowSums)) u_marks (
     .clk, .rst, .en, .in({in_valid & in_row_start, in_frame_start, in_colour[1]}),
-    .out({row_start, frame_start, blue_row})
+    .out({row_start, frame_start, blue_row}), .flipped()
   );
 
   logic complete;
@@ -94,7 +94,9 @@ module area_average #(
 
   logic [3*AreaWidth-1:0] areas_q2;
   if (Bayer != 0) begin : g_areas
-    td_delay_line #(.Width(3 * AreaWidth), .Delay(Gain)) u_areas (.clk, .rst, .en, .in(areas), .out(areas_q2));
+    td_delay_line #(.Width(3 * AreaWidth), .Delay(Gain)) u_areas (
+      .clk, .rst, .en, .in(areas), .out(areas_q2), .flipped()
+    );
   end else begin : g_area
     assign areas_q2 = areas;
   end

@@ -9,6 +9,9 @@
 // valid 1 cycle after a free_read outside a reset, in that cycle alone; after a read in the cycle of a change it is of
 // the bank that was left. File gives both banks at power-up. Bit-accurate model:
 // models/tactile_depth/chip/common/td_banked_table.py.
+//
+// Parity 1: each word is stored, and comes in File, with its parity on top. `flipped` is high two cycles after a
+// read_word of which an odd number of bits has flipped.
 
 `default_nettype none
 
@@ -17,7 +20,9 @@ module td_banked_table #(
   parameter int Depth = 256,
   parameter int Style = 1,  // of both memories, see td_ram.sv
   parameter     File  = "",
-  localparam int AddressWidth = $clog2(Depth)
+  parameter int Parity = 0,
+  localparam int AddressWidth = $clog2(Depth),
+  localparam int StoredWidth  = Width + Parity
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -34,28 +39,44 @@ module td_banked_table #(
   input  wire  [Width-1:0]        free_write_word,
   input  wire                     free_read,
   input  wire  [AddressWidth-1:0] free_read_address,
-  output logic [Width-1:0]        free_word
+  output logic [Width-1:0]        free_word,
+  output logic                    flipped
 );
 
   logic bank, named, used;  // in use; named for the frame that comes; in use in this cycle
-  logic [1:0][Width-1:0] words;
+  logic [1:0][StoredWidth-1:0] words;
+  logic [StoredWidth-1:0] word_in_use;
   assign used = (en & change) ? named : bank;
   assign table_in_use = bank;
-  assign read_word = words[bank];
-  assign free_word = words[~bank];
+  assign word_in_use = words[bank];
+  assign read_word = word_in_use[Width-1:0];
+  assign free_word = Width'(words[~bank]);
   always_ff @(posedge clk) begin
     if (rst || (en && frame_start)) named <= table_bank;
     bank <= rst ? table_bank : used;
   end
 
+  logic [StoredWidth-1:0] write_word;
+  if (Parity == 0) begin : g_plain
+    assign write_word = free_write_word;
+    assign flipped = 1'b0;
+  end else begin : g_parity
+    assign write_word = {^free_write_word, free_write_word};
+    logic [StoredWidth-1:0] checked;  // behind a block memory a tree of gates comes too late
+    always_ff @(posedge clk) begin
+      checked <= word_in_use;
+      flipped <= ^checked;
+    end
+  end
+
   for (genvar b = 0; b < 2; b++) begin : g_bank
     logic in_use;
     assign in_use = used == 1'(b);
-    td_ram #(.Width(Width), .Depth(Depth), .Style(Style), .File(File)) u_ram (
+    td_ram #(.Width(StoredWidth), .Depth(Depth), .Style(Style), .File(File)) u_ram (
       .clk,
       .write_en     (free_write & bank != 1'(b)),
       .write_address(free_write_address),
-      .write_data   (free_write_word),
+      .write_data   (write_word),
       .read_en      (in_use ? en & read : free_read),
       .read_address (in_use ? read_address : free_read_address),
       .read_data    (words[b])

@@ -9,13 +9,15 @@
 module td_delay_line #(
   parameter int Width = 54,
   parameter int Delay = 64,
-  parameter int Style = 3  // of a memory, 0, 1 or 3: see td_ram.sv
+  parameter int Style = 3,  // of a memory, 0, 1 or 3: see td_ram.sv
+  parameter int Parity = 0  // of a memory, see td_parity_ram.sv
 ) (
   input  wire              clk,
   input  wire              rst,
   input  wire              en,
   input  wire  [Width-1:0] in,  // a word of any format
-  output logic [Width-1:0] out
+  output logic [Width-1:0] out,
+  output logic             flipped
 );
 
   localparam int LongestShift = 4;
@@ -28,6 +30,7 @@ module td_delay_line #(
       always_ff @(posedge clk) if (en) taps <= {taps[Delay-2:0], in};
     end
     assign out = taps[Delay-1];
+    assign flipped = 1'b0;
   end else begin : g_memory
     // The word read now leaves the read register one cycle later: it is the one written Depth - 1 cycles ago. A block
     // memory is slow, so a register is behind it.
@@ -36,22 +39,13 @@ module td_delay_line #(
     localparam int AddressWidth = $clog2(Depth);
     logic [AddressWidth-1:0] pointer;
     logic [AddressWidth-1:0] pointer_next;
-    logic [Width-1:0] word;
     assign pointer_next = (pointer == AddressWidth'(Depth - 1)) ? '0 : pointer + AddressWidth'(1);
-    td_ram #(.Width(Width), .Depth(Depth), .Style(Block ? 1 : 0)) u_ram (
-      .clk          (clk),
-      .write_en     (en),
-      .write_address(pointer),
-      .write_data   (in),
-      .read_en      (en),
-      .read_address (pointer_next),
-      .read_data    (word)
+    td_parity_ram #(
+      .Width(Width), .Depth(Depth), .Style(Block ? 1 : 0), .Latency(Block ? 2 : 1), .Parity(Parity)
+    ) u_ram (
+      .clk, .en, .write_en(en), .write_address(pointer), .write_data(in), .read_en(en), .read_address(pointer_next),
+      .read_data(out), .flipped
     );
-    if (Block) begin : g_register
-      always_ff @(posedge clk) if (en) out <= word;
-    end else begin : g_straight
-      assign out = word;
-    end
     always_ff @(posedge clk) begin
       if (en) pointer <= pointer_next;
       if (rst) pointer <= '0;

@@ -28,6 +28,7 @@ module td_node_map
   parameter int DataWidth = 24,
   parameter int Select    = 0,   // number of the table in TABLE_SELECT
   parameter     Name      = "nodes",
+  parameter int Parity    = 0,   // 1: a parity bit in each word of a memory
   localparam int Side = side(Lanes, BlockLog2),  // nodes side by side
   localparam int Depth = nodes(Rows, Columns, BlockLog2) / Side,
   localparam int NodeWidth = $clog2(Depth)
@@ -51,7 +52,8 @@ module td_node_map
   output logic                            out_valid,
   output logic [DataWidth-1:0]            out_data,
   output logic [Lanes*Channels*Width-1:0] out_words,
-  output logic                            active               // a beat is inside
+  output logic                            active,              // a beat is inside
+  output logic                            flipped              // a word that was read has a flipped bit
 );
 
   localparam int LanesLog2 = $clog2(Lanes), RunLog2 = LanesLog2 < BlockLog2 - 1 ? LanesLog2 : BlockLog2 - 1;
@@ -67,7 +69,12 @@ module td_node_map
   localparam int WeightBits = BlockLog2 + 1;      // 2b is 2^WeightBits
   localparam int SumWidth = Width + WeightBits, ScaledWidth = SumWidth + WeightBits;
 
-  td_delay_line #(.Width(DataWidth), .Delay(Latency)) u_delay (.clk, .rst, .en, .in(in_data), .out(out_data));
+  logic delay_flipped;
+  logic [Side*Channels-1:0][Tables-1:0] flips;
+  assign flipped = delay_flipped | (flips != '0);
+  td_delay_line #(.Width(DataWidth), .Delay(Latency), .Parity(Parity)) u_delay (
+    .clk, .rst, .en, .in(in_data), .out(out_data), .flipped(delay_flipped)
+  );
 
   // Beat of the row, and the rows of the nodes above and below the pixels with the phase between them: both are the
   // same row above the first node's centre and below the last node's.
@@ -128,14 +135,16 @@ module td_node_map
   for (genvar n = 0; n < Side * Channels; n++) begin : g_node
     logic [Tables-1:0][Width-1:0] read_words, free_words;
     for (genvar t = 0; t < Tables; t++) begin : g_table
-      td_banked_table #(.Width(Width), .Depth(Depth), .File({Name, "_", "0" + 8'(n), ".hex"})) u_words (
+      td_banked_table #(
+        .Width(Width), .Depth(Depth), .File({Name, "_", "0" + 8'(n), ".hex"}), .Parity(Parity)
+      ) u_words (
         .clk, .rst, .en, .table_bank, .table_in_use(in_use[n][t]), .frame_start(in_valid & in_frame_start),
         .change(frame_start_q[Tables-1]), .read(reads), .read_address(address[t]), .read_word(read_words[t]),
         .free_write(capture_write | (table_write & entry == (EntryLog2 + 1)'(n))),
         .free_write_address(capture_write ? capture_write_node : table_node),
         .free_write_word(capture_write ? capture_words[n*Width+:Width] : table_word),
         .free_read(capture_read | table_read), .free_read_address(capture_read ? capture_read_node : table_node),
-        .free_word(free_words[t])
+        .free_word(free_words[t]), .flipped(flips[n][t])
       );
     end
     assign capture_read_words[n*Width+:Width] = free_words[0];
@@ -230,6 +239,8 @@ module td_node_map
     end
     if (rst) {valid_q, frame_start_q, start_q, segment_q, begins_q} <= '0;
   end
+
+  // Refused.
 
   if (Columns != 1 << $clog2(Columns) || Lanes != 1 << LanesLog2 || (Side > 1 && Channels != 1 << $clog2(Channels)))
   begin : g_refused_0

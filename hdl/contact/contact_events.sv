@@ -12,10 +12,11 @@
 // Stream in: depth codes as they leave (valid and ready together), Lanes of them in a beat, raster order or,
 // BottomFirst, bottom row first; they are never held back, and gaps change nothing. A frame that begins inside another
 // begins afresh. Settings and in_time are taken with a frame's first beat, in_flags with its last. From the last beat
-// of a frame to that of the next lie at least Latency cycles. Stream out: the record of each frame,
-// docs/generated/registers.md, as a packet. Latency: the record is in its register, until the next, Latency =
-// 2 log2(larger side) + 2 log2(Lanes) + 22 cycles after the last beat, touching 3 cycles after it. Bit-accurate model:
-// models/tactile_depth/chip/contact/contact_events.py.
+// of a frame to that of the next lie at least Latency cycles. in_flipped and in_residual are taken as a
+// record enters its register.
+// Stream out: the record of each frame, docs/generated/registers.md, as a packet. Latency: the record is in its
+// register, until the next, Latency = 2 log2(larger side) + 2 log2(Lanes) + 22 cycles after the last beat, touching 3
+// cycles after it. Bit-accurate model: models/tactile_depth/chip/contact/contact_events.py.
 
 `default_nettype none
 
@@ -27,6 +28,7 @@ module contact_events
   parameter int Columns     = 128,
   parameter int Lanes       = 1,  // depths in a beat
   parameter int BottomFirst = 0,  // 1: the bottom row comes first
+  parameter int Parity      = 0,  // 1: a parity bit in each word of the delay
   localparam int Words = td_register_map_pkg::RecordWords
 ) (
   input  wire                     clk,
@@ -36,12 +38,15 @@ module contact_events
   input  wire  [Lanes*Width-1:0]  in_data,         // depth codes, signed
   input  wire  [Lanes-1:0]        in_above,        // depths of the beat above the frame's on_threshold
   input  wire  [31:0]             in_time,         // of the frame that begins, cycles
-  input  wire frame_flags_t       in_flags,        // of the frame that ends
+  input  wire frame_flags_t       in_flags,        // of the frame that ends, without those below
+  input  wire                     in_flipped,      // the record is of a frame that a flipped bit may have damaged
   input  wire  signed [Width:0]   on_threshold,    // depth code, or one beyond them
   input  wire  signed [Width:0]   off_threshold,   // the same
   input  wire  signed [Width:0]   area_threshold,  // the same
   input  wire  [31:0]             minimum_area,    // pixels above
   input  wire  [7:0]              debounce,        // frames
+  input  wire                     in_residual,     // the residual of the frame of the record is beyond its bound
+  output logic                    flipped,         // a word that was read has a flipped bit
   output logic                    touching,
   output logic                    record_valid,    // the record is new in this cycle
   output logic [32*Words-1:0]     record,
@@ -66,7 +71,7 @@ module contact_events
   logic [7:0] frames_needed, last_frames_needed;
   assign off = in_position.frame_start ? off_threshold : off_q;
 
-  frame_flags_t last_flags;
+  frame_flags_t last_flags, record_flags;
   logic touching_next, count_valid, peak_valid, any_above, last_any, began, ended;
   logic [CountWidth-1:0] count;
   logic signed [Width-1:0] peak, last_peak;
@@ -102,8 +107,8 @@ module contact_events
   logic [Lanes*Width-1:0] late_data;
   logic late_valid, sums_valid, sums_held;
   contact_sums_t sums;
-  td_delay_line #(.Width(PositionBits + Lanes * Width), .Delay(Delay)) u_delay (
-    .clk, .rst, .en(1'b1), .in({in_position, in_data}), .out({late_position, late_data})
+  td_delay_line #(.Width(PositionBits + Lanes * Width), .Delay(Delay), .Parity(Parity)) u_delay (
+    .clk, .rst, .en(1'b1), .in({in_position, in_data}), .out({late_position, late_data}), .flipped
   );
   assign late_valid = valid_delayed[Delay-1];
   contact_sums #(
@@ -133,9 +138,14 @@ module contact_events
   assign least = no_area ? peak_position : last_least;
   assign greatest = no_area ? peak_position : last_greatest;
 
+  always_comb begin
+    record_flags = last_flags;
+    record_flags.flipped = in_flipped;
+    record_flags.residual = in_residual;
+  end
   record_packets #(.Words(Words)) u_packets (
     .clk, .rst, .new_valid(centroid_valid),
-    .new_record({last_flags, middle, sums.weight, greatest, least, sums.area, 32'(last_level), peak_position,
+    .new_record({record_flags, middle, sums.weight, greatest, least, sums.area, 32'(last_level), peak_position,
       32'(last_peak), last_time, frame, 29'd0, ended, began, touching}),
     .record_valid, .record, .record_lost, .m_event_tdata, .m_event_tvalid, .m_event_tready, .m_event_tlast
   );

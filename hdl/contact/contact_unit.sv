@@ -6,6 +6,8 @@
 //                 |              |
 //                 |              v above
 //                 \-------> contact_events --> m_event, record
+//                                ^
+//    flipped bits of memories -> flip_marks
 //
 // Stream in: depth codes of whole frames, Lanes neighbours in a beat, under the enable, which this unit makes: low
 // while the output is full. Streams out: AXI4-Stream, each depth sign-extended to whole bytes, the first in the lowest
@@ -25,6 +27,8 @@ module contact_unit
   localparam int DataWidth   = value(Config, DataWidthField),
   localparam int Lanes       = value(Config, LanesField),  // depths in a beat
   localparam int Tridiagonal = value(Config, TridiagonalField),  // 1: the bottom row comes first
+  localparam int FrameLatency = value(Config, FrameLatencyField),
+  localparam int Parity      = value(Config, ParityField),  // of the memories
   localparam int DepthBits = 8 * ((DataWidth + 7) / 8)  // of a depth on m_axis
 ) (
   input  wire                         clk,
@@ -38,6 +42,8 @@ module contact_unit
   output logic                        stalled,              // the sink holds the pipeline up, or has cost a frame
   output logic                        record_valid,         // the record is new in this cycle
   output logic                        record_lost,
+  output logic                        flip_found,           // such a word was read, and counts
+  output logic                        residual_found,       // with record_valid: that of its frame is beyond
   output logic                        touching,
   output logic [32*RecordWords-1:0]   record,               // of the last frame
   output logic [31:0]                 first_depth_latency,  // from a frame's first pixel to its first depth value
@@ -48,6 +54,8 @@ module contact_unit
   input  wire  [Lanes*DataWidth-1:0]  depth_data,  // depth codes, signed
   input  wire  [31:0]                 depth_time,
   input  wire frame_flags_t           depth_flags,  // counts with the last beat of a frame
+  input  wire  [2:0]                  flipped,      // a word that was read from a memory has a flipped bit
+  input  wire                         beyond,       // the residual of the last frame is beyond its bound
 
   output logic [Lanes*DepthBits-1:0]  m_axis_tdata,  // the same, each sign-extended to whole bytes
   output logic                        m_axis_tvalid,
@@ -97,13 +105,26 @@ module contact_unit
 
   logic [31:0] tap_time;
   frame_flags_t tap_flags;
+  logic record_marked, events_flipped;
   contact_events #(
-    .Width(DataWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(Tridiagonal)
+    .Width(DataWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(Tridiagonal), .Parity(Parity)
   ) u_events (
     .clk, .rst, .in_valid(tap_valid), .in_position(tap_position), .in_data(tap_data), .in_above(tap_above),
-    .in_time(tap_time), .in_flags(tap_flags), .on_threshold, .off_threshold, .area_threshold,
-    .minimum_area(settings.minimum_area), .debounce(settings.debounce), .touching, .record_valid, .record, .record_lost,
-    .m_event_tdata, .m_event_tvalid, .m_event_tready, .m_event_tlast
+    .in_time(tap_time), .in_flags(tap_flags), .in_flipped(record_marked), .in_residual(beyond),
+    .flipped(events_flipped), .on_threshold, .off_threshold, .area_threshold, .minimum_area(settings.minimum_area),
+    .debounce(settings.debounce), .touching, .record_valid, .record, .record_lost, .m_event_tdata, .m_event_tvalid,
+    .m_event_tready, .m_event_tlast
+  );
+
+  // A frame leaves its record at most InFlight records after a clock in which any part of it was in a memory.
+
+  localparam int Pixels = Rows * Columns;
+  localparam int InFlight = (FrameLatency + Pixels / Lanes + 128) / Pixels + 2;
+  assign residual_found = record_valid & beyond;
+  logic any_flipped;
+  always_ff @(posedge clk) any_flipped <= events_flipped || flipped != '0;
+  flip_marks #(.Records(InFlight)) u_flips (
+    .clk, .rst, .flipped(any_flipped), .record_valid, .marked(record_marked), .found(flip_found)
   );
 
   // A frame that is dropped outputs no first depth value, so its time is not waited for.

@@ -25,6 +25,7 @@ module depth_unit
   localparam int DataWidth    = value(Config, DataWidthField),
   localparam int Lanes        = value(Config, LanesField),  // depths in a beat
   localparam int FrameLatency = value(Config, FrameLatencyField),  // pixel_frame_end to the first word of the solver
+  localparam int Parity       = value(Config, ParityField),  // of the memories
   localparam int ZeroOffset   = value(Config, ZeroOffsetField),
   localparam int BlockLog2    = value(Config, BlockLog2Field)  // ZeroOffset
 ) (
@@ -40,6 +41,7 @@ module depth_unit
   output capture_status_t             capture_status,
   output logic [$clog2(Lanes):0]      saturations,  // depths clipped in a cycle
   output logic                        out_of_step,  // a frame does not leave the solver when it is due
+  output logic                        flipped,      // a word that was read from a memory has a flipped bit
   output logic                        busy,         // a frame is in the solver, or here
 
   input  wire                         pixel_frame_start,
@@ -109,27 +111,29 @@ module depth_unit
   if (ZeroOffset != 0) begin : g_zero_offset
     localparam int Side = side(Lanes, BlockLog2);  // nodes that are captured at once
     localparam int NodeWidth = $clog2(nodes(Rows, Columns, BlockLog2) / Side);
-    logic in_use, zero_active, zero_write, captures, capture_start, capture_end;
+    logic zero_flipped, sums_flipped, in_use, zero_active, zero_write, captures, capture_start, capture_end;
     logic [Lanes*DataWidth-1:0] capture_data;
     logic [NodeWidth-1:0] zero_write_node;
     logic [Side*DataWidth-1:0] zero_written;
     zero_offset #(
       .TableFolder(TableFolder), .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(DataWidth),
-      .Lanes(Lanes)
+      .Lanes(Lanes), .Parity(Parity)
     ) u_zero_offset (
       .clk, .rst, .en, .table_command, .table_answer, .table_bank(rst ? bank : tag_bank), .table_in_use(in_use),
       .capture_write(zero_write), .capture_write_node(zero_write_node), .capture_zero(zero_written),
       .in_valid(whole_valid), .in_position(whole_position), .in_data(whole_data),
-      .out_valid(leaves), .out_position(depth_position), .out_data(depth_data), .active(zero_active), .saturations
+      .out_valid(leaves), .out_position(depth_position), .out_data(depth_data), .active(zero_active), .saturations,
+      .flipped(zero_flipped)
     );
     zero_capture #(
       .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(DataWidth), .MaxLog2(ZeroLog2),
-      .Lanes(Lanes)
+      .Lanes(Lanes), .Parity(Parity)
     ) u_capture (
       .clk, .rst, .en(1'b1), .request(capture_command.request), .log2_frames(capture_command.log2_frames),
       .busy(capture_status.busy), .done(capture_status.done), .captured(capture_status.captured),
       .in_valid(captures), .in_frame_start(capture_start), .in_frame_end(capture_end), .in_data(capture_data),
-      .map_write(zero_write), .map_write_node(zero_write_node), .map_write_zero(zero_written)
+      .map_write(zero_write), .map_write_node(zero_write_node), .map_write_zero(zero_written),
+      .flipped(sums_flipped)
     );
     if (Lanes == 1) begin : g_depth  // behind long paths; several lanes have a register behind their first sums
       always_ff @(posedge clk) begin
@@ -144,6 +148,7 @@ module depth_unit
     end
     assign table_in_use = 4'(in_use) << TableSelectZero;
     assign busy = tags_held | active | zero_active;
+    assign flipped = zero_flipped | sums_flipped;
     // `tested` is of the frame that leaves, or leaves next: while none leaves, of that which came in last.
     logic depth_test, leaving;
     always_ff @(posedge clk) begin
@@ -158,7 +163,7 @@ module depth_unit
     assign depth_position = whole_position;
     assign depth_data = whole_data;
     assign depth_time = tag_time;
-    assign {capture_status, table_answer, table_in_use, saturations} = '0;
+    assign {capture_status, table_answer, table_in_use, saturations, flipped} = '0;
     assign busy = tags_held | active;
   end
 

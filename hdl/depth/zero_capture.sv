@@ -24,6 +24,7 @@ module zero_capture
   parameter int Width     = 24,
   parameter int MaxLog2   = 8,   // of frames
   parameter int Lanes     = 1,   // depths in a beat
+  parameter int Parity    = 0,   // 1: a parity bit in each word of the memory
   localparam int Side = side(Lanes, BlockLog2),  // nodes written at once
   localparam int Nodes = nodes(Rows, Columns, BlockLog2) / Side,
   localparam int NodeWidth = $clog2(Nodes)
@@ -44,7 +45,8 @@ module zero_capture
 
   output logic                    map_write,
   output logic [NodeWidth-1:0]    map_write_node,   // of Side nodes
-  output logic [Side*Width-1:0]   map_write_zero    // depth codes, signed
+  output logic [Side*Width-1:0]   map_write_zero,   // depth codes, signed
+  output logic                    flipped           // a word that was read has a flipped bit
 );
 
   localparam int Drop = 2 * BlockLog2 + MaxLog2;
@@ -98,8 +100,12 @@ module zero_capture
     .read_en, .read_block(read_node), .read_sums(sums_read),
     .write_en, .write_block(write_node), .write_sums(sums), .write_complete(complete)
   );
-  td_ram #(.Width(Side * SumWidth), .Depth(Nodes), .Style(1)) u_sums (
-    .clk, .write_en, .write_address(write_node), .write_data(sums),
+  logic last_flipped;  // the word that was read last; without a read it is unknown
+  logic [1:0] read_q;
+  assign flipped = last_flipped & read_q[1];
+  always_ff @(posedge clk) read_q <= rst ? '0 : {read_q[0], read_en};
+  td_parity_ram #(.Width(Side * SumWidth), .Depth(Nodes), .Style(1), .Parity(Parity)) u_sums (
+    .clk, .en(1'b1), .flipped(last_flipped), .write_en, .write_address(write_node), .write_data(sums),
     .read_en, .read_address(read_node), .read_data(sums_read)
   );
 

@@ -22,6 +22,7 @@ module zero_offset
   parameter int BlockLog2 = 3,
   parameter int Width     = 24,
   parameter int Lanes     = 1,   // depths in a beat
+  parameter int Parity    = 0,   // 1: a parity bit in each word of a memory
   localparam int Side = side(Lanes, BlockLog2),  // nodes that the capture writes at once
   localparam int NodeWidth = $clog2(nodes(Rows, Columns, BlockLog2) / Side)
 ) (
@@ -45,7 +46,8 @@ module zero_offset
   output depth_position_t                 out_position,
   output logic [Lanes*Width-1:0]          out_data,            // depth codes, signed
   output logic                            active,              // a frame is inside
-  output logic [$clog2(Lanes):0]          saturations          // clip count, delayed
+  output logic [$clog2(Lanes):0]          saturations,         // clip count, delayed
+  output logic                            flipped              // a word that was read has a flipped bit
 );
 
   logic zero_valid, map_active;
@@ -53,13 +55,15 @@ module zero_offset
   logic [Lanes-1:0][Width-1:0] depths, zero_words, rounded;
   td_node_map #(
     .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(Width), .Signed(1), .Lanes(Lanes),
-    .DataWidth(3 + Lanes * Width), .Select(TableSelectZero), .Name({TableFolder, "zero"})
+    .DataWidth(3 + Lanes * Width), .Select(TableSelectZero), .Name({TableFolder, "zero"}),
+    .Parity(Parity)
   ) u_map (
     .clk, .rst, .en, .table_command, .table_answer, .table_bank, .table_in_use,
     .capture_write, .capture_write_node, .capture_words(capture_zero),
     .capture_read(1'b0), .capture_read_node(capture_write_node), .capture_read_words(),
     .in_valid, .in_frame_start(in_position.frame_start), .in_data({in_position, in_data}),
-    .out_valid(zero_valid), .out_data({zero_position, depths}), .out_words(zero_words), .active(map_active)
+    .out_valid(zero_valid), .out_data({zero_position, depths}), .out_words(zero_words), .active(map_active),
+    .flipped
   );
 
   logic [Lanes-1:0] clipped;

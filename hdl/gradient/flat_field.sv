@@ -27,6 +27,7 @@ module flat_field
   parameter int Offset    = 0,  // even: it is subtracted before rounding to even
   parameter int OutWidth  = 8,
   parameter int Flat      = 128,
+  parameter int Parity    = 0,  // 1: a parity bit in each word of a memory
   localparam int NodeWidth = $clog2(nodes(Rows, Columns, BlockLog2))
 ) (
   input  wire                    clk,
@@ -55,7 +56,8 @@ module flat_field
   output logic [OutWidth-1:0]    out_green,
   output logic [OutWidth-1:0]    out_blue,
   output logic                   dark,
-  output logic [1:0]             saturations  // clip count, delayed
+  output logic [1:0]             saturations,  // clip count, delayed
+  output logic                   flipped      // a word that was read has a flipped bit
 );
 
   localparam int ToOut = 2;  // stages between the gain and the output
@@ -75,13 +77,13 @@ module flat_field
   assign dim_in = red < level & green < level & blue < level;
   td_node_map #(
     .Name({TableFolder, "gain"}), .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth),
-    .Channels(3), .DataWidth(29), .Select(TableSelectReference)
+    .Channels(3), .DataWidth(29), .Select(TableSelectReference), .Parity(Parity)
   ) u_map (
     .clk, .rst, .en, .table_command, .table_answer, .table_bank, .table_in_use,
     .capture_write, .capture_write_node, .capture_words(capture_gains),
     .capture_read, .capture_read_node, .capture_read_words(capture_read_gains),
     .in_valid, .in_frame_start(frame_start), .in_data({in_position, dim_in, blue, green, red}),
-    .out_valid(gain_valid), .out_data({gain_position, dim, colours}), .out_words(gains), .active()
+    .out_valid(gain_valid), .out_data({gain_position, dim, colours}), .out_words(gains), .active(), .flipped
   );
 
   logic dead;

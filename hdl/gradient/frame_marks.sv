@@ -98,7 +98,8 @@ module frame_marks
   end
 
   assign out_flags.colours_clipped = |last_clipped;
-  assign {out_flags.others, out_flags.zero_clipped, out_flags.depth_clipped} = '0;
+  assign {out_flags.others, out_flags.residual, out_flags.flipped} = '0;
+  assign {out_flags.zero_clipped, out_flags.depth_clipped} = '0;
   assign out_flags.light_moves = moves;
   assign out_flags.resumed = resumed;
   assign {out_flags.light_gain_blue, out_flags.light_gain_green, out_flags.light_gain_red} = gains;

@@ -17,6 +17,7 @@ module gradient_lookup
   parameter int Width          = 21,  // of a slope; its fraction bits are those of the table
   parameter int BitsPerChannel = 4,
   parameter     File           = "gradient.hex",  // words {gy, gx}
+  parameter int Parity         = 0,  // 1: a parity bit in each word
   localparam int IndexWidth = 3 * BitsPerChannel
 ) (
   input  wire                     clk,
@@ -32,7 +33,8 @@ module gradient_lookup
   output logic                    out_valid,
   output position_t               out_position,
   output logic signed [Width-1:0] out_gx,         // slope code
-  output logic signed [Width-1:0] out_gy          // slope code
+  output logic signed [Width-1:0] out_gy,         // slope code
+  output logic                    flipped         // a word that was read has a flipped bit
 );
 
   logic [IndexWidth-1:0] index, index_q;
@@ -53,8 +55,8 @@ module gradient_lookup
   logic [2:0] valid_q;
   position_t [2:0] position_q;
   logic [2*Width-1:0] word, word_q;
-  td_banked_table #(.Width(2 * Width), .Depth(1 << IndexWidth), .File(File)) u_table (
-    .clk, .rst, .en, .table_bank, .table_in_use,
+  td_banked_table #(.Width(2 * Width), .Depth(1 << IndexWidth), .File(File), .Parity(Parity)) u_table (
+    .clk, .rst, .en, .table_bank, .table_in_use, .flipped,
     .frame_start(in_valid & in_position.first_row & in_position.first_column),
     .change(valid_q[0] & position_q[0].first_row & position_q[0].first_column),
     .read(valid_q[0]), .read_address(index_q), .read_word(word),

@@ -24,6 +24,7 @@ module gradient_unit
   localparam int Columns        = value(Config, ColumnsField),
   localparam int GradientWidth  = value(Config, GradientWidthField),
   localparam int BitsPerChannel = value(Config, BitsPerChannelField),  // of a colour that index the table
+  localparam int Parity         = value(Config, ParityField),  // of the memories
   localparam int FlatField      = value(Config, FlatFieldField),
   localparam int Polynomial     = value(Config, PolynomialField),  // 1 needs FlatField
   localparam int Corrections    = value(Config, CorrectionsField),  // 1 needs Polynomial
@@ -52,6 +53,7 @@ module gradient_unit
   input  wire light_command_t             light_command,
   output logic [2:0][LightGainWidth-1:0]  light_gains,  // of red, green, blue from the lowest; 0 without LightGains
   output logic [3:0]                      saturations,  // clip count, delayed
+  output logic                            flipped,      // a word that was read has a flipped bit
 
   input  wire                             pixel_valid,
   input  wire  [23:0]                     pixel_data,  // R in 23:16, B in 15:8, G in 7:0
@@ -81,7 +83,9 @@ module gradient_unit
   localparam int ColourWidth = Polynomial != 0 ? DeviationWidth : CodeWidth;
   logic [ColourWidth-1:0] red, green, blue;
   logic [1:0] ratio_saturations, light_saturations, slope_saturations;
+  logic gains_flipped, correction_flipped, slope_flipped;
   always_ff @(posedge clk) begin
+    flipped <= gains_flipped | correction_flipped | slope_flipped;
     saturations <= rst ? '0 : 4'(ratio_saturations) + 4'(light_saturations) + 4'(slope_saturations);
   end
   if (FlatField != 0) begin : g_flat_field
@@ -96,7 +100,7 @@ module gradient_unit
       .TableFolder(TableFolder),
       .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .GainWidth(GainWidth), .Drop(ColourDrop),
       .Offset(Polynomial != 0 && LightGains == 0 ? 1 << DeviationFraction : 0), .OutWidth(RelativeWidth),
-      .Flat(Polynomial != 0 ? 0 : FlatCode)
+      .Flat(Polynomial != 0 ? 0 : FlatCode), .Parity(Parity)
     ) u_flat_field (
       .clk, .rst, .en, .dark_level,
       .table_command, .table_answer(reference_answer), .table_bank(table_bank[TableSelectReference]),
@@ -104,7 +108,7 @@ module gradient_unit
       .capture_read, .capture_read_node, .capture_read_gains,
       .in_valid(pixel_valid), .in_pixel(pixel_data), .in_position(pixel_position),
       .out_valid(relative_valid), .out_position(relative_position), .out_red(relative[0]), .out_green(relative[1]),
-      .out_blue(relative[2]), .dark, .saturations(ratio_saturations)
+      .out_blue(relative[2]), .dark, .saturations(ratio_saturations), .flipped(gains_flipped)
     );
     if (LightGains != 0) begin : g_light
       light_gains #(
@@ -140,7 +144,7 @@ module gradient_unit
     assign colour_position = pixel_position;
     assign relative_ends = pixel_valid & pixel_position.last_row & pixel_position.last_column;
     assign {dark, ratio_saturations, light_saturations, light_gains, light_used, light_moves} = '0;
-    assign {capture_status, reference_in_use, reference_answer} = '0;
+    assign {capture_status, reference_in_use, reference_answer, gains_flipped} = '0;
   end
 
   // Their slopes.
@@ -160,38 +164,41 @@ module gradient_unit
         assign codes[colour] = place[ColourWidth:DeviationFraction+1] != '0 ? '1 : place[DeviationFraction-:8];
       end
       gradient_lookup #(
-        .File({TableFolder, "gradient.hex"}), .Width(CorrectionWidth), .BitsPerChannel(BitsPerChannel)
+        .File({TableFolder, "gradient.hex"}), .Width(CorrectionWidth), .BitsPerChannel(BitsPerChannel),
+        .Parity(Parity)
       ) u_corrections (
         .clk, .rst, .en, .table_command, .table_answer(gradient_answer), .table_bank(table_bank[TableSelectGradient]),
         .table_in_use(gradient_in_use),
         .in_valid(colour_valid), .in_pixel({codes[2], codes[0], codes[1]}), .in_position(colour_position),
-        .out_valid(), .out_position(), .out_gx(correction_gx), .out_gy(correction_gy)
+        .out_valid(), .out_position(), .out_gx(correction_gx), .out_gy(correction_gy),
+        .flipped(correction_flipped)
       );
     end else begin : g_no_corrections
-      assign {correction_gx, correction_gy, gradient_in_use, gradient_answer} = '0;
+      assign {correction_gx, correction_gy, gradient_in_use, gradient_answer, correction_flipped} = '0;
     end
     polynomial_gradient #(
       .TableFolder(TableFolder), .Width(GradientWidth), .DeviationWidth(ColourWidth), .CoeffWidth(ColourCoeffWidth),
       .WordWidth(PolynomialWidth), .FineBits(FineBits), .CorrectionWidth(CorrectionWidth),
-      .CorrectionUnit(CorrectionUnit), .Drop(SlopeDrop)
+      .CorrectionUnit(CorrectionUnit), .Drop(SlopeDrop), .Parity(Parity)
     ) u_polynomial (
       .clk, .rst, .en, .table_command, .table_answer(coefficients_answer),
       .table_bank(table_bank[TableSelectCoefficients]), .table_in_use(coefficients_in_use),
       .in_valid(colour_valid), .in_position(colour_position), .in_red(red), .in_green(green), .in_blue(blue),
       .correction_gx, .correction_gy,
       .out_valid(slope_valid), .out_position(slope_position), .out_gx(slope_gx), .out_gy(slope_gy),
-      .saturations(slope_saturations)
+      .saturations(slope_saturations), .flipped(slope_flipped)
     );
   end else begin : g_lookup
     gradient_lookup #(
-      .File({TableFolder, "gradient.hex"}), .Width(GradientWidth), .BitsPerChannel(BitsPerChannel)
+      .File({TableFolder, "gradient.hex"}), .Width(GradientWidth), .BitsPerChannel(BitsPerChannel), .Parity(Parity)
     ) u_lookup (
       .clk, .rst, .en, .table_command, .table_answer(gradient_answer), .table_bank(table_bank[TableSelectGradient]),
       .table_in_use(gradient_in_use),
       .in_valid(colour_valid), .in_pixel({red, blue, green}), .in_position(colour_position),
-      .out_valid(slope_valid), .out_position(slope_position), .out_gx(slope_gx), .out_gy(slope_gy)
+      .out_valid(slope_valid), .out_position(slope_position), .out_gx(slope_gx), .out_gy(slope_gy),
+      .flipped(slope_flipped)
     );
-    assign {slope_saturations, coefficients_in_use, coefficients_answer} = '0;
+    assign {slope_saturations, coefficients_in_use, coefficients_answer, correction_flipped} = '0;
   end
 
   frame_marks #(.Width(GradientWidth), .Pixels(Rows * Columns)) u_marks (

@@ -34,6 +34,7 @@ module polynomial_gradient
   parameter int CorrectionWidth = 8,
   parameter int CorrectionUnit  = 1 << 21,
   parameter int Drop            = 9,   // negative: shift left, exact
+  parameter int Parity          = 0,   // 1: a parity bit in each word
   localparam int Terms = 10,
   localparam int Words = 6 * Terms,
   localparam int IndexWidth = $clog2(Words)
@@ -56,7 +57,8 @@ module polynomial_gradient
   output position_t                        out_position,
   output logic signed [Width-1:0]          out_gx,      // slope code, F + G - Drop fraction bits
   output logic signed [Width-1:0]          out_gy,      // the same
-  output logic [1:0]                       saturations  // clip count, delayed
+  output logic [1:0]                       saturations,  // clip count, delayed
+  output logic                             flipped      // a word that was read has a flipped bit
 );
 
   localparam int Colours = 3;
@@ -96,7 +98,7 @@ module polynomial_gradient
   logic table_write, table_read;
   logic [IndexWidth-1:0] table_index;
   logic [WordWidth-1:0] table_word, fetched_word;
-  logic [2*Colours-1:0] in_use;
+  logic [2*Colours-1:0] in_use, flips;
   logic [2*Colours-1:0][WordWidth-1:0] fetched_words;
   td_table_port #(
     .Select(TableSelectCoefficients), .IndexWidth(IndexWidth), .Width(WordWidth), .Signed(1)
@@ -106,6 +108,7 @@ module polynomial_gradient
   );
   assign frame_start = in_valid & in_position.first_row & in_position.first_column;
   assign table_in_use = in_use[2*Colours-1];
+  assign flipped = flips != '0;
   always_comb begin
     fetched_word = '0;
     for (int i = 0; i < 2 * Colours; i++) fetched_word = fetched_word | fetched_words[i];
@@ -157,12 +160,14 @@ module polynomial_gradient
         if (rst) term <= '0;
       end
       td_banked_table #(
-        .Width(WordWidth), .Depth(Terms), .Style(0), .File({TableFolder, "polynomial_", "0" + 8'(Polynomial), ".hex"})
+        .Width(WordWidth), .Depth(Terms), .Style(0), .File({TableFolder, "polynomial_", "0" + 8'(Polynomial), ".hex"}),
+        .Parity(Parity)
       ) u_words (
         .clk, .rst, .en, .table_bank, .table_in_use(in_use[Polynomial]), .frame_start, .change(first_q[colour]),
         .read(1'b1), .read_address(term), .read_word(word),
         .free_write(table_write & own_entry), .free_write_address(offset), .free_write_word(table_word),
-        .free_read(table_read & own_entry), .free_read_address(offset), .free_word
+        .free_read(table_read & own_entry), .free_read_address(offset), .free_word,
+        .flipped(flips[Polynomial])
       );
       always_ff @(posedge clk) fetched <= table_read & own_entry;
       assign fetched_words[Polynomial] = fetched ? free_word : '0;

@@ -15,6 +15,7 @@ module divergence
   parameter int Width   = 21,   // of a slope
   parameter int Columns = 128,
   parameter int Neumann = 0,  // 1: gx of the last column and gy of the last row count as 0
+  parameter int Parity  = 0,  // 1: a parity bit in each word of the line
   localparam int OutWidth = Width + 2
 ) (
   input  wire                        clk,
@@ -26,7 +27,8 @@ module divergence
   input  wire  signed [Width-1:0]    in_gy,            // slope code
   output logic                       out_valid,
   output logic                       out_frame_start,  // the first pixel of a frame
-  output logic signed [OutWidth-1:0] out_data          // with the fraction bits of a slope
+  output logic signed [OutWidth-1:0] out_data,         // with the fraction bits of a slope
+  output logic                       flipped           // a word that was read has a flipped bit
 );
 
   localparam int ColumnWidth = $clog2(Columns);
@@ -39,14 +41,15 @@ module divergence
   logic signed [Width-1:0] gx_q, gy_q, gx_left, gy_above, gx_stored, gy_stored;
 
   // Read while the pixel is taken, written one cycle later, so never the same word at once.
-  td_ram #(.Width(Width), .Depth(Columns), .Style(LineStyle)) u_line (
-    .clk,
+  td_parity_ram #(.Width(Width), .Depth(Columns), .Style(LineStyle), .Parity(Parity)) u_line (
+    .clk, .en,
     .write_en     (en & valid_q),
     .write_address(column_q),
     .write_data   (gy_q),
     .read_en      (en & in_valid),
     .read_address (column),
-    .read_data    (gy_stored)
+    .read_data    (gy_stored),
+    .flipped
   );
   assign gy_above = first_row_q ? '0 : gy_stored;
   assign gx_left = first_column_q ? '0 : gx_stored;

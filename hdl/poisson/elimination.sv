@@ -29,6 +29,7 @@ module elimination #(
   parameter int MomentDrop     = 7,  // Neumann: of the mean
   parameter int MeanReciprocal = 65536,
   parameter int MeanDrop       = 16,
+  parameter int Parity         = 0,  // 1: a parity bit in each word of a memory
   localparam int ClippedWidth = $clog2(4 * Words + 3)
 ) (
   input  wire                       clk,
@@ -41,7 +42,8 @@ module elimination #(
   output logic                      out_frame_start,
   output logic [Words*OutWidth-1:0] out_last,         // d, F - StoreDrop fraction bits
   output logic [Words*OutWidth-1:0] out_ahead,        // e of the row above
-  output logic [ClippedWidth-1:0]   saturations       // clip count, delayed
+  output logic [ClippedWidth-1:0]   saturations,      // clip count, delayed
+  output logic                      flipped           // a word that was read has a flipped bit
 );
 
   localparam int Clocks = Columns / Words;
@@ -59,13 +61,15 @@ module elimination #(
   assign row = in_frame_start ? '0 : row_q;
   assign active = in_start | (position != '0);  // the counter rests at 0: no path leads from in_start to the table
 
+  logic table_flipped, d_flipped, c_flipped;
+  assign flipped = table_flipped | d_flipped | c_flipped;
   logic [Words*CoeffWidth-1:0] coefficients;
   logic [Words*LastShiftWidth-1:0] shifts, shifts_q;
   thomas_table #(
     .TableFolder(TableFolder), .Table("down"), .CoeffWidth(Words * CoeffWidth), .Rows(Rows), .Columns(Clocks),
-    .Words(TableWords), .SettledWidth(SettledWidth), .LastShiftWidth(Words * LastShiftWidth)
+    .Words(TableWords), .SettledWidth(SettledWidth), .LastShiftWidth(Words * LastShiftWidth), .Parity(Parity)
   ) u_table (
-    .clk, .en, .position, .row, .coefficient(coefficients), .shift(shifts)
+    .clk, .en, .position, .row, .coefficient(coefficients), .shift(shifts), .flipped(table_flipped)
   );
 
   // What follows the words down the pipeline.
@@ -89,28 +93,30 @@ module elimination #(
     if (rst) {position, start_q, frame_start_q, active_q, out_start, out_frame_start} <= '0;
   end
 
-  // The row above: d and its c.
+  // The row above: d and its c, behind a register.
   logic [Words*Width-1:0] d, above_d;
   logic [Words*CoeffWidth-1:0] above_c;
   logic [2:0][Words*CoeffWidth-1:0] coefficients_q;
   always_ff @(posedge clk) if (en) coefficients_q <= {coefficients_q[1:0], coefficients};
-  td_ram #(.Width(Words * Width), .Depth(Clocks)) u_d_above (
-    .clk,
+  td_parity_ram #(.Width(Words * Width), .Depth(Clocks), .Latency(2), .Parity(Parity)) u_d_above (
+    .clk, .en,
     .write_en     (en & active_q[ToState-1]),
     .write_address(position_q[ToState-1]),
     .write_data   (d),
     .read_en      (en & active_q[1]),
     .read_address (position_q[1]),
-    .read_data    (above_d)
+    .read_data    (above_d),
+    .flipped      (d_flipped)
   );
-  td_ram #(.Width(Words * CoeffWidth), .Depth(Clocks)) u_c_above (
-    .clk,
+  td_parity_ram #(.Width(Words * CoeffWidth), .Depth(Clocks), .Latency(2), .Parity(Parity)) u_c_above (
+    .clk, .en,
     .write_en     (en & active_q[ToState-1]),
     .write_address(position_q[ToState-1]),
     .write_data   (coefficients_q[2]),
     .read_en      (en & active_q[1]),
     .read_address (position_q[1]),
-    .read_data    (above_c)
+    .read_data    (above_c),
+    .flipped      (c_flipped)
   );
 
   logic [1:0] clipped_mean;
@@ -131,14 +137,14 @@ module elimination #(
   logic [4*Words-1:0] clipped;
   for (genvar word = 0; word < Words; word++) begin : g_word
     // Difference, product, shift, rounding.
-    localparam int AboveClocks = ToState - 2;  // from the read to the sum
+    localparam int AboveClocks = ToState - 3;  // from the register to the sum
     logic [AboveClocks-1:0][Width-1:0] above_q;
     logic [1:0][Width-1:0] data_q;
     logic signed [Width-1:0] above, difference, difference_q, rounded;
     logic signed [ProductWidth-1:0] product;
     logic signed [ShiftedWidth-1:0] shifted;
     logic [3:0] clipped_now;
-    assign above = first_q[3] ? '0 : above_q[0];
+    assign above = first_q[3] ? '0 : above_d[word*Width+:Width];
     td_round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
       .in((Width + 1)'($signed(data_q[1])) - (Width + 1)'(above)), .out(difference), .clipped(clipped_now[0])
     );

@@ -26,6 +26,7 @@ module frame_stack #(
   parameter int Lanes       = 1,  // a power of two up to Columns / 2
   parameter int WordsPerRow = 1,
   parameter int Style       = 1,  // of the memory, hdl/common/td_ram.sv
+  parameter int Parity      = 0,  // 1: a parity bit in each row of a memory
   localparam int Paths = Lanes > 1 ? Lanes / 2 : 1
 ) (
   input  wire                       clk,
@@ -38,7 +39,8 @@ module frame_stack #(
   output logic                      out_start,        // 6 clocks before the first words of a pair
   output logic                      out_frame_start,
   output logic                      out_alone,        // with out_start: the pair is one row
-  output logic [2*Paths*Width-1:0]  out_data          // the lower row in the lower bits
+  output logic [2*Paths*Width-1:0]  out_data,         // the lower row in the lower bits
+  output logic                      flipped           // a word that was read has a flipped bit
 );
 
   localparam int Clocks = Columns / InWords;
@@ -158,12 +160,13 @@ module frame_stack #(
     if (rst) {pair, out_start, out_frame_start, read_start_q, frame_start_q, reads} <= '0;
   end
 
-  logic [1:0] past_q;
-  logic [ServeWidth-1:0] word_serve;  // of the words that are read
+  logic [1:0] past_q, row_flipped, past_flipped;
+  logic [1:0][ServeWidth-1:0] serve_q;  // the upper one of the words behind the register
+  assign flipped = {row_flipped, past_flipped} != '0;
   always_ff @(posedge clk) begin
     if (en) begin
       past_q <= {past_q[0], first_pair};
-      word_serve <= serve;
+      serve_q <= {serve_q[0], serve};
     end
   end
 
@@ -182,9 +185,9 @@ module frame_stack #(
     // The words of the row above, which comes with the row after it.
     logic [AddressWidth-1:0] write_address, read_address;
     logic [RowWords*Width-1:0] words;
-    td_ram #(.Width(RowWords * Width), .Depth(Depth), .Style(Style)) u_ram (
-      .clk, .write_en (en & stores[side]), .write_address(write_address), .write_data (ahead),
-      .read_en (en & reads[side]), .read_address (read_address), .read_data (words)
+    td_parity_ram #(.Width(RowWords * Width), .Depth(Depth), .Style(Style), .Latency(2), .Parity(Parity)) u_ram (
+      .clk, .en, .write_en(en & stores[side]), .write_address, .write_data(ahead), .read_en(en & reads[side]),
+      .read_address, .read_data(words), .flipped(row_flipped[side])
     );
     always_ff @(posedge clk) begin
       if (en) begin
@@ -197,12 +200,13 @@ module frame_stack #(
     end
 
     logic [InWords*Width-1:0] in_words;
-    logic [Paths*Width-1:0] past, lowest, word, word_q;
+    logic [Paths*Width-1:0] past, lowest, word;
     assign in_words = side == 0 ? in_last : in_ahead;
     if (Past) begin : g_past
       assign past = in_words;
+      assign past_flipped[side] = 1'b0;
     end else begin : g_buffer
-      logic [RowWords*Width-1:0] buffered, row_words;
+      logic [RowWords*Width-1:0] row_words;
       logic [BeatWidth-1:0] write_time, read_time;
       logic write_row, reads_row;
       always_ff @(posedge clk) begin
@@ -219,30 +223,26 @@ module frame_stack #(
       end else begin : g_above
         assign row_words = ahead;
       end
-      td_ram #(.Width(RowWords * Width), .Depth(Beats), .Style(0)) u_row (
-        .clk,
+      td_parity_ram #(.Width(RowWords * Width), .Depth(Beats), .Style(0), .Latency(2), .Parity(Parity)) u_row (
+        .clk, .en,
         .write_en     (en & write_row),
         .write_address(write_time),
         .write_data   (row_words),
         .read_en      (en & reads_row),
         .read_address (read_time),
-        .read_data    (buffered)
+        .read_data    (past),
+        .flipped      (past_flipped[side])
       );
-      always_ff @(posedge clk) if (en) past <= buffered;
     end
     assign lowest = words[Paths*Width-1:0];
+    wire [ServeWidth-1:0] word_serve = serve_q[1];
     always_comb begin
       word = lowest;
       for (int later = 1; later < Serve; later++) begin
         if (word_serve == ServeWidth'(Serve - 1 - later)) word = words[later*Width+:Paths*Width];
       end
     end
-    always_ff @(posedge clk) begin
-      if (en) begin
-        word_q <= word;
-        out_data[side*Paths*Width+:Paths*Width] <= past_q[1] ? past : word_q;
-      end
-    end
+    always_ff @(posedge clk) if (en) out_data[side*Paths*Width+:Paths*Width] <= past_q[1] ? past : word;
   end
 
 endmodule

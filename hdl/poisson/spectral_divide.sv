@@ -18,6 +18,7 @@ module spectral_divide #(
   parameter int Columns    = 128,  // a power of two
   parameter int ShiftWidth = 4,
   parameter int Drop       = 23,
+  parameter int Parity     = 0,  // 1: a parity bit in each word of a memory
   parameter     File       = "reciprocal.hex"  // Columns (Columns + 1) / 2 words {S, M}
 ) (
   input  wire                     clk,
@@ -29,7 +30,8 @@ module spectral_divide #(
   output logic                    out_start,
   output logic                    out_frame_start,
   output logic signed [Width-1:0] out_data,        // mode of depth, in the format for which c was computed
-  output logic                    saturations      // clip count, delayed
+  output logic                    saturations,     // clip count, delayed
+  output logic                    flipped          // a word that was read has a flipped bit
 );
 
   localparam int PositionWidth = $clog2(Columns);
@@ -65,11 +67,12 @@ module spectral_divide #(
     end
   end
 
-  logic [ShiftWidth-1:0] shift;
-  logic [1:0][ShiftWidth-1:0] shift_q;
-  logic signed [CoeffWidth-1:0] mantissa, mantissa_q;
-  td_rom #(.Width(ShiftWidth + CoeffWidth), .Depth(Words), .File(File)) u_rom (
-    .clk, .en, .address, .data({shift, mantissa})
+  logic [ShiftWidth-1:0] shift, shift_q;
+  logic signed [CoeffWidth-1:0] mantissa;
+  td_parity_rom #(
+    .Width(ShiftWidth + CoeffWidth), .Depth(Words), .File(File), .Latency(2), .Parity(Parity)
+  ) u_rom (
+    .clk, .en, .address, .data({shift, mantissa}), .flipped
   );
 
   logic signed [Width-1:0] data_q;
@@ -80,7 +83,7 @@ module spectral_divide #(
   logic signed [Width-1:0] rounded;
   logic clipped;
   td_multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
-    .clk, .en, .a(data_q), .b(mantissa_q), .product
+    .clk, .en, .a(data_q), .b(mantissa), .product
   );
   td_round_saturate #(.InWidth(ShiftedWidth), .Drop(Drop), .OutWidth(Width)) u_round (
     .in(shifted), .out(rounded), .clipped
@@ -89,9 +92,8 @@ module spectral_divide #(
   always_ff @(posedge clk) begin
     if (en) begin
       data_q <= in_data;
-      mantissa_q <= mantissa;
-      shift_q <= {shift_q[0], shift};
-      shifted <= ShiftedWidth'(product) <<< shift_q[1];
+      shift_q <= shift;
+      shifted <= ShiftedWidth'(product) <<< shift_q;
       out_data <= rounded;
       start_q <= {start_q[ToStart-2:0], in_start};
       frame_start_q <= {frame_start_q[ToStart-2:0], in_frame_start};

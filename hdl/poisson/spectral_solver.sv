@@ -28,6 +28,7 @@ module spectral_solver
   localparam int DivideDrop       = value(Config, DivideDropField),
   localparam int StoreStyle       = value(Config, StoreStyleField),  // of a frame store, hdl/common/td_ram.sv
   localparam int GradientWidth    = value(Config, GradientWidthField),
+  localparam int Parity           = value(Config, ParityField),  // of the memories
   localparam int InWidth          = GradientWidth + 2,  // of a divergence
   localparam int Width            = DataWidth + GuardBits  // of the arithmetic
 ) (
@@ -40,7 +41,8 @@ module spectral_solver
   output logic                        out_start,
   output logic                        out_frame_start,  // the first burst of a frame
   output logic signed [DataWidth-1:0] out_data,         // depth code
-  output logic [7:0]                  saturations       // clip count, delayed
+  output logic [7:0]                  saturations,      // clip count, delayed
+  output logic                        flipped           // a word that was read has a flipped bit
 );
 
   localparam int Sine = Neumann != 0 ? 0 : 1;
@@ -56,70 +58,78 @@ module spectral_solver
   logic [7:0] clipped_row_forward, clipped_column_forward, clipped_column_inverse, clipped_row_inverse;
   logic clipped_divide;
 
-  row_order #(.Width(InWidth), .Columns(Columns), .Paths(1)) u_row_in (
+  logic [8:0] flips;  // of the cores, in the order of the data
+  row_order #(.Width(InWidth), .Columns(Columns), .Paths(1), .Parity(Parity)) u_row_in (
     .clk, .rst, .en, .in_valid, .in_frame_start, .in_data(in_data),
-    .out_start(row_start), .out_frame_start(row_frame_start), .out_data(row_data)
+    .out_start(row_start), .out_frame_start(row_frame_start), .out_data(row_data), .flipped(flips[0])
   );
 
   dst_forward #(
     .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
-    .InWidth(InWidth), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(RowForwardOut)
+    .InWidth(InWidth), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(RowForwardOut), .Parity(Parity)
   ) u_row_forward (
     .clk, .rst, .en, .in_start(row_start), .in_frame_start(row_frame_start), .in_data(row_data),
     .out_start(row_modes_start), .out_frame_start(row_modes_frame_start), .out_data(row_modes),
-    .saturations(clipped_row_forward)
+    .saturations(clipped_row_forward), .flipped(flips[1])
   );
 
-  transpose #(.Width(DataWidth), .Columns(Columns), .MakhoulIn(0), .MakhoulOut(1), .Style(StoreStyle)) u_to_columns (
+  transpose #(
+    .Width(DataWidth), .Columns(Columns), .MakhoulIn(0), .MakhoulOut(1), .Style(StoreStyle), .Parity(Parity)
+  ) u_to_columns (
     .clk, .rst, .en, .in_start(row_modes_start), .in_frame_start(row_modes_frame_start), .in_data(row_modes),
-    .out_start(column_start), .out_frame_start(column_frame_start), .out_data(column_data)
+    .out_start(column_start), .out_frame_start(column_frame_start), .out_data(column_data), .flipped(flips[2])
   );
 
   dst_forward #(
     .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
-    .InWidth(DataWidth), .InputDrop(ColumnForwardIn), .OutWidth(Width), .OutputDrop(0)
+    .InWidth(DataWidth), .InputDrop(ColumnForwardIn), .OutWidth(Width), .OutputDrop(0), .Parity(Parity)
   ) u_column_forward (
     .clk, .rst, .en, .in_start(column_start), .in_frame_start(column_frame_start), .in_data(column_data),
-    .out_start(modes_start), .out_frame_start(modes_frame_start), .out_data(modes), .saturations(clipped_column_forward)
+    .out_start(modes_start), .out_frame_start(modes_frame_start), .out_data(modes),
+    .saturations(clipped_column_forward), .flipped(flips[3])
   );
 
   spectral_divide #(
     .File({TableFolder, "reciprocal.hex"}), .Width(Width), .CoeffWidth(CoeffWidth), .Columns(Columns),
-    .ShiftWidth(DivideShiftWidth), .Drop(DivideDrop)
+    .ShiftWidth(DivideShiftWidth), .Drop(DivideDrop), .Parity(Parity)
   ) u_divide (
     .clk, .rst, .en, .in_start(modes_start), .in_frame_start(modes_frame_start), .in_data(modes),
-    .out_start(divided_start), .out_frame_start(divided_frame_start), .out_data(divided), .saturations(clipped_divide)
+    .out_start(divided_start), .out_frame_start(divided_frame_start), .out_data(divided), .saturations(clipped_divide),
+    .flipped(flips[4])
   );
 
   dst_inverse #(
     .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
-    .InWidth(Width), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(ColumnInverseOut)
+    .InWidth(Width), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(ColumnInverseOut), .Parity(Parity)
   ) u_column_inverse (
     .clk, .rst, .en, .in_start(divided_start), .in_frame_start(divided_frame_start), .in_alone(1'b1),
     .in_a(divided), .in_b(Width'(0)), .out_start(column_out_start), .out_frame_start(column_out_frame_start),
-    .out_alone(), .out_a(column_out), .out_b(), .saturations(clipped_column_inverse)
+    .out_alone(), .out_a(column_out), .out_b(), .saturations(clipped_column_inverse), .flipped(flips[5])
   );
 
-  transpose #(.Width(DataWidth), .Columns(Columns), .MakhoulIn(1), .MakhoulOut(0), .Style(StoreStyle)) u_to_rows (
+  transpose #(
+    .Width(DataWidth), .Columns(Columns), .MakhoulIn(1), .MakhoulOut(0), .Style(StoreStyle), .Parity(Parity)
+  ) u_to_rows (
     .clk, .rst, .en, .in_start(column_out_start), .in_frame_start(column_out_frame_start), .in_data(column_out),
-    .out_start(depth_row_start), .out_frame_start(depth_row_frame_start), .out_data(depth_row_data)
+    .out_start(depth_row_start), .out_frame_start(depth_row_frame_start), .out_data(depth_row_data), .flipped(flips[6])
   );
 
   dst_inverse #(
     .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
-    .InWidth(DataWidth), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
+    .InWidth(DataWidth), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut), .Parity(Parity)
   ) u_row_inverse (
     .clk, .rst, .en, .in_start(depth_row_start), .in_frame_start(depth_row_frame_start), .in_alone(1'b1),
     .in_a(depth_row_data), .in_b(DataWidth'(0)), .out_start(depth_start), .out_frame_start(depth_frame_start),
-    .out_alone(), .out_a(depth), .out_b(), .saturations(clipped_row_inverse)
+    .out_alone(), .out_a(depth), .out_b(), .saturations(clipped_row_inverse), .flipped(flips[7])
   );
 
-  corner_turn #(.Width(DataWidth), .Size(Columns), .Lanes(1)) u_row_out (
+  corner_turn #(.Width(DataWidth), .Size(Columns), .Lanes(1), .Parity(Parity)) u_row_out (
     .clk, .rst, .en, .in_start(depth_start), .in_frame_start(depth_frame_start), .in_alone(1'b1), .in_a(depth),
-    .in_b(DataWidth'(0)), .out_start, .out_frame_start, .out_data(out_data)
+    .in_b(DataWidth'(0)), .out_start, .out_frame_start, .out_data(out_data), .flipped(flips[8])
   );
 
   always_ff @(posedge clk) begin
+    flipped <= flips != '0;
     saturations <= clipped_row_forward + clipped_column_forward + 8'(clipped_divide) + clipped_column_inverse
         + clipped_row_inverse;
     if (rst) saturations <= '0;

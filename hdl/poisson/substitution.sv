@@ -23,6 +23,7 @@ module substitution #(
   parameter int Drop         = -3,  // fraction bits from e to z; negative: added
   parameter int TableWords   = 717,
   parameter int SettledWidth = 7,
+  parameter int Parity       = 0,  // 1: a parity bit in each word of a memory
   localparam int Words = 2 * Paths,
   localparam int ClippedWidth = $clog2(Words + 1)
 ) (
@@ -37,7 +38,8 @@ module substitution #(
   output logic                    out_frame_start,
   output logic                    out_alone,
   output logic [Words*Width-1:0]  out_data,         // z, F - Drop fraction bits
-  output logic [ClippedWidth-1:0] saturations       // clip count, delayed
+  output logic [ClippedWidth-1:0] saturations,      // clip count, delayed
+  output logic                    flipped           // a word that was read has a flipped bit
 );
 
   localparam int Beats = Columns / Paths;
@@ -58,12 +60,15 @@ module substitution #(
   assign active = in_start | (position != '0);  // the counter rests at 0: no path leads from in_start to the table
   assign pair = !in_start ? pair_q : in_frame_start ? PairWidth'(Pairs - 1) : pair_q - PairWidth'(1);
 
+  logic table_flipped;
+  logic [Words-1:0] below_flipped;
+  assign flipped = table_flipped | (below_flipped != '0);
   logic [Words*CoeffWidth-1:0] coefficients;  // minus the products of two
   thomas_table #(
     .TableFolder(TableFolder), .Table("up"), .CoeffWidth(Words * CoeffWidth), .Rows(Pairs), .Columns(Beats),
-    .Words(TableWords), .SettledWidth(SettledWidth), .HasLastRow(1'b0)
+    .Words(TableWords), .SettledWidth(SettledWidth), .HasLastRow(1'b0), .Parity(Parity)
   ) u_table (
-    .clk, .en, .position, .row(pair), .coefficient(coefficients), .shift()
+    .clk, .en, .position, .row(pair), .coefficient(coefficients), .shift(), .flipped(table_flipped)
   );
 
   logic [ToWords-1:0] start_q, frame_start_q, alone_start_q;
@@ -91,33 +96,34 @@ module substitution #(
 
   logic [Words-1:0] clipped_q;
   for (genvar word = 0; word < Words; word++) begin : g_word
-    logic signed [Width-1:0] below, below_q, rounded;
+    logic signed [Width-1:0] below, rounded;  // below: behind a register
     logic signed [ProductWidth-1:0] product;
     logic signed [SumWidth-1:0] sum;
     logic clipped, none;
     assign none = word >= Paths && alone_q[ToSum-1];
     if (Beats == Direct) begin : g_direct
-      assign below = out_data[word*Width+:Width];
+      assign below_flipped[word] = 1'b0;
+      always_ff @(posedge clk) if (en) below <= out_data[word*Width+:Width];
     end else begin : g_waits
-      td_ram #(.Width(Width), .Depth(Beats)) u_below (
-        .clk,
+      td_parity_ram #(.Width(Width), .Depth(Beats), .Latency(2), .Parity(Parity)) u_below (
+        .clk, .en,
         .write_en     (en & active_q[ToSum]),
         .write_address(position_q[ToSum]),
         .write_data   (out_data[word*Width+:Width]),
         .read_en      (en & active_q[ToBelow-2]),
         .read_address (position_q[ToBelow-2]),
-        .read_data    (below)
+        .read_data    (below),
+        .flipped      (below_flipped[word])
       );
     end
     td_multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
-      .clk, .en, .a(below_q), .b(coefficients[word*CoeffWidth+:CoeffWidth]), .product
+      .clk, .en, .a(below), .b(coefficients[word*CoeffWidth+:CoeffWidth]), .product
     );
     td_round_saturate #(.InWidth(SumWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_round (
       .in(sum), .out(rounded), .clipped
     );
     always_ff @(posedge clk) begin
       if (en) begin
-        below_q <= below;
         sum <= (SumWidth'($signed(in_data[word*InWidth+:InWidth])) <<< Align)
             - (first_q[ToBelow+1] ? '0 : SumWidth'(product));
         out_data[word*Width+:Width] <= none ? '0 : rounded;

@@ -21,6 +21,7 @@ module thomas_table #(
   parameter int SettledWidth   = 7,
   parameter bit HasLastRow     = 1'b1,  // 0: what is read for the last row has no meaning
   parameter int LastShiftWidth = 1,
+  parameter int Parity         = 0,  // 1: a parity bit in each word
   localparam int PositionWidth = $clog2(Columns),
   localparam int RowWidth = $clog2(Rows),
   localparam int AddressWidth = $clog2(Words)
@@ -30,7 +31,8 @@ module thomas_table #(
   input  wire  [PositionWidth-1:0]     position,
   input  wire  [RowWidth-1:0]          row,
   output logic signed [CoeffWidth-1:0] coefficient,  // CoeffWidth - 1 - shift fraction bits
-  output logic [LastShiftWidth-1:0]    shift
+  output logic [LastShiftWidth-1:0]    shift,
+  output logic                         flipped       // a word that was read has a flipped bit
 );
 
   localparam int IndexWidth = AddressWidth + SettledWidth;
@@ -39,12 +41,14 @@ module thomas_table #(
   logic [RowWidth-1:0] row_q;
   logic [AddressWidth-1:0] base, address;
   logic [SettledWidth-1:0] settled;
-  logic signed [CoeffWidth-1:0] inner, inner_q;  // the memory is slow and may be far from the multiplier
-  td_rom #(
+  logic signed [CoeffWidth-1:0] inner;  // behind a register: the memory is slow and may be far from the multiplier
+  logic index_flipped, inner_flipped, last_flipped;
+  assign flipped = index_flipped | inner_flipped | last_flipped;
+  td_parity_rom #(
     .Width(IndexWidth), .Depth(Columns), .Style(IndexWidth * Columns > td_memory_pkg::LateBits ? 1 : 0),
-    .File({TableFolder, Table, "_index.hex"})
+    .File({TableFolder, Table, "_index.hex"}), .Parity(Parity)
   ) u_index (
-    .clk, .en, .address(position), .data({base, settled})
+    .clk, .en, .address(position), .data({base, settled}), .flipped(index_flipped)
   );
 
   always_ff @(posedge clk) begin
@@ -52,34 +56,37 @@ module thomas_table #(
       row_q <= row;
       address <= base
           + (CompareWidth'(row_q) < CompareWidth'(settled) ? AddressWidth'(row_q) : AddressWidth'(settled));
-      inner_q <= inner;
     end
   end
 
-  td_rom #(.Width(CoeffWidth), .Depth(Words), .File({TableFolder, Table, ".hex"})) u_inner (
-    .clk, .en, .address, .data(inner)
+  td_parity_rom #(
+    .Width(CoeffWidth), .Depth(Words), .File({TableFolder, Table, ".hex"}), .Latency(2), .Parity(Parity)
+  ) u_inner (
+    .clk, .en, .address, .data(inner), .flipped(inner_flipped)
   );
 
   if (HasLastRow) begin : g_last_row
     logic [1:0][PositionWidth-1:0] last_position;
     logic [2:0] last_row;  // behind row_q
-    logic signed [CoeffWidth-1:0] last, last_q;
-    logic [LastShiftWidth-1:0] last_shift, last_shift_q;
-    td_rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Columns), .File({TableFolder, Table, "_last.hex"})) u_last (
-      .clk, .en, .address(last_position[1]), .data({last_shift, last})
+    logic signed [CoeffWidth-1:0] last;
+    logic [LastShiftWidth-1:0] last_shift;
+    td_parity_rom #(
+      .Width(LastShiftWidth + CoeffWidth), .Depth(Columns), .File({TableFolder, Table, "_last.hex"}), .Latency(2),
+      .Parity(Parity)
+    ) u_last (
+      .clk, .en, .address(last_position[1]), .data({last_shift, last}), .flipped(last_flipped)
     );
     always_ff @(posedge clk) begin
       if (en) begin
         last_position <= {last_position[0], position};
         last_row <= {last_row[1:0], row_q == RowWidth'(Rows - 1)};
-        {last_shift_q, last_q} <= {last_shift, last};
-        coefficient <= last_row[2] ? last_q : inner_q;
-        shift <= last_row[2] ? last_shift_q : '0;
+        coefficient <= last_row[2] ? last : inner;
+        shift <= last_row[2] ? last_shift : '0;
       end
     end
   end else begin : g_inner_rows
-    assign shift = '0;
-    always_ff @(posedge clk) if (en) coefficient <= inner_q;
+    assign {shift, last_flipped} = '0;
+    always_ff @(posedge clk) if (en) coefficient <= inner;
   end
 
 endmodule

@@ -39,6 +39,7 @@ module tridiagonal_solver
   localparam int StoreStyle       = value(Config, StoreStyleField),  // of a frame store, hdl/common/td_ram.sv
   localparam int WordsPerRow      = value(Config, WordsPerRowField),  // of its memory
   localparam int GradientWidth    = value(Config, GradientWidthField),
+  localparam int Parity           = value(Config, ParityField),  // of the memories
   localparam int InWidth          = GradientWidth + 2,  // of a divergence
   localparam int Width            = DataWidth + GuardBits,  // of the arithmetic
   localparam int ClippedWidth     = 8 + $clog2(Lanes)
@@ -52,7 +53,8 @@ module tridiagonal_solver
   output logic                       out_start,
   output logic                       out_frame_start,  // the first burst of a frame
   output logic [Lanes*DataWidth-1:0] out_data,         // depth codes, signed
-  output logic [ClippedWidth-1:0]    saturations       // clip count, delayed
+  output logic [ClippedWidth-1:0]    saturations,      // clip count, delayed
+  output logic                       flipped           // a word that was read has a flipped bit
 );
 
   localparam int Sine = Neumann != 0 ? 0 : 1;
@@ -72,63 +74,66 @@ module tridiagonal_solver
   logic [$clog2(2*Paths+1)-1:0] clipped_up;
   logic [7+$clog2(Paths):0] clipped_inverse;
 
-  row_order #(.Width(InWidth), .Columns(Columns), .Paths(DownWords)) u_rows (
+  logic [6:0] flips;  // of the cores, in the order of the data
+  row_order #(.Width(InWidth), .Columns(Columns), .Paths(DownWords), .Parity(Parity)) u_rows (
     .clk, .rst, .en, .in_valid, .in_frame_start, .in_data(in_data),
-    .out_start(row_start), .out_frame_start(row_frame_start), .out_data(row_data)
+    .out_start(row_start), .out_frame_start(row_frame_start), .out_data(row_data), .flipped(flips[0])
   );
 
   dst_forward #(
     .TableFolder(TableFolder), .Size(Columns), .Words(DownWords), .InWidth(InWidth), .Width(Width),
-    .CoeffWidth(CoeffWidth), .OutputDrop(RowForwardOut), .OutWidth(Width), .Sine(Sine)
+    .CoeffWidth(CoeffWidth), .OutputDrop(RowForwardOut), .OutWidth(Width), .Sine(Sine), .Parity(Parity)
   ) u_forward (
     .clk, .rst, .en, .in_start(row_start), .in_frame_start(row_frame_start), .in_data(row_data),
-    .out_start(modes_start), .out_frame_start(modes_frame_start), .out_data(modes), .saturations(clipped_forward)
+    .out_start(modes_start), .out_frame_start(modes_frame_start), .out_data(modes), .saturations(clipped_forward),
+    .flipped(flips[1])
   );
 
   elimination #(
     .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns),
     .Words(DownWords), .StoreDrop(GuardBits), .OutWidth(DataWidth), .Neumann(Neumann), .TableWords(DownTableWords),
     .SettledWidth(DownSettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
-    .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop)
+    .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop), .Parity(Parity)
   ) u_down (
     .clk, .rst, .en, .in_start(modes_start), .in_frame_start(modes_frame_start), .in_data(modes),
     .out_start(eliminated_start), .out_frame_start(eliminated_frame_start), .out_last(last), .out_ahead(ahead),
-    .saturations(clipped_down)
+    .saturations(clipped_down), .flipped(flips[2])
   );
 
   frame_stack #(
     .Width(DataWidth), .Rows(Rows), .Columns(Columns), .InWords(DownWords), .Lanes(Lanes), .WordsPerRow(WordsPerRow),
-    .Style(StoreStyle)
+    .Style(StoreStyle), .Parity(Parity)
   ) u_stack (
     .clk, .rst, .en, .in_start(eliminated_start), .in_frame_start(eliminated_frame_start), .in_last(last),
     .in_ahead(ahead), .out_start(stacked_start), .out_frame_start(stacked_frame_start), .out_alone(stacked_alone),
-    .out_data(stacked)
+    .out_data(stacked), .flipped(flips[3])
   );
 
   substitution #(
     .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Paths(Paths),
-    .InWidth(DataWidth), .Drop(-GuardBits), .TableWords(UpTableWords), .SettledWidth(UpSettledWidth)
+    .InWidth(DataWidth), .Drop(-GuardBits), .TableWords(UpTableWords), .SettledWidth(UpSettledWidth), .Parity(Parity)
   ) u_up (
     .clk, .rst, .en, .in_start(stacked_start), .in_frame_start(stacked_frame_start), .in_alone(stacked_alone),
     .in_data(stacked), .out_start(solved_start), .out_frame_start(solved_frame_start), .out_alone(solved_alone),
-    .out_data(solved), .saturations(clipped_up)
+    .out_data(solved), .saturations(clipped_up), .flipped(flips[4])
   );
 
   dst_inverse #(
     .TableFolder(TableFolder), .Size(Columns), .Paths(Paths), .InWidth(Width), .InputDrop(RowInverseIn), .Width(Width),
-    .CoeffWidth(CoeffWidth), .OutputDrop(RowInverseOut), .OutWidth(DataWidth), .Sine(Sine)
+    .CoeffWidth(CoeffWidth), .OutputDrop(RowInverseOut), .OutWidth(DataWidth), .Sine(Sine), .Parity(Parity)
   ) u_inverse (
     .clk, .rst, .en, .in_start(solved_start), .in_frame_start(solved_frame_start), .in_alone(solved_alone),
     .in_a(solved[0]), .in_b(solved[1]), .out_start(depth_start), .out_frame_start(depth_frame_start),
-    .out_alone(depth_alone), .out_a(depth[0]), .out_b(depth[1]), .saturations(clipped_inverse)
+    .out_alone(depth_alone), .out_a(depth[0]), .out_b(depth[1]), .saturations(clipped_inverse), .flipped(flips[5])
   );
 
-  corner_turn #(.Width(DataWidth), .Size(Columns), .Lanes(Lanes)) u_corner_turn (
+  corner_turn #(.Width(DataWidth), .Size(Columns), .Lanes(Lanes), .Parity(Parity)) u_corner_turn (
     .clk, .rst, .en, .in_start(depth_start), .in_frame_start(depth_frame_start), .in_alone(depth_alone),
-    .in_a(depth[0]), .in_b(depth[1]), .out_start, .out_frame_start, .out_data
+    .in_a(depth[0]), .in_b(depth[1]), .out_start, .out_frame_start, .out_data, .flipped(flips[6])
   );
 
   always_ff @(posedge clk) begin
+    flipped <= flips != '0;
     saturations <= ClippedWidth'(clipped_forward) + ClippedWidth'(clipped_down) + ClippedWidth'(clipped_up)
         + ClippedWidth'(clipped_inverse);
     if (rst) saturations <= '0;

@@ -43,6 +43,7 @@ module axil_registers
   localparam int SlopeMantissa    = value(Config, SlopeMantissaField),
   localparam int SlopeExponent    = value(Config, SlopeExponentField),
   localparam int PitchNm          = value(Config, PitchNmField),
+  localparam int ResidualBound    = value(Config, ResidualBoundField),
   localparam int Camera           = value(Config, CameraField)
 ) (
   input  wire                       clk,
@@ -232,6 +233,7 @@ module axil_registers
       FormatOffset: word = FormatWord;
       DeviceOffset: word = DeviceWord;
       DepthUnitOffset: word = DepthUnitWord;
+      ResidualBoundOffset: word = ResidualBound;
       SlopeUnitOffset: word = SlopeUnitWord;
       ArithmeticOffset: word = ArithmeticWord;
       default: word = '0;

@@ -2,7 +2,8 @@
 // event_registers: keeps what happened: sticky bits, counters, the last latency, and the interrupt; shows levels.
 //
 // A sticky bit of STATUS or INTERRUPT_STATUS is set by its event until a 1 is written to it. A counter counts the
-// cycles in which its event is high, SATURATIONS the values clipped. An event in the cycle of a clearing write is kept.
+// cycles in which its event is high, SATURATIONS the values clipped. LARGEST_RESIDUAL keeps the largest of the records.
+// An event in the cycle of a clearing write is kept.
 // `irq` is high in the cycle after one in which a bit of INTERRUPT_STATUS and its bit of interrupt_mask are 1.
 // read_data is the word at read_offset in the same cycle, 0 where there is none.
 // Model: models/tactile_depth/chip/registers/event_registers.py.
@@ -39,12 +40,15 @@ module event_registers
     | (32'(faults.start_missing) << StatusStartMissingBit) | (32'(faults.start_early) << StatusStartEarlyBit)
     | (32'(faults.timed_out) << StatusTimeoutBit) | (32'(events.out_of_step) << StatusOutOfStepBit)
     | (32'(events.dark) << StatusDarkBit) | (32'(events.depth_dropped) << StatusDepthDroppedBit)
-    | (32'(events.saturations != '0) << StatusSaturationBit);
+    | (32'(events.saturations != '0) << StatusSaturationBit) | (32'(events.flipped) << StatusFlippedBit)
+    | (32'(events.residual) << StatusResidualBit);
   assign status_shown = status | (32'(levels.busy) << StatusBusyBit) | (32'(levels.contact) << StatusContactBit)
     | (32'(levels.touching) << StatusTouchingBit) | (32'(levels.hunting) << StatusHuntingBit)
     | (32'(levels.stalled) << StatusStalledBit);
   assign interrupts_set = (32'(events.record_valid) << InterruptStatusRecordBit)
-    | (32'(frame_dropped) << InterruptStatusFrameDroppedBit);
+    | (32'(frame_dropped) << InterruptStatusFrameDroppedBit)
+    | (32'(events.flipped) << InterruptStatusFlippedBit)
+    | (32'(events.residual) << InterruptStatusResidualBit);
   assign cleared = write ? write_ones : '0;
   always_ff @(posedge clk) begin
     status <= (status & ~(write_offset == StatusOffset ? cleared : '0)) | status_set;
@@ -54,14 +58,15 @@ module event_registers
     if (rst) {status, interrupts, irq, latency} <= '0;
   end
 
-  localparam int Counters = 7;
+  localparam int Counters = 9;
   logic counters_cleared;
   logic [StepWidth*Counters-1:0] more;
   logic [32*Counters-1:0] counts;
   assign counters_cleared = write && write_offset == ControlOffset && write_ones[ControlClearCountersBit];
   assign more = {
-    events.saturations, StepWidth'(events.record_lost), StepWidth'(events.depth_dropped), StepWidth'(events.dark),
-    StepWidth'(frame_dropped), StepWidth'(events.frame_out), StepWidth'(events.frame_in)
+    StepWidth'(events.residual), StepWidth'(events.flipped), events.saturations, StepWidth'(events.record_lost),
+    StepWidth'(events.depth_dropped), StepWidth'(events.dark), StepWidth'(frame_dropped), StepWidth'(events.frame_out),
+    StepWidth'(events.frame_in)
   };
 
   always_ff @(posedge clk) begin
@@ -71,11 +76,25 @@ module event_registers
     if (rst) counts <= '0;
   end
 
+  // The largest residual follows a cycle later, as its comparison is long.
+
+  logic record_q, cleared_q;
+  logic [31:0] largest, residual_q;
+  always_ff @(posedge clk) begin
+    record_q <= events.record_valid;
+    cleared_q <= counters_cleared;
+    residual_q <= levels.residual;
+    if (record_q && (cleared_q || residual_q > largest)) largest <= residual_q;
+    else if (cleared_q) largest <= '0;
+    if (rst) {largest, record_q, cleared_q} <= '0;
+  end
+
   logic [31:0] frames_in, frames_out, frames_dropped, dark_pixels, depth_dropped, records_lost, saturations;
-  logic [31:0] arrived, self_test;
+  logic [31:0] flips, residuals, arrived, self_test;
   assign self_test = levels.self_test;
   assign arrived = (32'(levels.arrived_columns) << ArrivedColumnsLsb) | (32'(levels.arrived_rows) << ArrivedRowsLsb);
-  assign {saturations, records_lost, depth_dropped, dark_pixels, frames_dropped, frames_out, frames_in} = counts;
+  assign {residuals, flips, saturations, records_lost, depth_dropped, dark_pixels, frames_dropped, frames_out,
+    frames_in} = counts;
   always_comb begin
     case (read_offset)
       StatusOffset: read_data = status_shown;
@@ -88,6 +107,9 @@ module event_registers
       DarkPixelsOffset: read_data = dark_pixels;
       DepthDroppedOffset: read_data = depth_dropped;
       RecordsLostOffset: read_data = records_lost;
+      FlipsOffset: read_data = flips;
+      ResidualsOffset: read_data = residuals;
+      LargestResidualOffset: read_data = largest;
       ArrivedOffset: read_data = arrived;
       SelfTestOffset: read_data = self_test;
       default: read_data = '0;

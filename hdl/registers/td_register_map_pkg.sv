@@ -67,6 +67,10 @@ package td_register_map_pkg;
   localparam int LightGainBlueOffset = 32'h0dc;
   localparam int SelfTestOffset = 32'h0e0;
   localparam int SlopeLimitOffset = 32'h0e4;
+  localparam int FlipsOffset = 32'h0e8;
+  localparam int ResidualsOffset = 32'h0ec;
+  localparam int LargestResidualOffset = 32'h0f0;
+  localparam int ResidualBoundOffset = 32'h0f4;
 
   // Words of a record of contact, and their offsets, the first in the lowest bits.
   localparam int RecordWords = 15;
@@ -111,6 +115,8 @@ package td_register_map_pkg;
   localparam int StatusDepthDroppedBit = 11;
   localparam int StatusHuntingBit = 12;
   localparam int StatusStalledBit = 13;
+  localparam int StatusFlippedBit = 14;
+  localparam int StatusResidualBit = 15;
   localparam int TableSelectSelectLsb = 0;
   localparam int TableSelectSelectWidth = 2;
   localparam int TableCommitGradientBit = 0;
@@ -127,8 +133,12 @@ package td_register_map_pkg;
   localparam int ZeroCaptureHeldBit = 10;
   localparam int InterruptStatusRecordBit = 0;
   localparam int InterruptStatusFrameDroppedBit = 1;
+  localparam int InterruptStatusFlippedBit = 2;
+  localparam int InterruptStatusResidualBit = 3;
   localparam int InterruptMaskRecordBit = 0;
   localparam int InterruptMaskFrameDroppedBit = 1;
+  localparam int InterruptMaskFlippedBit = 2;
+  localparam int InterruptMaskResidualBit = 3;
   localparam int ArrivedRowsLsb = 0;
   localparam int ArrivedColumnsLsb = 16;
   localparam int DeviceSolverBit = 0;
@@ -183,7 +193,7 @@ package td_register_map_pkg;
     TableSelectOffset, TimeoutOffset, ThresholdOffset, ControlOffset
   };
   localparam logic [32*Settings-1:0] SettingMasks = {
-    32'h000000ff, 32'h00000071, 32'hffffffff, 32'h00000003, 32'h0000000f, 32'hffffffff, 32'h000000ff, 32'hffffffff,
+    32'h000000ff, 32'h00000071, 32'hffffffff, 32'h0000000f, 32'h0000000f, 32'hffffffff, 32'h000000ff, 32'hffffffff,
     32'hffffffff, 32'h0000000f, 32'h000000ff, 32'h00000003, 32'hffffffff, 32'hffffffff, 32'h00000005
   };
   localparam logic [32*Settings-1:0] SettingResets = {
@@ -207,7 +217,8 @@ package td_register_map_pkg;
       RecordFlagsOffset, RecordLightOffset, RecordPixelsOffset, TableSignatureOffset,
       ArithmeticOffset, DeviceOffset, DepthUnitOffset, SlopeUnitOffset, PitchOffset,
       LightOffset, LightGainRedOffset, LightGainGreenOffset, LightGainBlueOffset,
-      SelfTestOffset, SlopeLimitOffset: is_register = 1'b1;
+      SelfTestOffset, SlopeLimitOffset, FlipsOffset, ResidualsOffset, LargestResidualOffset,
+      ResidualBoundOffset: is_register = 1'b1;
       default: is_register = 1'b0;
     endcase
   endfunction

@@ -87,6 +87,7 @@ class Board:
             await ValueChange(self.dut.led)
             await ReadOnly()
             lights = int(self.dut.led.value)
+            assert not lights & 64, "no frame is in doubt"
             if bool(lights & 2) != recorded:
                 recorded = not recorded
                 self.lights.append(bool(lights & 1))

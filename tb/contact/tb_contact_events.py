@@ -82,5 +82,7 @@ async def records(dut: Any) -> None:
         "m_event_tready": 1.0,
         "in_time": WORD,
         "in_flags": WORD,
+        "in_flipped": 0.3,
+        "in_residual": 0.3,
     }
     await play(dut, EventsByClock(*given), {**choices, "in_data": depths}, legal, clocks=3 * CLOCKS)

@@ -52,6 +52,7 @@ EXTREMES = default_parameters() | {
     "SlopeMantissa": 1 << 23,
     "SlopeExponent": 127,
     "PitchNm": (1 << 31) - 1,
+    "ResidualBound": (1 << 31) - 1,
 }
 QUADRATIC = fields_of(columns=128, rows=96, solver="tridiagonal", flat_field=True, gradient_model="quadratic")
 
@@ -191,7 +192,8 @@ class Registers:
         saturations, valid = events.pop("saturations"), pins["first_depth_latency_valid"]
         flags = frozenset(name for name in events if events[name])
         latency = pins["first_depth_latency"] if valid else None
-        model.clock(Events(flags, saturations, latency, starts, done))
+        residual = unpack("levels_t", pins["levels"])["residual"]
+        model.clock(Events(flags, saturations, residual, latency, starts, done))
         if pins["rst"]:
             model.reset()
         if pins["cold_rst"]:

@@ -9,6 +9,7 @@ import cocotb
 from tactile_depth.chip.registers.event_registers import (
     ARRIVED,
     COUNTERS,
+    LARGEST,
     LATENCY,
     LEVELS,
     SELF_TEST,
@@ -27,6 +28,7 @@ NO_PROOF = "every register and output of it is proven through the port: axil_reg
 
 COUNTER_ORDER = (  # names of the words of `counts`, from the lowest
     *("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "DARK_PIXELS", "DEPTH_DROPPED", "RECORDS_LOST", "SATURATIONS"),
+    *("FLIPS", "RESIDUALS"),
 )
 
 
@@ -51,7 +53,8 @@ class Registers:
         events = structs.unpack("events_t", pins["events"])
         saturations, valid = events.pop("saturations"), pins["first_depth_latency_valid"]
         latency = pins["first_depth_latency"] if valid else None
-        model.clock([name for name in events if events[name]], saturations, latency, pins["interrupt_mask"])
+        residual = levels["residual"]
+        model.clock([name for name in events if events[name]], saturations, residual, latency, pins["interrupt_mask"])
         if pins["rst"]:
             model.reset()
         return out
@@ -60,7 +63,7 @@ class Registers:
 @cocotb.test
 async def registers(dut: Any) -> None:
     chance, bits = random.Random(cocotb.RANDOM_SEED), len(dut.events)
-    bus = Bus(dut, "STATUS", "INTERRUPT_STATUS", "CONTROL", "ARRIVED", SELF_TEST, LATENCY, *COUNTERS)
+    bus = Bus(dut, "STATUS", "INTERRUPT_STATUS", "CONTROL", "ARRIVED", SELF_TEST, LATENCY, LARGEST, *COUNTERS)
     pins = {
         **bus.choices,
         "events": [0, (1 << bits) - 1, *(1 << bit for bit in range(bits))],

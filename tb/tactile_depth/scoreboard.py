@@ -18,8 +18,9 @@ from tactile_depth.chip.contact.frame_flags import FrameFlags
 from tactile_depth.chip.gradient.frame_marks import NO_LIMIT
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
 from tactile_depth.chip.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
+from tactile_depth.chip.poisson.divergence import divergence
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.chip.tactile_depth import depth_and_flags
+from tactile_depth.chip.tactile_depth import depth_and_flags, residuals, slopes_and_light, solve
 from tactile_depth.chip.video.frame_guard import Frame, Guarded, frame_guard
 from tb.axil import RegisterClient
 from tb.axis import AxisMonitor
@@ -32,7 +33,10 @@ STATUS, ARRIVED = REGISTERS["STATUS"], REGISTERS["ARRIVED"]
 STICKY = {"timed_out": "timeout"}  # names of faults and of status bits, where they differ
 Lit = tuple[np.ndarray | None, bool]
 """Light gains of a frame, int64 (3,), None without, and whether the light moves."""
-COUNTERS = ("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "DARK_PIXELS", "DEPTH_DROPPED", "RECORDS_LOST")
+COUNTERS = (
+    *("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "DARK_PIXELS", "DEPTH_DROPPED", "RECORDS_LOST"),
+    *("FLIPS", "RESIDUALS"),
+)
 
 
 @dataclass(frozen=True)
@@ -71,6 +75,8 @@ class Scoreboard:
         Bits of STATUS that are expected to be set.
     latency : int
         Expected value of FIRST_DEPTH_LATENCY, as measured at the pins.
+    largest : int
+        Expected value of LARGEST_RESIDUAL.
     dark_level, slope_limit : int
         Values of the registers that the next frames use.
     hunting, size : bool, FrameSize
@@ -91,7 +97,7 @@ class Scoreboard:
         """Expect the state after a reset."""
         self.counters = dict.fromkeys(COUNTERS, 0)
         self.sticky: set[str] = set()
-        self.latency, self.dark_level, self.slope_limit = 0, 0, NO_LIMIT
+        self.latency, self.dark_level, self.slope_limit, self.largest = 0, 0, NO_LIMIT, 0
         self.hunting, self.size, self.beside = False, FrameSize(), False
         self.light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
 
@@ -116,6 +122,13 @@ class Scoreboard:
         marks |= {"dark_level": self.dark_level, "limit": self.slope_limit, "zero": content.zero}
         rgb = unpack(words).reshape(self.rows, self.columns, 3)
         return depth_and_flags(rgb, self.config, content.slopes, monitor, **marks)
+
+    def residual(self, words: Any, content: Content, light: Lit) -> int:
+        """Return the residual of a frame."""
+        rgb, gains = unpack(words).reshape(1, self.rows, self.columns, 3), None if light[0] is None else light[0][None]
+        slopes, _ = slopes_and_light(rgb, self.config, content.slopes, None, self.dark_level, gains)
+        divergences = divergence(slopes, self.config.neumann)
+        return int(residuals(divergences, solve(divergences, self.config), self.config)[0])
 
     def model(self, words: Any, content: Content) -> np.ndarray:
         """Return the depth codes (frames, rows, columns) of pixel words behind a reset."""
@@ -184,11 +197,12 @@ class Scoreboard:
             if word is not None:
                 self.size.take(word.last, word.user)
         each = [contents] * len(frames) if isinstance(contents, Content) else contents
-        monitor, made = Monitor(), []
+        monitor, made, lefts = Monitor(), [], []
         for number, (frame, content) in enumerate(zip(frames, each, strict=True)):
             light = self.light_of(frame.pixels, content, self.light, frame.bad)
             resumed = frame.resumed or (hunting and not number)
             made.append(self.frame(frame.pixels, content, light, monitor, resumed))
+            lefts.append(self.residual(frame.pixels, content, light) if self.config.self_check else 0)
         clipped = monitor.saturations.total()
         good = [index for index, frame in enumerate(frames) if not frame.bad]
         codes = self.depth(out, len(good))
@@ -222,8 +236,14 @@ class Scoreboard:
         self.counters["SATURATIONS"] += clipped
         dark = sum(own.dark for _, _, own in made)
         self.counters["DARK_PIXELS"] += dark
+        beyond = sum(own.residual for own in flags)
+        self.counters["RESIDUALS"] += beyond
+        if self.config.self_check:
+            self.largest = max([self.largest, *(lefts[index] for index in good)])
         self.sticky |= {STICKY.get(fault, fault) for fault in faults}
-        self.sticky |= {name for name, count in (("saturation", clipped), ("dark", dark)) if count}
+        self.sticky |= {
+            name for name, count in (("saturation", clipped), ("dark", dark), ("residual", beyond)) if count
+        }
         return Checked(codes, flags, faults, taken, first_depths)
 
     async def check_registers(self, registers: RegisterClient, counters: bool = True) -> None:
@@ -231,6 +251,8 @@ class Scoreboard:
         if counters:
             have = {name: await registers.read(name) for name in self.counters}
             assert have == self.counters, f"counters are {have}, expected {self.counters}"
+            largest = await registers.read("LARGEST_RESIDUAL")
+            assert largest == self.largest, f"LARGEST_RESIDUAL is {largest}, expected {self.largest}"
         await registers.read("STATUS")  # the next read has the bits of the last events
         status = STATUS.unpack(await registers.read("STATUS"))
         assert not status.pop("busy"), "STATUS.busy is high after every frame has left"

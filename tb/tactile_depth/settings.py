@@ -17,7 +17,7 @@ FORMATS = "formats"  # tests that depend on formats and options of a build
 TRIDIAGONAL: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 FLAT_QUADRATIC: dict[str, Any] = {"flat_field": True, "gradient_model": "quadratic"}
 SENSOR = TRIDIAGONAL | FLAT_QUADRATIC | {"rows": 9, "lanes": 4, "neumann": True, "zero_offset": True}
-SENSOR |= {"light_gains": True}
+SENSOR |= {"light_gains": True, "parity": True}
 
 
 def built(
@@ -39,23 +39,34 @@ def built(
 
 SMALLEST = built("tridiagonal-8x16", TRIDIAGONAL | {"bits_per_channel": 2}, WHOLE, on=VERILATOR, mutants=VERILATOR)
 STRUCTURES = (
-    built("tridiagonal-8x16-quadratic", TRIDIAGONAL | FLAT_QUADRATIC | {"gain_width": 17}, FORMATS, on=VERILATOR),
+    built(
+        "tridiagonal-8x32-quadratic",
+        TRIDIAGONAL | FLAT_QUADRATIC | {"columns": 32, "gain_width": 17, "parity": True, "self_check": True},
+        FORMATS,
+        on=VERILATOR,
+    ),
     SMALLEST,
     built("16-24", {"columns": 16, "bits_per_channel": 2}, WHOLE, on=VERILATOR),
     built("tridiagonal-9x16-4-lanes-sensor", SENSOR, FORMATS, on=BOTH),
     built(
         "tridiagonal-8x16-zero",
-        TRIDIAGONAL | {"bits_per_channel": 2, "neumann": True, "zero_offset": True},
+        TRIDIAGONAL | {"bits_per_channel": 2, "neumann": True, "zero_offset": True, "parity": True},
         FORMATS,
         on=ICARUS,
     ),
-    built("32-12", {"columns": 32, "data_width": 12, "bits_per_channel": 3}, "stream"),
-    built("16-flat-neumann", {"columns": 16, "flat_field": True, "neumann": True, "zero_offset": True}, FORMATS),
+    built("32-12", {"columns": 32, "data_width": 12, "bits_per_channel": 3, "self_check": True}, "stream"),
+    built(
+        "16-flat-neumann",
+        {"columns": 16, "flat_field": True, "neumann": True, "zero_offset": True, "parity": True},
+        FORMATS,
+    ),
     built("16-27-neumann", {"columns": 16, "data_width": 27, "neumann": True}, FORMATS),
     built("tridiagonal-21x16-neumann", TRIDIAGONAL | {"rows": 21, "data_width": 27, "neumann": True}, FORMATS),
     built("tridiagonal-8x16-2-lanes", TRIDIAGONAL | {"lanes": 2, "bits_per_channel": 2, "neumann": True}, FORMATS),
     built(
-        "tridiagonal-9x32-4-lanes", TRIDIAGONAL | {"columns": 32, "rows": 9, "lanes": 4, "bits_per_channel": 2}, FORMATS
+        "tridiagonal-9x32-4-lanes",
+        TRIDIAGONAL | {"columns": 32, "rows": 9, "lanes": 4, "bits_per_channel": 2, "self_check": True, "parity": True},
+        FORMATS,
     ),
     built(
         "tridiagonal-21x16-2-lanes-zero",

@@ -45,7 +45,7 @@ async def malformed(dut: Any, fault: str, accepts: str) -> None:
     assert await pipeline.read("STATUS") == 0
     pipeline.scoreboard.sticky.clear()
     await pipeline.write("CONTROL", CONTROL.pack(clear_counters=1))
-    pipeline.scoreboard.counters = dict.fromkeys(pipeline.scoreboard.counters, 0)
+    pipeline.scoreboard.counters, pipeline.scoreboard.largest = dict.fromkeys(pipeline.scoreboard.counters, 0), 0
     await pipeline.send(a)
     await pipeline.check()
 

@@ -159,7 +159,7 @@ async def saturation(dut: Any, accepts: str) -> None:
     assert pipeline.scoreboard.counters["SATURATIONS"] > 0, "the test is void: nothing clips"
     limit = 1 << pipeline.config.data_width - 1
     assert codes.max() == limit - 1 or codes.min() == -limit, "no depth at full scale"
-    await pipeline.clear_status(saturation=1)
+    await pipeline.clear_status(**dict.fromkeys(pipeline.scoreboard.sticky, 1))
     await pipeline.send(pipeline.plain())
     await pipeline.check()
     assert not pipeline.scoreboard.sticky

@@ -14,6 +14,7 @@ from PIL import Image
 from commands.common import wrapper
 from commands.hardware import ecp5, fpga, fusesoc, wrapped, yosys
 from tactile_depth.base.files import RECORD
+from tactile_depth.chip.configuration import can_check
 from tactile_depth.chip.rom_files import table_files
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.sensor.built_in import load
@@ -72,6 +73,8 @@ def pipeline_of(words: dict[str, str]) -> Pipeline:
         model=preset.model if preset.zero_offset else "",
         zero_offset=preset.zero_offset,
         light_gains=None if preset.light_gains else False,
+        parity=preset.parity,
+        self_check=preset.self_check and can_check(columns, 1),
         **preset.words,  # type: ignore[arg-type]
     )
 

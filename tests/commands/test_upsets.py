@@ -113,12 +113,22 @@ def test_flips_of_a_register_a_stored_word_and_a_table(model: Model) -> None:
     """A depth on its way out changes by the weight of the bit, a stored word in its frame, a table for good."""
     for bit in range(15):
         assert codes(model, DATA, "u_zero_offset.out_data", bit) == {(1 << bit, 0, 0)}
-    stored = codes(model, MEMORIES, "u_stack.g_side[0].u_ram.g_block.words", 14)
+    stored = codes(model, MEMORIES, "u_stack.g_side[0].u_ram.u_ram.g_block.words", 14)
     assert len(stored) > 1
     assert all(not after and not later for _, after, later in stored)
     for bank, is_in_use in enumerate((True, False)):
         zero = f"u_zero_offset.u_map.g_node[0].g_table[0].u_words.g_bank[{bank}].u_ram.g_block.words"
         assert {bool(later) for _, _, later in codes(model, TABLES, zero, 14)} == {is_in_use}
+
+
+@pytest.mark.regress
+@pytest.mark.parametrize("population", [MEMORIES, TABLES])
+def test_no_flip_of_a_stored_word_changes_a_depth_unseen(model: Model, population: str) -> None:
+    flips = [model.flip(population, number, SEED) for number in range(1000)]
+    outcomes = [Outcome.of(line.split()) for line in model.run(flips)]
+    changed = [(flip, outcome) for flip, outcome in zip(flips, outcomes, strict=True) if any(outcome.codes)]
+    assert len(changed) > 100
+    assert not [flip for flip, outcome in changed if not outcome.is_flagged]
 
 
 @pytest.mark.regress

@@ -25,7 +25,7 @@ from tb.structs import unpack
 WORD, CODE = st.integers(0, 2**32 - 1), st.integers(-(2**31), 2**31 - 1)
 PLACE = st.tuples(st.integers(0, 1023), st.integers(0, 1023))
 MARK, HALF = st.booleans(), st.integers(0, 2**16 - 1)
-FLAGS = st.builds(FrameFlags, *[MARK] * 5, st.tuples(HALF, HALF, HALF), HALF, HALF, st.integers(0, 2**11 - 1))
+FLAGS = st.builds(FrameFlags, *[MARK] * 7, st.tuples(HALF, HALF, HALF), HALF, HALF, st.integers(0, 2**9 - 1))
 PEAK = CODE, PLACE, CODE, WORD, PLACE, PLACE, st.integers(0, 2**64 - 1), PLACE
 RECORDS = st.builds(Record, WORD, WORD, WORD, *PEAK, FLAGS)
 

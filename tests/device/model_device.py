@@ -27,6 +27,7 @@ from tactile_depth.chip.common.td_frame_size import FrameSize
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.contact_events import ContactEvents, Settings
+from tactile_depth.chip.contact.frame_flags import FrameFlags
 from tactile_depth.chip.depth.zero_capture import captured_zero
 from tactile_depth.chip.gradient.flat_field import captured_gains, pixel_gains
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
@@ -90,6 +91,8 @@ class ModelDevice:
     ----------
     link : LinkDevice
     registers : AxilRegisters
+    harms : tuple of str
+        Flags that each frame has beside its own.
     tables : dict
         Name to the two banks, int64 (2, entries, 2): lower and upper word.
     """
@@ -105,6 +108,7 @@ class ModelDevice:
         shape = link.Build(config.rows, config.columns, config.data_width, bottom_first)
         self.link = LinkDevice(shape, self._read, self._write)
         self.events = ContactEvents(config.rows, config.columns, config.data_width, bottom_first)
+        self.harms: tuple[str, ...] = ()
         self._begin()
 
     def hold(self, tables: Mapping[str, np.ndarray]) -> None:
@@ -241,6 +245,7 @@ class ModelDevice:
             marks["light_moves"] = self.light.moves
         zero = self._zero() if config.zero_offset else None
         depth, codes, flags = depth_and_flags(picture, config, tables, monitor, zero=zero, **marks)
+        flags = FrameFlags._make(name in self.harms or value for name, value in flags._asdict().items())
         self._capture("reference", picture)
         self._capture("zero", depth)
         settings = Settings(*(signed(self.registers.values[name]) for name in SETTINGS))

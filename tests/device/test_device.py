@@ -161,6 +161,19 @@ def test_a_stream_leaves_out_and_counts_a_picture_that_gives_no_depth_and_a_list
     require_equal(list(device.depth(iter(pictures[:1]))), list(pipeline.stream(pictures[:1])))
 
 
+HARMS = {"flipped": "a bit of the device's memory had flipped", "residual": "does not fit its slopes"}
+
+
+@pytest.mark.parametrize("harm", HARMS)
+def test_a_frame_that_the_device_doubts_has_a_warning(
+    cable: Cable, device: td.Device, sample: td.Sample, harm: str
+) -> None:
+    cable.serving.device.harms = (harm,)
+    with pytest.warns(td.InputWarning, match=HARMS[harm]):
+        (frame,) = device.depth(sample.image)
+    assert [HARMS[harm] in warning for warning in frame.warnings] == [True]
+
+
 def test_captures_are_those_of_the_package(device: td.Device, sample: td.Sample, pictures: list[np.ndarray]) -> None:
     """Capture the reference and the zero offset in another light than that of the calibration's reference."""
     levels = np.array([0.93, 0.95, 0.97, 0.96])

@@ -166,14 +166,14 @@ if (1) begin : g_steps
     end
     for (genvar half = 0; half < 2; half++) begin : g_entry
       for (genvar r = 0; r < 2; r++) begin : g_row
-        assign memory_words[half][r] = dut.g_single.g_half[half].words[r];
-        assign entries[half][r] = dut.g_single.g_half[half].g_row[r].u_ram.g_distributed
+        assign memory_words[half][r] = dut.g_single.g_half[half].g_row[r].u_ram.word;
+        assign entries[half][r] = dut.g_single.g_half[half].g_row[r].u_ram.u_ram.g_distributed
             .words[{in_bank, write_beat[BeatWidth-2:0]}];
         for (genvar n = 2; n < Longest; n++) begin : g_age
           for (genvar b = half * Beats / 2; b < (half + 1) * Beats / 2 && b < n - 1; b++) begin : g_beat
             localparam logic [BeatWidth-2:0] At = (BeatWidth - 1)'(half == 0 ? b : Beats - 1 - b);
             always_comb if (started && starts[n]) was_written: assert (dut.g_single.g_half[half]
-                .g_row[r].u_ram.u_check.written[{banks[n], At}]);
+                .g_row[r].u_ram.u_ram.u_check.written[{banks[n], At}]);
           end
         end
       end
@@ -188,13 +188,13 @@ if (1) begin : g_steps
     for (genvar half = 0; half < 2; half++) begin : g_entry
       assign entries[half][1] = '0;
       for (genvar w = 0; w < Paths; w++) begin : g_memory
-        assign entries[half][0][w] = dut.g_paths.g_half[half].g_memory[w].u_ram.g_distributed
+        assign entries[half][0][w] = dut.g_paths.g_half[half].g_memory[w].u_ram.u_ram.g_distributed
             .words[{in_bank, write_beat}];
         for (genvar n = 2; n < Longest; n++) begin : g_age
           for (genvar b = 0; b < Beats && b < n - 1; b++) begin : g_beat
             localparam logic [BeatWidth-1:0] At = BeatWidth'(half == 0 ? b : Beats - 1 - b);
             always_comb if (started && starts[n]) was_written: assert (dut.g_paths.g_half[half]
-                .g_memory[w].u_ram.u_check.written[{banks[n], At}]);
+                .g_memory[w].u_ram.u_ram.u_check.written[{banks[n], At}]);
           end
         end
       end

@@ -111,7 +111,7 @@ if (1) begin : g_steps
     assign here = started && following && path == w % Paths && 32'(age) > 2 + 32'(position) / Paths;
     assign mirrored = started && following && mirror_path == w % Paths && 32'(age) > 2 + 32'(mirror) / Paths;
     assign {own, own_mirror} = OfA ? {a, a_mirror} : {b, b_mirror};
-    assign entry = dut.g_word[w].u_mirrored.g_distributed.words[BeatWidth'(32'(mirror) / Paths)];
+    assign entry = dut.g_word[w].u_mirrored.u_ram.g_distributed.words[BeatWidth'(32'(mirror) / Paths)];
     always_comb begin
       if (mirrored && 32'(age) < meet - 1) stands: assert (entry == own_mirror);
       if (mirrored && 32'(age) == meet - 1) was_read: assert (dut.mirrored[w*Width+:Width] == own_mirror);
@@ -128,7 +128,7 @@ if (1) begin : g_steps
         if (started) in_range: assert (32'(pointer) < Delay);
         if (here && since < Delay) on_way: assert (32'(slot) < Delay
             && 32'(pointer) == (32'(slot) + since) % Delay
-            && dut.g_word[w].u_beat.g_memory.u_ram.g_distributed.words[slot] == own);
+            && dut.g_word[w].u_beat.g_memory.u_ram.u_ram.g_distributed.words[slot] == own);
       end
     end
   end

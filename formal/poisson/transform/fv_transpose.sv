@@ -116,7 +116,7 @@ if (1) begin : g_steps
           == (dut.read_transposed ^ (active ? now <= Leaves - Columns : dut.row_q != '0)));
       reads: assert (dut.read_active == ((starts & from_to(Begins, Begins + Leaves)) != '0));
       begins: assert (dut.read_start == starts[Begins]);
-      checked: assert (dut.u_ram.u_check.started);
+      checked: assert (dut.u_ram.u_ram.u_check.started);
     end
   end
   for (genvar i = 0; i < 2; i++) begin : g_late
@@ -147,7 +147,7 @@ if (1) begin : g_steps
         apart: assert ((starts & from_to(n + 1, n + Leaves)) == '0);
         if (next_row != '0) next_frame: assert (n + 32'(left) >= Columns + 32'(next_row) * Columns - 1);
         if (n >= Begins && n < Begins + Leaves) reader: assert (32'(dut.read_position) == n - Begins);
-        if (n >= Begins) came: assert (known && (n <= Columns || dut.u_ram.u_check.written == '1));
+        if (n >= Begins) came: assert (known && (n <= Columns || dut.u_ram.u_ram.u_check.written == '1));
       end
     end
   end
@@ -166,19 +166,19 @@ if (1) begin : g_steps
       assign here = started && following && !dropped && 32'(column) == c && row_place == Place;
       always_comb begin
         if (started && known && now > Came)
-          was_written: assert (dut.u_ram.u_check.written[dut.write_transposed ? {Column, Row} : {Row, Column}]);
+          was_written: assert (dut.u_ram.u_ram.u_check.written[dut.write_transposed ? {Column, Row} : {Row, Column}]);
         if (here) begin
           if (age == '0) came: assert (known && now > Came && now <= Leaves - Columns
               && word_transposed == dut.write_transposed);
           else if (32'(age) <= ReadAt) turned: assert (word_transposed == dut.read_transposed
               && 32'(age) >= Begins + (r == Columns - 1 ? 32'(At) : 0));
           if (32'(age) <= ReadAt)
-            stands: assert (dut.u_ram.g_block.words[word_transposed ? {Column, Row} : {Row, Column}] == value);
-          if (32'(age) == ReadAt + 1) was_read: assert (dut.word == value);
+            stands: assert (dut.u_ram.u_ram.g_block.words[word_transposed ? {Column, Row} : {Row, Column}] == value);
+          if (32'(age) == ReadAt + 1) was_read: assert (dut.u_ram.word == value);
         end
       end
     end
   end
 end
 
-bind dut.u_ram ram_check #(.Depth(Depth)) u_check (.*);
+bind dut.u_ram.u_ram ram_check #(.Depth(Depth)) u_check (.*);

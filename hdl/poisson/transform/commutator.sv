@@ -13,11 +13,12 @@
 `default_nettype none
 
 module commutator #(
-  parameter int Width = 27,
-  parameter int Paths = 4,  // a power of two
-  parameter int Beats = 32,  // a power of two
-  parameter int Delay = 8,  // a power of two up to Beats / 2
-  parameter int Up    = 1
+  parameter int Width  = 27,
+  parameter int Paths  = 4,  // a power of two
+  parameter int Beats  = 32,  // a power of two
+  parameter int Delay  = 8,  // a power of two up to Beats / 2
+  parameter int Up     = 1,
+  parameter int Parity = 0  // 1: a parity bit in each word of a memory
 ) (
   input  wire                    clk,
   input  wire                    rst,
@@ -29,7 +30,8 @@ module commutator #(
   output logic                   out_start,
   output logic                   out_frame_start,
   output logic [Paths*Width-1:0] out_re,
-  output logic [Paths*Width-1:0] out_im
+  output logic [Paths*Width-1:0] out_im,
+  output logic                   flipped  // a word that was read has a flipped bit
 );
 
   localparam int BeatWidth = $clog2(Beats);
@@ -51,6 +53,8 @@ module commutator #(
     end
   end
 
+  logic [Paths/2-1:0] a_flipped, b_flipped;
+  assign flipped = {a_flipped, b_flipped} != '0;
   for (genvar pair = 0; pair < Paths / 2; pair++) begin : g_pair
     localparam int InA = Up != 0 ? 2 * pair : pair;
     localparam int InB = Up != 0 ? 2 * pair + 1 : pair + Paths / 2;
@@ -59,11 +63,11 @@ module commutator #(
     logic [2*Width-1:0] a, b, late_b, out_a, out_b;
     assign a = {in_re[InA*Width+:Width], in_im[InA*Width+:Width]};
     assign b = {in_re[InB*Width+:Width], in_im[InB*Width+:Width]};
-    td_delay_line #(.Width(2 * Width), .Delay(Delay)) u_b (
-      .clk, .rst, .en, .in(b), .out(late_b)
+    td_delay_line #(.Width(2 * Width), .Delay(Delay), .Parity(Parity)) u_b (
+      .clk, .rst, .en, .in(b), .out(late_b), .flipped(b_flipped[pair])
     );
-    td_delay_line #(.Width(2 * Width), .Delay(Delay)) u_a (
-      .clk, .rst, .en, .in(second_q[1] ? late_b : a), .out(out_a)
+    td_delay_line #(.Width(2 * Width), .Delay(Delay), .Parity(Parity)) u_a (
+      .clk, .rst, .en, .in(second_q[1] ? late_b : a), .out(out_a), .flipped(a_flipped[pair])
     );
     assign out_b = second_q[1] ? a : late_b;
     assign {out_re[OutA*Width+:Width], out_im[OutA*Width+:Width]} = out_a;

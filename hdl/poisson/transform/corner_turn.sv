@@ -18,9 +18,10 @@
 `default_nettype none
 
 module corner_turn #(
-  parameter int Width = 24,
-  parameter int Size  = 128,  // a power of two
-  parameter int Lanes = 8,  // a power of two up to Size / 2
+  parameter int Width  = 24,
+  parameter int Size   = 128,  // a power of two
+  parameter int Lanes  = 8,  // a power of two up to Size / 2
+  parameter int Parity = 0,  // 1: a parity bit in each word of a memory
   localparam int Paths = Lanes > 1 ? Lanes / 2 : 1
 ) (
   input  wire                      clk,
@@ -33,7 +34,8 @@ module corner_turn #(
   input  wire  [Paths*Width-1:0]   in_b,
   output logic                     out_start,
   output logic                     out_frame_start,  // the first row of a frame
-  output logic [Lanes*Width-1:0]   out_data
+  output logic [Lanes*Width-1:0]   out_data,
+  output logic                     flipped  // a word that was read has a flipped bit
 );
 
   localparam int Beats = Size / Paths;
@@ -64,30 +66,34 @@ module corner_turn #(
   assign row_start = read_active & (read_beat[ReadWidth-2:0] == '0) & ~(row & read_alone);
 
   logic [1:0][Paths*Width-1:0] read;  // in each half the words that leave
+  logic [1:0][(Paths > 1 ? Paths : 2)-1:0] flips;
   if (Paths == 1) begin : g_single
     logic [1+Ahead:1] row_q;
-    always_ff @(posedge clk) if (en) row_q <= (1 + Ahead)'({row_q, row});
+    logic [3:0] b_read;  // of rows that are all alone, b is never read, and what its memories show is unknown
+    assign flipped = flips[0][0] | flips[1][0] | (b_read[3] & (flips[0][1] | flips[1][1]));
+    always_ff @(posedge clk) begin
+      if (en) row_q <= (1 + Ahead)'({row_q, row});
+      if (en) b_read <= {b_read[2:0], b_read[0] | (read_active & row)};
+      if (rst) b_read <= '0;
+    end
     for (genvar half = 0; half < 2; half++) begin : g_half
-      logic [1:0][Width-1:0] words, words_q;
+      logic [1:0][Width-1:0] words;
       for (genvar r = 0; r < 2; r++) begin : g_row
-        td_ram #(.Width(Width), .Depth(Beats)) u_ram (
-          .clk,
+        td_parity_ram #(.Width(Width), .Depth(Beats), .Latency(1 + Ahead), .Parity(Parity)) u_ram (
+          .clk, .en,
           .write_en     (en & active_q[1] & (beat[BeatWidth-1] == 1'(half))),
           .write_address({write_bank_q, beat[BeatWidth-2:0] ^ {(BeatWidth - 1){1'(half)}}}),
           .write_data   (r == 0 ? in_a : in_b),
           .read_en      (en & read_active & (row == 1'(r)) & (Ahead == 0 | read_beat[0] == 1'(half))),
           .read_address ({read_bank, read_beat[ReadWidth-2-:BeatWidth-1]}),
-          .read_data    (words[r])
+          .read_data    (words[r]),
+          .flipped      (flips[half][r])
         );
-        if (Ahead > 0) begin : g_register
-          always_ff @(posedge clk) if (en) words_q[r] <= words[r];
-        end else begin : g_straight
-          assign words_q[r] = words[r];
-        end
       end
-      assign read[half] = words_q[row_q[1+Ahead]];
+      assign read[half] = words[row_q[1+Ahead]];
     end
   end else begin : g_paths
+    assign flipped = flips != '0;
     localparam int Turned = BeatWidth < PathWidth ? BeatWidth : PathWidth;  // bits of the beat in a memory's number
     localparam int Fixed = PathWidth - Turned;
 
@@ -127,14 +133,15 @@ module corner_turn #(
         logic [Turned-1:0] low;
         assign in_words[w*Width+:Width] = w < Paths / 2 ? in_a[Path*Width+:Width] : in_b[Path*Width+:Width];
         assign low = turn[PathWidth-1:Fixed] ^ Turned'($unsigned(w >> Fixed));
-        td_ram #(.Width(Width), .Depth(2 * Beats)) u_ram (
-          .clk,
+        td_parity_ram #(.Width(Width), .Depth(2 * Beats), .Parity(Parity)) u_ram (
+          .clk, .en,
           .write_en     (en & active_q[1]),
           .write_address({write_bank_q, write_beat}),
           .write_data   (write_words[w*Width+:Width]),
           .read_en      (en & read_active),
           .read_address ({read_bank, place[BeatWidth-1:0] | BeatWidth'(low)}),
-          .read_data    (memory[w*Width+:Width])
+          .read_data    (memory[w*Width+:Width]),
+          .flipped      (flips[half][w])
         );
         assign read[half][w*Width+:Width] = turned[Source*Width+:Width];
       end

@@ -26,6 +26,7 @@ module dst_forward #(
   parameter int OutputDrop = 3,    // fraction bits from the arithmetic to the output
   parameter int OutWidth   = 24,
   parameter int Sine       = 1,    // 1: DST-II; 0: DCT-II, without the sign (-1)^n
+  parameter int Parity     = 0,  // 1: a parity bit in each word of a memory
   localparam int CountWidth = 8 + $clog2(Words)
 ) (
   input  wire                       clk,
@@ -37,7 +38,8 @@ module dst_forward #(
   output logic                      out_start,
   output logic                      out_frame_start,
   output logic [Words*OutWidth-1:0] out_data,        // modes, F - InputDrop - OutputDrop fraction bits
-  output logic [CountWidth-1:0]     saturations      // clip count, delayed
+  output logic [CountWidth-1:0]     saturations,     // clip count, delayed
+  output logic                      flipped          // a word that was read has a flipped bit
 );
 
   localparam int Beats = Size / Words;
@@ -66,26 +68,30 @@ module dst_forward #(
     always_ff @(posedge clk) if (en) x_q[path*Width+:Width] <= x;
   end
 
+  logic fft_flipped, phase_flipped;
+  assign flipped = fft_flipped | phase_flipped;
   logic fft_start, fft_frame_start;
   logic [Words*Width-1:0] fft_re, fft_im;
   logic [$clog2(Words*Stages+1)-1:0] clipped_fft;
   fft #(
-    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Paths(Words), .Inverse(0)
+    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Paths(Words), .Inverse(0),
+    .Parity(Parity)
   ) u_fft (
     .clk, .rst, .en,
     .in_start(start_q), .in_frame_start(frame_start_q), .in_re(x_q), .in_im((Words * Width)'(0)),
     .out_start(fft_start), .out_frame_start(fft_frame_start), .out_re(fft_re), .out_im(fft_im),
-    .saturations(clipped_fft)
+    .saturations(clipped_fft), .flipped(fft_flipped)
   );
 
   logic [$clog2(2*Words+1)-1:0] clipped_phase;
   twiddle #(
     .InWidth(Width), .OutWidth(OutWidth), .CoeffWidth(CoeffWidth), .Drop(CoeffWidth - 1 + OutputDrop), .Paths(Words),
-    .Beats(Beats), .RealOnly(1), .File({TableFolder, "phase_forward.hex"})
+    .Beats(Beats), .RealOnly(1), .File({TableFolder, "phase_forward.hex"}), .Parity(Parity)
   ) u_phase (
     .clk, .rst, .en,
     .in_start(fft_start), .in_frame_start(fft_frame_start), .in_re(fft_re), .in_im(fft_im),
-    .out_start, .out_frame_start, .out_re(out_data), .out_im(), .saturations(clipped_phase)
+    .out_start, .out_frame_start, .out_re(out_data), .out_im(), .saturations(clipped_phase),
+    .flipped(phase_flipped)
   );
 
   logic [CountWidth-1:0] count;

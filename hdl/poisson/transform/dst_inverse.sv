@@ -27,6 +27,7 @@ module dst_inverse #(
   parameter int OutputDrop = 3,    // fraction bits from the arithmetic to the output
   parameter int OutWidth   = 24,
   parameter int Sine       = 1,    // 1: DST-II; 0: DCT-II, without the sign (-1)^n
+  parameter int Parity     = 0,  // 1: a parity bit in each word of a memory
   localparam int CountWidth = 8 + $clog2(Paths)
 ) (
   input  wire                       clk,
@@ -42,7 +43,8 @@ module dst_inverse #(
   output logic                      out_alone,       // with out_start
   output logic [Paths*OutWidth-1:0] out_a,           // samples, F - InputDrop - OutputDrop fraction bits
   output logic [Paths*OutWidth-1:0] out_b,
-  output logic [CountWidth-1:0]     saturations      // clip count, delayed
+  output logic [CountWidth-1:0]     saturations,     // clip count, delayed
+  output logic                      flipped          // a word that was read has a flipped bit
 );
 
   localparam int Beats = Size / Paths;
@@ -53,13 +55,15 @@ module dst_inverse #(
   localparam int ToRotated = Beats / 2 + 3 + 5;
   localparam int ToTransformed = ToRotated + Beats - 1 + 2 * Log2Size + 5 * Twiddles;
 
+  logic pairs_flipped, phase_flipped, fft_flipped, alone_flipped;
+  assign flipped = pairs_flipped | phase_flipped | fft_flipped | alone_flipped;
   logic pair_start, pair_frame_start;
   logic [Paths*InWidth-1:0] pair_re, pair_im;
   logic [$clog2(2*Paths+1)-1:0] clipped_pairs;
-  row_pairs #(.Width(InWidth), .Size(Size), .Paths(Paths)) u_pairs (
+  row_pairs #(.Width(InWidth), .Size(Size), .Paths(Paths), .Parity(Parity)) u_pairs (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_a, .in_b,
     .out_start(pair_start), .out_frame_start(pair_frame_start), .out_re(pair_re), .out_im(pair_im),
-    .saturations(clipped_pairs)
+    .saturations(clipped_pairs), .flipped(pairs_flipped)
   );
 
   logic rotated_start, rotated_frame_start;
@@ -67,24 +71,25 @@ module dst_inverse #(
   logic [$clog2(2*Paths+1)-1:0] clipped_phase;
   twiddle #(
     .InWidth(InWidth), .OutWidth(Width), .CoeffWidth(CoeffWidth), .Drop(CoeffWidth - 1 + InputDrop), .Paths(Paths),
-    .Beats(Beats), .File({TableFolder, "phase_inverse.hex"})
+    .Beats(Beats), .File({TableFolder, "phase_inverse.hex"}), .Parity(Parity)
   ) u_phase (
     .clk, .rst, .en,
     .in_start(pair_start), .in_frame_start(pair_frame_start), .in_re(pair_re), .in_im(pair_im),
     .out_start(rotated_start), .out_frame_start(rotated_frame_start), .out_re(rotated_re), .out_im(rotated_im),
-    .saturations(clipped_phase)
+    .saturations(clipped_phase), .flipped(phase_flipped)
   );
 
   logic fft_start, fft_frame_start;
   logic [Paths*Width-1:0] fft_re, fft_im;
   logic [$clog2(Paths*Stages+1)-1:0] clipped_fft;
   fft #(
-    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Paths(Paths), .Inverse(1)
+    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Paths(Paths), .Inverse(1),
+    .Parity(Parity)
   ) u_fft (
     .clk, .rst, .en,
     .in_start(rotated_start), .in_frame_start(rotated_frame_start), .in_re(rotated_re), .in_im(rotated_im),
     .out_start(fft_start), .out_frame_start(fft_frame_start), .out_re(fft_re), .out_im(fft_im),
-    .saturations(clipped_fft)
+    .saturations(clipped_fft), .flipped(fft_flipped)
   );
 
   // Samples of odd index are the second half of the positions.
@@ -118,8 +123,8 @@ module dst_inverse #(
   end
 
   logic alone, start_q, frame_start_q;  // alone: of the samples present
-  td_delay_line #(.Width(1), .Delay(ToTransformed + 2)) u_alone (
-    .clk, .rst, .en, .in(in_alone), .out(out_alone)
+  td_delay_line #(.Width(1), .Delay(ToTransformed + 2), .Parity(Parity)) u_alone (
+    .clk, .rst, .en, .in(in_alone), .out(out_alone), .flipped(alone_flipped)
   );
 
   logic [CountWidth-1:0] count;

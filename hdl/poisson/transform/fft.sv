@@ -30,6 +30,7 @@ module fft #(
   parameter int Size       = 128,  // a power of two, at least 8
   parameter int Paths      = 2,  // a power of two up to Size / 2
   parameter int Inverse    = 0,
+  parameter int Parity     = 0,  // 1: a parity bit in each word of a memory
   localparam int Log2Size = $clog2(Size),
   localparam int Stages = Log2Size + (Log2Size - 1) / 2,
   localparam int CountWidth = $clog2(Paths * Stages + 1)  // of a sum and its difference, or of a product, one clips
@@ -45,7 +46,8 @@ module fft #(
   output logic                   out_frame_start,
   output logic [Paths*Width-1:0] out_re,
   output logic [Paths*Width-1:0] out_im,
-  output logic [CountWidth-1:0]  saturations      // clip count, delayed
+  output logic [CountWidth-1:0]  saturations,     // clip count, delayed
+  output logic                   flipped          // a word that was read has a flipped bit
 );
 
   localparam int PathWidth = $clog2(Paths);
@@ -71,6 +73,8 @@ module fft #(
   wire [Stages:0] start, frame_start;
   wire [Stages:0][Paths*Width-1:0] re, im;
   wire [Stages-1:0][StageCountWidth-1:0] clipped;
+  wire [Stages-1:0][2:0] flips;  // of the commutators and the stage behind them
+  assign flipped = flips != '0;
   assign start[0] = in_start;
   assign frame_start[0] = in_frame_start;
   assign re[0] = in_re;
@@ -92,49 +96,57 @@ module fft #(
     wire [Paths*Width-1:0] once_re, once_im, moved_re, moved_im;
     if (Moves > 0) begin : g_move_0
       localparam int Delay = 1 << (Inverse != 0 ? WindowBefore : WindowBefore - 1);
-      commutator #(.Width(Width), .Paths(Paths), .Beats(Beats), .Delay(Delay), .Up(Inverse)) u_commutator (
+      commutator #(
+        .Width(Width), .Paths(Paths), .Beats(Beats), .Delay(Delay), .Up(Inverse), .Parity(Parity)
+      ) u_commutator (
         .clk, .rst, .en, .in_start(start[i]), .in_frame_start(frame_start[i]), .in_re(re[i]), .in_im(im[i]),
-        .out_start(once_start), .out_frame_start(once_frame_start), .out_re(once_re), .out_im(once_im)
+        .out_start(once_start), .out_frame_start(once_frame_start), .out_re(once_re), .out_im(once_im),
+        .flipped(flips[i][0])
       );
     end else begin : g_stay_0
       assign once_start = start[i];
       assign once_frame_start = frame_start[i];
       assign once_re = re[i];
       assign once_im = im[i];
+      assign flips[i][0] = 1'b0;
     end
     if (Moves > 1) begin : g_move_1
       localparam int Delay = 1 << (Inverse != 0 ? WindowBefore + 1 : WindowBefore - 2);
-      commutator #(.Width(Width), .Paths(Paths), .Beats(Beats), .Delay(Delay), .Up(Inverse)) u_commutator (
+      commutator #(
+        .Width(Width), .Paths(Paths), .Beats(Beats), .Delay(Delay), .Up(Inverse), .Parity(Parity)
+      ) u_commutator (
         .clk, .rst, .en, .in_start(once_start), .in_frame_start(once_frame_start), .in_re(once_re), .in_im(once_im),
-        .out_start(moved_start), .out_frame_start(moved_frame_start), .out_re(moved_re), .out_im(moved_im)
+        .out_start(moved_start), .out_frame_start(moved_frame_start), .out_re(moved_re), .out_im(moved_im),
+        .flipped(flips[i][1])
       );
     end else begin : g_stay_1
       assign moved_start = once_start;
       assign moved_frame_start = once_frame_start;
       assign moved_re = once_re;
       assign moved_im = once_im;
+      assign flips[i][1] = 1'b0;
     end
 
     if (Part == 2) begin : g_twiddle
       twiddle #(
         .InWidth(Width), .OutWidth(Width), .CoeffWidth(CoeffWidth), .Drop(CoeffWidth - 1), .Paths(Paths),
-        .Beats(Beats), .Block(Paths == 1 ? Block : Beats), .Ones(ones(Block, Window)),
+        .Beats(Beats), .Block(Paths == 1 ? Block : Beats), .Ones(ones(Block, Window)), .Parity(Parity),
         .File({TableFolder, Inverse != 0 ? "twiddle_inverse_" : "twiddle_forward_", "0" + 8'(Pair), ".hex"})
       ) u_twiddle (
         .clk, .rst, .en,
         .in_start(moved_start), .in_frame_start(moved_frame_start), .in_re(moved_re), .in_im(moved_im),
         .out_start(start[i+1]), .out_frame_start(frame_start[i+1]), .out_re(re[i+1]), .out_im(im[i+1]),
-        .saturations(clipped[i])
+        .saturations(clipped[i]), .flipped(flips[i][2])
       );
     end else if (Paths == 1) begin : g_single_path
       sdf_butterfly #(
         .Width(Width), .Size(Size), .Delay(Block >> (Part + 1)), .RotateBlock(Halve != 0 && Block > 2 ? Block : 0),
-        .Inverse(Inverse), .Halve(Halve)
+        .Inverse(Inverse), .Halve(Halve), .Parity(Parity)
       ) u_butterfly (
         .clk, .rst, .en,
         .in_start(moved_start), .in_frame_start(moved_frame_start), .in_re(moved_re), .in_im(moved_im),
         .out_start(start[i+1]), .out_frame_start(frame_start[i+1]), .out_re(re[i+1]), .out_im(im[i+1]),
-        .saturations(clipped[i])
+        .saturations(clipped[i]), .flipped(flips[i][2])
       );
     end else begin : g_butterfly
       localparam int Bit = $clog2(Block) - 1 - Part;         // of the position
@@ -149,6 +161,7 @@ module fft #(
         .out_start(start[i+1]), .out_frame_start(frame_start[i+1]), .out_re(re[i+1]), .out_im(im[i+1]),
         .saturations(clipped[i])
       );
+      assign flips[i][2] = 1'b0;
     end
   end
 

@@ -12,7 +12,8 @@
 module row_order #(
   parameter int Width   = 24,
   parameter int Columns = 128,  // a power of two
-  parameter int Paths   = 4  // a power of two up to Columns / 2
+  parameter int Paths   = 4,  // a power of two up to Columns / 2
+  parameter int Parity  = 0  // 1: a parity bit in each word of a memory
 ) (
   input  wire                    clk,
   input  wire                    rst,
@@ -22,7 +23,8 @@ module row_order #(
   input  wire  [Width-1:0]       in_data,          // a word of any format, unchanged in out_data
   output logic                   out_start,
   output logic                   out_frame_start,  // the first burst of a frame
-  output logic [Paths*Width-1:0] out_data
+  output logic [Paths*Width-1:0] out_data,
+  output logic                   flipped           // a word that was read has a flipped bit
 );
 
   localparam int PositionWidth = $clog2(Columns);
@@ -38,6 +40,8 @@ module row_order #(
   assign position = in_frame_start ? '0 : position_q;
   assign makhoul = {position[0], position[PositionWidth-1:1] ^ {(PositionWidth - 1){position[0]}}};
 
+  logic [Paths-1:0] flips;
+  assign flipped = flips != '0;
   for (genvar path = 0; path < Paths; path++) begin : g_path
     wire own;  // the word present belongs to the path
     if (Paths == 1) begin : g_all
@@ -45,14 +49,15 @@ module row_order #(
     end else begin : g_some
       assign own = (makhoul >> BeatWidth) == PositionWidth'(path);
     end
-    td_ram #(.Width(Width), .Depth(2 * Beats)) u_ram (
-      .clk,
+    td_parity_ram #(.Width(Width), .Depth(2 * Beats), .Parity(Parity)) u_ram (
+      .clk, .en,
       .write_en     (en & in_valid & own),
       .write_address({write_bank, makhoul[BeatWidth-1:0]}),
       .write_data   (in_data),
       .read_en      (en & read_active),
       .read_address ({read_bank, beat}),
-      .read_data    (out_data[path*Width+:Width])
+      .read_data    (out_data[path*Width+:Width]),
+      .flipped      (flips[path])
     );
   end
 

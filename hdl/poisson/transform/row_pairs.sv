@@ -16,9 +16,10 @@
 `default_nettype none
 
 module row_pairs #(
-  parameter int Width = 27,
-  parameter int Size  = 128,  // a power of two
-  parameter int Paths = 4,  // a power of two up to Size / 4
+  parameter int Width  = 27,
+  parameter int Size   = 128,  // a power of two
+  parameter int Paths  = 4,  // a power of two up to Size / 4
+  parameter int Parity = 0,  // 1: a parity bit in each word of a memory
   localparam int CountWidth = $clog2(2 * Paths + 1)
 ) (
   input  wire                    clk,
@@ -32,7 +33,8 @@ module row_pairs #(
   output logic                   out_frame_start,
   output logic [Paths*Width-1:0] out_re,
   output logic [Paths*Width-1:0] out_im,
-  output logic [CountWidth-1:0]  saturations      // clip count, delayed
+  output logic [CountWidth-1:0]  saturations,     // clip count, delayed
+  output logic                   flipped          // a word that was read has a flipped bit
 );
 
   localparam int Beats = Size / Paths;
@@ -67,20 +69,23 @@ module row_pairs #(
   end
 
   logic [2*Paths*Width-1:0] beat, mirrored;  // row a in the lower bits
+  logic [2*Paths-1:0] beat_flipped, mirrored_flipped;
+  assign flipped = {beat_flipped, mirrored_flipped} != '0;
   for (genvar word = 0; word < 2 * Paths; word++) begin : g_word
     logic [Width-1:0] in;
     assign in = word < Paths ? in_a[word%Paths*Width+:Width] : in_b[word%Paths*Width+:Width];
-    td_delay_line #(.Width(Width), .Delay(Beats / 2 + 2)) u_beat (
-      .clk, .rst, .en, .in, .out(beat[word*Width+:Width])
+    td_delay_line #(.Width(Width), .Delay(Beats / 2 + 2), .Parity(Parity)) u_beat (
+      .clk, .rst, .en, .in, .out(beat[word*Width+:Width]), .flipped(beat_flipped[word])
     );
-    td_ram #(.Width(Width), .Depth(Beats)) u_mirrored (
-      .clk,
+    td_parity_ram #(.Width(Width), .Depth(Beats), .Parity(Parity)) u_mirrored (
+      .clk, .en,
       .write_en     (en & active_q[1]),
       .write_address(position_q[1]),
       .write_data   (in),
       .read_en      (en & read_active),
       .read_address (mirrored_position),
-      .read_data    (mirrored[word*Width+:Width])
+      .read_data    (mirrored[word*Width+:Width]),
+      .flipped      (mirrored_flipped[word])
     );
   end
 

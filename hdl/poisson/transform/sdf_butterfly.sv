@@ -17,7 +17,8 @@ module sdf_butterfly #(
   parameter int Delay       = 64,  // a power of two up to Size / 2
   parameter int RotateBlock = 0,  // 0, or a power of two from 4 to Size
   parameter int Inverse     = 0,
-  parameter int Halve       = 0
+  parameter int Halve       = 0,
+  parameter int Parity      = 0  // 1: a parity bit in each word of a memory
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -30,7 +31,8 @@ module sdf_butterfly #(
   output logic                    out_frame_start,
   output logic signed [Width-1:0] out_re,
   output logic signed [Width-1:0] out_im,
-  output logic [1:0]              saturations      // clip count, delayed
+  output logic [1:0]              saturations,     // clip count, delayed
+  output logic                    flipped          // a word that was read has a flipped bit
 );
 
   localparam int PositionWidth = $clog2(Size);
@@ -75,9 +77,10 @@ module sdf_butterfly #(
   assign {sum_im, unused_carry[1]} = {a_im, 1'b1} + {b_im[Width-1], b_im, minus_im};
   assign {difference_re, unused_carry[2]} = {a_re, 1'b1} + {~b_re[Width-1], ~b_re, ~minus_re};
   assign {difference_im, unused_carry[3]} = {a_im, 1'b1} + {~b_im[Width-1], ~b_im, ~minus_im};
-  td_delay_line #(.Width(2 * (Width + 1)), .Delay(Delay)) u_delay (
+  td_delay_line #(.Width(2 * (Width + 1)), .Delay(Delay), .Parity(Parity)) u_delay (
     .clk, .rst, .en,
-    .in(second ? {difference_re, difference_im} : {(Width + 1)'(in_re), (Width + 1)'(in_im)}), .out({a_re, a_im})
+    .in(second ? {difference_re, difference_im} : {(Width + 1)'(in_re), (Width + 1)'(in_im)}), .out({a_re, a_im}),
+    .flipped
   );
 
   logic leaves_first_q, frame_start_q;

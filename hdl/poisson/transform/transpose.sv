@@ -20,7 +20,8 @@ module transpose #(
   parameter int Columns    = 128,  // a power of two, at least 4
   parameter int MakhoulIn  = 0,
   parameter int MakhoulOut = 1,
-  parameter int Style      = 1  // of the memory, hdl/common/td_ram.sv
+  parameter int Style      = 1,  // of the memory, hdl/common/td_ram.sv
+  parameter int Parity     = 0  // 1: a parity bit in each word of a memory
 ) (
   input  wire              clk,
   input  wire              rst,
@@ -30,7 +31,8 @@ module transpose #(
   input  wire  [Width-1:0] in_data,         // a word of any format, unchanged in out_data
   output logic             out_start,
   output logic             out_frame_start,
-  output logic [Width-1:0] out_data
+  output logic [Width-1:0] out_data,
+  output logic             flipped   // a word that was read has a flipped bit
 );
 
   localparam int IndexWidth = $clog2(Columns);
@@ -62,22 +64,21 @@ module transpose #(
   assign column = read_position[2*IndexWidth-1:IndexWidth];
   assign read_row = MakhoulOut != 0 ? makhoul(read_position[IndexWidth-1:0]) : read_position[IndexWidth-1:0];
 
-  logic [Width-1:0] word;
-  td_ram #(.Width(Width), .Depth(Columns * Columns), .Style(Style)) u_ram (
-    .clk,
+  td_parity_ram #(.Width(Width), .Depth(Columns * Columns), .Style(Style), .Latency(2), .Parity(Parity)) u_ram (
+    .clk, .en,
     .write_en     (en & write_active),
     .write_address(write_transposed ? {write_column, row} : {row, write_column}),
     .write_data   (in_data),
     .read_en      (en & read_active),
     .read_address (read_transposed ? {column, read_row} : {read_row, column}),
-    .read_data    (word)
+    .read_data    (out_data),
+    .flipped
   );
 
   always_ff @(posedge clk) begin
     if (en) begin
       start_q <= {start_q[0], in_start};
       frame_start_q <= {frame_start_q[0], in_frame_start};
-      out_data <= word;
       if (write_active) write_position <= write_position + IndexWidth'(1);
       if (read_active) read_position <= read_position + (2 * IndexWidth)'(1);
       row_q <= row + IndexWidth'(write_active & (write_position == IndexWidth'(Columns - 1)));

@@ -20,6 +20,7 @@ module twiddle #(
   parameter int Block      = Beats,  // a power of two up to Beats: beats that repeat their factors
   parameter int RealOnly   = 0,                            // out_im is 0
   parameter logic [Paths-1:0] Ones = '0,
+  parameter int Parity     = 0,  // 1: a parity bit in each word of a memory
   parameter     File       = "twiddle_inverse_0.hex", // Block words: {-Im, Im, Re} of each path, path 0 lowest
   localparam int CountWidth = $clog2(2 * Paths + 1)
 ) (
@@ -34,7 +35,8 @@ module twiddle #(
   output logic                      out_frame_start,
   output logic [Paths*OutWidth-1:0] out_re,          // F + CoeffWidth - 1 - Drop fraction bits, as out_im
   output logic [Paths*OutWidth-1:0] out_im,
-  output logic [CountWidth-1:0]     saturations      // clip count, delayed
+  output logic [CountWidth-1:0]     saturations,     // clip count, delayed
+  output logic                      flipped          // a word that was read has a flipped bit
 );
 
   localparam int SumWidth = InWidth + CoeffWidth + 1;
@@ -54,16 +56,19 @@ module twiddle #(
   localparam int InBlockAbove = Paths == 1 ? td_memory_pkg::DistributedBits : td_memory_pkg::LateBits;
   localparam int InBlock = FactorWidth * Block > InBlockAbove ? 1 : 0;
   logic [BlockWidth-1:0] address;
-  logic [Paths*FactorWidth-1:0] read, factors;
-  td_rom #(.Width(Paths * FactorWidth), .Depth(Block), .File(File), .Style(InBlock)) u_rom (
-    .clk, .en, .address, .data(read)
+  logic [Paths*FactorWidth-1:0] factors;
+  logic factors_flipped;
+  logic [Paths-1:0] late_flipped;
+  assign flipped = factors_flipped | (late_flipped != '0);
+  td_parity_rom #(
+    .Width(Paths * FactorWidth), .Depth(Block), .File(File), .Style(InBlock), .Latency(1 + InBlock), .Parity(Parity)
+  ) u_rom (
+    .clk, .en, .address, .data(factors), .flipped(factors_flipped)
   );
   if (InBlock != 0) begin : g_register_behind
     assign address = beat[BlockWidth-1:0];
-    always_ff @(posedge clk) if (en) factors <= read;
   end else begin : g_register_in_front
     always_ff @(posedge clk) if (en) address <= beat[BlockWidth-1:0];
-    assign factors = read;
   end
 
   logic [2*Paths-1:0] clipped;  // real part, imaginary part of each path
@@ -74,8 +79,8 @@ module twiddle #(
     if (Ones[path]) begin : g_one
       // word - word / 2^Drop, the quotient rounded to even: a tie has an even word, so this is the product rounded.
       logic [1:0][InWidth-1:0] late, gained_q;
-      td_delay_line #(.Width(2 * InWidth), .Delay(ToProduct)) u_late (
-        .clk, .rst, .en, .in(word), .out(late)
+      td_delay_line #(.Width(2 * InWidth), .Delay(ToProduct), .Parity(Parity)) u_late (
+        .clk, .rst, .en, .in(word), .out(late), .flipped(late_flipped[path])
       );
       for (genvar part = 0; part < 2; part++) begin : g_part
         logic [InWidth-1:0] quotient, gained;
@@ -90,6 +95,7 @@ module twiddle #(
     end else begin : g_product
       logic signed [CoeffWidth-1:0] w_re, w_im, w_minus_im;
       logic [1:0][SumWidth-1:0] sum;
+      assign late_flipped[path] = 1'b0;
       assign {w_minus_im, w_im, w_re} = factors[path*FactorWidth+:FactorWidth];
       td_dot_product #(.AWidth(InWidth), .BWidth(CoeffWidth)) u_re (
         .clk, .en, .a0(word[0]), .b0(w_re), .a1(word[1]), .b1(w_minus_im), .sum(sum[0])

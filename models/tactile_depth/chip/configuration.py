@@ -50,6 +50,14 @@ from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle import coefficient_gain
 from tactile_depth.chip.resources import BLOCK, ULTRA
 
+CHECK_COLUMNS, CHECK_BEATS = 32, 8  # at least, of the check of frames
+
+
+def can_check(columns: int, lanes: int) -> bool:
+    """Return whether frames of a grid can check themselves; a row of many lanes leaves time for their sums."""
+    beats = columns // max(1, lanes)
+    return columns >= CHECK_COLUMNS and beats >= max(CHECK_BEATS, 3 + lanes.bit_length())
+
 
 @former_names(auto_zero="zero_offset")
 @dataclass(frozen=True)
@@ -88,6 +96,10 @@ class Configuration:
         The depth that is read without contact is subtracted.
     light_gains : bool
         A gain for each colour follows the light; needs polynomials.
+    parity : bool
+        A parity bit in each word of the memories, by which the device sees a flipped bit.
+    self_check : bool
+        The depth of each frame is put into the equation, by which the device sees an error of the solver.
     """
 
     columns: Annotated[int, Choice(variable="N", option="--grid {}x..")] = 128
@@ -110,6 +122,8 @@ class Configuration:
     flat_field: bool = False
     zero_offset: bool = False
     light_gains: Annotated[bool, Choice(option="--no-light-gains")] = False
+    parity: Annotated[bool, Choice(option="parity={}")] = False  # no option of the command has it, nor the next
+    self_check: Annotated[bool, Choice(option="self_check={}")] = False
 
     def __post_init__(self) -> None:
         model, solver = Argument("gradient_model", self.gradient_model), Argument("solver", self.solver)
@@ -133,6 +147,12 @@ class Configuration:
                 remedy=("set both the same, or ", Argument("solver", "tridiagonal")),
             )
         self._check_lanes()
+        if self.self_check and not can_check(self.columns, self.lanes):
+            raise InputError(
+                *(Argument("self_check", True), " with ", columns, ", ", Argument("lanes", self.lanes)),
+                f": it takes {CHECK_COLUMNS} columns or more, and {CHECK_BEATS} clocks for a row of depth",
+                remedy=("set ", Argument("self_check", False)),
+            )
         for name, number in NUMBERS.items():
             within(Argument(name, getattr(self, name)), *number.accepted)
         self._check_sums()

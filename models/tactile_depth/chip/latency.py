@@ -33,6 +33,7 @@ def by_core(config: Configuration) -> list[tuple[str, str, int]]:
         *[("gradient_unit", "gradient_lookup", table)] * config.has_table,
         ("poisson_unit", "divergence", divergence.LATENCY),
         *(("poisson_unit", *step) for step in by_solver_core(config)),
+        *[("poisson_unit", "self_check", 0)] * config.self_check,
         *[("depth_unit", "zero_offset", zero), ("depth_unit", "zero_capture", 0)] * config.zero_offset,
         ("contact_unit", "depth_gate", td_axis_skid.LATENCY),
         ("contact_unit", "contact_events", 0),

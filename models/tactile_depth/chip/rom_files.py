@@ -36,8 +36,8 @@ def write_crcs(folder: Path) -> int:
     return zlib.crc32(listed)
 
 
-def write_words(path: Path, words: Iterable[int], width: int) -> None:
-    """Write non-negative words of `width` bits.
+def write_words(path: Path, words: Iterable[int], width: int, parity: bool = False) -> None:
+    """Write non-negative words of `width` bits, with `parity` the parity of each on top of it.
 
     Raises
     ------
@@ -47,8 +47,9 @@ def write_words(path: Path, words: Iterable[int], width: int) -> None:
     words = [int(word) for word in words]
     if words and not 0 <= min(words) <= max(words) < 1 << width:
         raise ValueError(f"{path.name}: words from {min(words)} to {max(words)} do not fit {width} unsigned bits")
-    digits = (width + 3) // 4
-    path.write_text("".join(f"{word:0{digits}x}\n" for word in words), newline="\n")
+    digits = (width + parity + 3) // 4
+    whole = (word | (parity and word.bit_count() % 2) << width for word in words)
+    path.write_text("".join(f"{word:0{digits}x}\n" for word in whole), newline="\n")
 
 
 def pack(fields: Iterable[np.ndarray], width: int) -> list[int]:
@@ -77,52 +78,52 @@ def unsigned(words: np.ndarray, width: int) -> np.ndarray:
     return words & (2 * half - 1)
 
 
-def write_factors(path: Path, factors: np.ndarray, width: int) -> None:
+def write_factors(path: Path, factors: np.ndarray, width: int, parity: bool = False) -> None:
     """Write complex factors (beats, paths, 2) as twiddle.sv reads them: {-Im, Im, Re} of each path, path 0 lowest."""
     re, im = np.moveaxis(factors[:, ::-1], -1, 0)
     fields = np.stack((-im, im, re), axis=-1).reshape(len(re), -1)
-    write_words(path, pack(fields.T, width), fields.shape[1] * width)
+    write_words(path, pack(fields.T, width), fields.shape[1] * width, parity)
 
 
-def write_direction(folder: Path, size: int, paths: int, inverse: bool, width: int) -> None:
+def write_direction(folder: Path, size: int, paths: int, inverse: bool, width: int, parity: bool = False) -> None:
     """Write the ROMs of fft.sv in one direction, and the phases of the transform around it."""
     direction = "inverse" if inverse else "forward"
     blocks = sorted({s.block for s in stages(size, inverse) if s.delay == 0}, reverse=True)
     for pair, block in enumerate(blocks):
         factors = path_factors(size, paths, block, inverse, width)
-        write_factors(folder / f"twiddle_{direction}_{pair}.hex", factors, width)
+        write_factors(folder / f"twiddle_{direction}_{pair}.hex", factors, width, parity)
     phases = phase_factors(size, inverse, width)
-    write_factors(folder / f"phase_{direction}.hex", phases[positions(size, paths, 0)], width)
+    write_factors(folder / f"phase_{direction}.hex", phases[positions(size, paths, 0)], width, parity)
 
 
-def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
+def write_gradient(path: Path, codes: np.ndarray, width: int, parity: bool = False) -> None:
     """Write slope codes (bins, 2) as gradient_lookup.sv reads them: {gy, gx}."""
-    write_words(path, pack((codes[:, 1], codes[:, 0]), width), 2 * width)
+    write_words(path, pack((codes[:, 1], codes[:, 0]), width), 2 * width, parity)
 
 
-def write_gains(folder: Path, gains: np.ndarray, width: int) -> None:
+def write_gains(folder: Path, gains: np.ndarray, width: int, parity: bool = False) -> None:
     """Write gains (node rows, node columns, 3) as flat_field.sv reads them."""
-    write_nodes(folder, "gain", gains, width)
+    write_nodes(folder, "gain", gains, width, parity=parity)
 
 
-def write_zero(folder: Path, zero: np.ndarray, width: int, side: int = 1) -> None:
+def write_zero(folder: Path, zero: np.ndarray, width: int, side: int = 1, parity: bool = False) -> None:
     """Write depth codes (node rows, node columns) as zero_offset.sv reads them."""
-    write_nodes(folder, "zero", unsigned(zero, width)[..., None], width, side)
+    write_nodes(folder, "zero", unsigned(zero, width)[..., None], width, side, parity)
 
 
-def write_nodes(folder: Path, name: str, nodes: np.ndarray, width: int, side: int = 1) -> None:
+def write_nodes(folder: Path, name: str, nodes: np.ndarray, width: int, side: int = 1, parity: bool = False) -> None:
     """Write words (node rows, node columns, channels) as td_node_map.sv reads them.
 
     Each channel has `side` files, and each of these the words of every side-th node.
     """
     for file, words in enumerate(np.asarray(nodes).reshape(-1, side * np.shape(nodes)[-1]).T):
-        write_words(folder / f"{name}_{file}.hex", words, width)
+        write_words(folder / f"{name}_{file}.hex", words, width, parity)
 
 
-def write_polynomials(folder: Path, words: np.ndarray, width: int) -> None:
+def write_polynomials(folder: Path, words: np.ndarray, width: int, parity: bool = False) -> None:
     """Write words (2, 3, 10) as the tables of polynomial_gradient.sv read them: one file for each polynomial."""
     for polynomial, terms in enumerate(words.reshape(-1, words.shape[-1])):
-        write_words(folder / f"polynomial_{polynomial}.hex", pack((terms,), width), width)
+        write_words(folder / f"polynomial_{polynomial}.hex", pack((terms,), width), width, parity)
 
 
 def write_thomas(folder: Path, config: Configuration) -> None:
@@ -131,23 +132,25 @@ def write_thomas(folder: Path, config: Configuration) -> None:
     last = down_positions(config)
     for name, packed in zip(("down", "up"), tables(config), strict=True):
         count = packed.words.shape[1]
-        write_words(folder / f"{name}.hex", pack(packed.words.T[::-1], width), count * width)
-        write_words(folder / f"{name}_index.hex", packed.index, packed.index_width)
+        write_words(folder / f"{name}.hex", pack(packed.words.T[::-1], width), count * width, config.parity)
+        write_words(folder / f"{name}_index.hex", packed.index, packed.index_width, config.parity)
     words = []
     for shift, word in zip(table.last_shift[last], pack(table.last[last].T[::-1], width), strict=True):
         shifts = 0
         for each in shift[::-1].tolist():
             shifts = shifts << table.last_shift_width | each
         words.append(shifts << last.shape[1] * width | word)
-    write_words(folder / "down_last.hex", words, last.shape[1] * (table.last_shift_width + width))
+    bits = last.shape[1] * (table.last_shift_width + width)
+    write_words(folder / "down_last.hex", words, bits, config.parity)
 
 
 def write_solver(folder: Path, config: Configuration) -> None:
     """Write the ROMs of the solver."""
     width = config.coefficient.width
     for inverse, paths in enumerate((config.down_words, config.up_paths)):
-        write_direction(folder, config.columns, paths, bool(inverse), width)
+        write_direction(folder, config.columns, paths, bool(inverse), width, config.parity)
     if config.solver == "tridiagonal":
         write_thomas(folder, config)
     else:
-        write_words(folder / "reciprocal.hex", reciprocal_rom(config), width + reciprocals(config).shift_width)
+        bits = width + reciprocals(config).shift_width
+        write_words(folder / "reciprocal.hex", reciprocal_rom(config), bits, config.parity)

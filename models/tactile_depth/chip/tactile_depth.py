@@ -59,6 +59,7 @@ from tactile_depth.chip.limits import (
 from tactile_depth.chip.poisson import spectral_solver, tridiagonal_solver
 from tactile_depth.chip.poisson.cores import NUMPY, Cores
 from tactile_depth.chip.poisson.divergence import divergence
+from tactile_depth.chip.poisson.self_check import check_of, self_check
 from tactile_depth.chip.registers.device_description import description_parameters
 from tactile_depth.chip.registers.register_map import WORD_BITS
 from tactile_depth.chip.registers.table_signatures import power_up_words
@@ -231,7 +232,8 @@ def depth_and_flags(
     lights = None if light is None else light[None]
     slopes, _ = slopes_and_light(frame[None], config, tables, own, dark_level, lights)
     colours_clipped = own.saturations.total()
-    depth = solve(divergence(slopes, config.neumann), config, own)
+    divergences = divergence(slopes, config.neumann)
+    depth = solve(divergences, config, own)
     depth_clipped = own.saturations.total()
     codes = zeroed(depth, config, own, zero)
     clipped = own.saturations.total()
@@ -240,7 +242,15 @@ def depth_and_flags(
     red, green, blue = (0, 0, 0) if light is None else light.tolist()
     above = int(np.count_nonzero(steep(slopes, limit, config)))
     marks = colours_clipped > 0, depth_clipped > colours_clipped, clipped > depth_clipped, light_moves, resumed
-    return depth[0], codes[0], FrameFlags(*marks, (red, green, blue), min(dark, MOST), min(above, MOST))
+    beyond = config.self_check and residuals(divergences, depth, config)[0] > check_of(config).bound
+    flags = FrameFlags(*marks, residual=bool(beyond), light_gains=(red, green, blue))
+    return depth[0], codes[0], flags._replace(dark=min(dark, MOST), steep=min(above, MOST))
+
+
+def residuals(divergences: np.ndarray, depth: np.ndarray, config: Configuration) -> np.ndarray:
+    """Return the residual of each frame, int64 (...), from its divergence and depth codes, (..., rows, columns)."""
+    upright = depth[..., ::-1, :] if config.solver == "tridiagonal" else depth
+    return self_check(divergences, upright, check_of(config))
 
 
 def light_of(
@@ -328,9 +338,19 @@ def _own_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[
         "FrameLatency": frame_latency(config),
         **_colour_parameters(config),
         "ZeroOffset": int(config.zero_offset),
+        "Parity": int(config.parity),
+        **_check_parameters(config),
         **({"BlockLog2": config.reference_block_log2} if config.zero_offset else {}),
         **description_parameters(config, pixel_pitch_mm),
     }
+
+
+def _check_parameters(config: Configuration) -> dict[str, int]:
+    """Return the parameters of the check of frames, all 0 without it."""
+    names = {"CheckDropped": "dropped", "CheckInDropped": "in_dropped", "CheckScale": "scale"}
+    names |= {"CheckScaleFraction": "scale_fraction", "CheckSumWidth": "sum_width", "ResidualBound": "bound"}
+    check = check_of(config) if config.self_check else None
+    return {name: getattr(check, number, 0) for name, number in names.items()}
 
 
 def _colour_parameters(config: Configuration) -> dict[str, int]:
@@ -376,17 +396,20 @@ def write_roms(
         write_solver(own, config)
         if config.zero_offset:
             side = td_node_map.side(config.lanes, config.reference_block_log2)
-            write_zero(own, no_zero(config) if zero is None else zero, config.depth.width, side)
+            zero_words = no_zero(config) if zero is None else zero
+            write_zero(own, zero_words, config.depth.width, side, config.parity)
         if config.flat_field:
-            write_gains(own, reference_gains(calibration, config) if gains is None else gains, config.gain.width)
+            gain_words = reference_gains(calibration, config) if gains is None else gains
+            write_gains(own, gain_words, config.gain.width, config.parity)
         if config.polynomials:
             words = polynomial_words(calibration, config)
-            write_polynomials(own, words, POLYNOMIAL.width)
+            write_polynomials(own, words, POLYNOMIAL.width, config.parity)
             corrections = correction_entries(calibration, config)
             if corrections is not None:
-                write_gradient(own / "gradient.hex", corrections, CORRECTION_WIDTH)
+                write_gradient(own / "gradient.hex", corrections, CORRECTION_WIDTH, config.parity)
         else:
-            write_gradient(own / "gradient.hex", gradient_codes(calibration, config), config.gradient.width)
+            codes = gradient_codes(calibration, config)
+            write_gradient(own / "gradient.hex", codes, config.gradient.width, config.parity)
         entries = table_entries(calibration, config, zero, gains)
         write_words(own / SIGNATURES, power_up_words(entries), WORD_BITS)
         crc = write_crcs(own)

@@ -40,6 +40,8 @@ def make_words(config: Configuration, pixel_pitch_mm: float, sources: Mapping[st
         CHOICES["depth_range_px"].variable: _depth_range(config, pixel_pitch_mm),
         "GRADIENT": config.gradient_model,
         "LIGHT_GAINS": int(config.light_gains),
+        "PARITY": int(config.parity),
+        "SELF_CHECK": int(config.self_check),
         **sources,
     }
     return " ".join(shlex.quote(f"{name}={word}") for name, word in words.items() if word != "")

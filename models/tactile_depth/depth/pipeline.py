@@ -78,6 +78,10 @@ class Pipeline:
     light_gains : bool, optional
         A gain for each colour undoes the difference of the light between picture and reference; by default with the
         models `quadratic` and `cubic`.
+    parity : bool
+        A parity bit in each word of the memories of the hardware, by which a device sees a flipped bit.
+    self_check : bool
+        The hardware puts the depth of each frame into the equation, by which a device sees an error of its solver.
     arithmetic : str
         `chip`, bit-accurate as in the hardware, or `float`, double precision.
     threshold_mm : float
@@ -110,6 +114,8 @@ class Pipeline:
         depth_range_mm: float | None = None,
         zero_offset: bool = SENSOR.zero_offset,
         light_gains: bool | None = None,
+        parity: bool = Configuration.parity,
+        self_check: bool = Configuration.self_check,
         arithmetic: Arithmetic = "chip",
         threshold_mm: float = THRESHOLD_MM,
         area_threshold_mm: float = AREA_THRESHOLD_MM,
@@ -124,6 +130,8 @@ class Pipeline:
             if not is_whole(number):
                 raise InputError(Argument(name, number), accepted="a whole number, of type int")
         require_flag(Argument("zero_offset", zero_offset))
+        require_flag(Argument("parity", parity))
+        require_flag(Argument("self_check", self_check))
         if light_gains is not None:
             require_flag(Argument("light_gains", light_gains))
         one_of(Argument("arithmetic", arithmetic), ARITHMETICS)
@@ -150,6 +158,8 @@ class Pipeline:
             depth_range_px=None if depth_range_mm is None else self.sensor.depth_range_px(depth_range_mm),
             zero_offset=zero_offset,
             light_gains=light_gains,
+            parity=parity,
+            self_check=self_check,
         )
         if not is_number(threshold_mm) or not 0 < threshold_mm / self.depth_lsb_mm < 2 ** (data_width - 1):
             limit = f"{self.config.depth_limit_px * self.pixel_pitch_mm:.3g} mm"

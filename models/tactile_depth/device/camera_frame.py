@@ -11,7 +11,7 @@ from tactile_depth.chip.contact.frame_flags import FrameFlags
 from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.link.depth_formats import FORMATS, received
 from tactile_depth.depth.pipeline import Pipeline
-from tactile_depth.device.frame import DeviceFrame
+from tactile_depth.device.frame import DeviceFrame, errors_of
 from tactile_depth.pictures.doubts import LIGHT, TAKE_ANOTHER, Doubt, Warned, doubt, percents, tell
 from tactile_depth.pictures.light_check import clipped_depth, least_clipped, pressed_out
 
@@ -37,7 +37,7 @@ def of_camera(frame: DeviceFrame, shift: int, twin: Pipeline, warned: Warned) ->
 
 def _doubts_of(frame: DeviceFrame, shift: int, twin: Pipeline) -> list[Doubt]:
     flags, name = frame.flags, f"frame {frame.number}"
-    doubts = _light(flags, name)
+    doubts = [*errors_of(frame), *_light(flags, name)]
     if flags.resumed:
         text = ": pixels before it were dropped, as of a picture that was not whole"
         doubts.append(doubt("resumed", name, text, remedy="see status(): its `input` says what comes"))

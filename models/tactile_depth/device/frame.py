@@ -16,6 +16,7 @@ from tactile_depth.chip.contact.contact_events import Record
 from tactile_depth.chip.contact.frame_flags import FrameFlags
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.depth.result import Contact, Recorder, Result
+from tactile_depth.pictures.doubts import Doubt, doubt, tell
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,5 +182,22 @@ def seen_as(frame: DeviceFrame, result: Result) -> DeviceFrame:
         sent = pixels[first:][: span * rows]
         return np.asarray(sent.reshape(rows, span, columns, span).any(axis=(1, 3)))
 
-    known = {name: getattr(result, name) for name in ("warnings", "saturations", "light_gains")}
+    errors = errors_of(frame)
+    tell(errors)
+    known = {name: getattr(result, name) for name in ("saturations", "light_gains")}
+    known["warnings"] = (*result.warnings, *map(str, errors))
     return replace(frame, dark=of_values(result.dark), outside=of_values(result.outside), **known)
+
+
+def errors_of(frame: DeviceFrame) -> list[Doubt]:
+    """Doubt a frame whose flags say that the device computed it wrongly."""
+    flags, name, found = frame.flags, f"frame {frame.number}", []
+    if flags.flipped:
+        text = ": a bit of the device's memory had flipped while it was computed"
+        remedy = "take another; if all are so, write the tables of the device again, or reset it"
+        found.append(doubt("flipped", name, text, remedy=remedy))
+    if flags.residual and not flags.depth_clipped:  # clipped depth solves no equation
+        text = ": the depth that the device computed does not fit its slopes"
+        remedy = "take another; if all are so, reset the device, and see that its clock is not too fast"
+        found.append(doubt("residual", name, text, remedy=remedy))
+    return found

@@ -35,6 +35,10 @@ class DeviceStatus(NamedTuple):
         Values clipped, and dark pixels, in all frames.
     depth_dropped, records_lost : int
         Depth frames and records that their sink did not take.
+    flips : int
+        Times that a word with a flipped bit was read from a memory with parity.
+    residuals : int
+        Frames whose depth did not fit their slopes.
     touching, busy : bool
         Something touches; a frame is in the pipeline.
     hunting, stalled : bool
@@ -62,6 +66,8 @@ class DeviceStatus(NamedTuple):
     dark_pixels: int
     depth_dropped: int
     records_lost: int
+    flips: int
+    residuals: int
     touching: bool
     busy: bool
     hunting: bool
@@ -70,5 +76,5 @@ class DeviceStatus(NamedTuple):
     input: str
 
 
-COUNTERS = tuple(name.upper() for name in DeviceStatus._fields[10:17])
+COUNTERS = tuple(name.upper() for name in DeviceStatus._fields[10:19])
 """Registers of the counters of the pipeline, in the order of the fields."""

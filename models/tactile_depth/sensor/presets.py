@@ -22,6 +22,10 @@ class Preset:
         Colours are relative to a reference, and the depth without contact is subtracted.
     light_gains : bool
         A gain for each colour follows the light.
+    parity : bool
+        A parity bit in each word of the memories.
+    self_check : bool
+        The depth of each frame is put into the equation.
     words : dict
         Numbers and depth range, as arguments of `td.Pipeline`; by default those of `td.Pipeline`.
     """
@@ -33,6 +37,8 @@ class Preset:
     grid: tuple[int, int]
     zero_offset: bool
     light_gains: bool
+    parity: bool = False
+    self_check: bool = False
     words: dict[str, float] = field(default_factory=dict)
 
 
@@ -48,7 +54,9 @@ PUBLISHED = Preset(
 """The pipeline of the published design: colours as they are sent, and a table of slopes."""
 SENSOR = Preset("tridiagonal", "neumann", "cubic", "gelsight-mini", (96, 128), zero_offset=True, light_gains=True)
 """A real sensor: colours relative to a reference and to its light, and the whole picture of a camera of 4:3."""
-CHIP = replace(SENSOR, words={STORED: 15, COEFFICIENT: 10, GAIN: 16, "depth_range_mm": 2.0})
+CHIP = replace(
+    SENSOR, parity=True, self_check=True, words={STORED: 15, COEFFICIENT: 10, GAIN: 16, "depth_range_mm": 2.0}
+)
 """A real sensor with the shortest words that add a tenth to the error of its calibration, as `make tune TOLERANCE=auto
 TARGET=ecp5` chose for 2 mm them on 45 presses of a GelSight Mini."""
 PRESETS = {"published": PUBLISHED, "sensor": SENSOR, "chip": CHIP}

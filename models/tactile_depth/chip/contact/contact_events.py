@@ -259,13 +259,17 @@ class EventsByClock:
         in_above: int,
         in_time: int,
         in_flags: int,
+        in_flipped: int,
+        in_residual: int,
         m_event_tready: int,
         **settings: int,
     ) -> dict[str, int | None]:
         """Advance by one clock edge; return the outputs before it, None where one does not count."""
         due, record = self.due.popleft(), None
+        if due:
+            due = due._replace(flags=due.flags._replace(flipped=bool(in_flipped), residual=bool(in_residual)))
         new = {"new_valid": due is not None, "new_record": joined(due.words if due else (), WORD_BITS)}
-        out: dict[str, int | None] = {"touching": self._touching.popleft()}
+        out: dict[str, int | None] = {"touching": self._touching.popleft(), "flipped": 0}
         out |= self.packets.clock(rst=rst, **new, m_event_tready=m_event_tready)
         if in_valid:
             flags = FrameFlags.of(split(in_flags, FLAG_WORDS, WORD_BITS))

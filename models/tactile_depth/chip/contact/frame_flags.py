@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from tactile_depth.chip.fixed_point import joined, split
 
-MARKS = 5  # flags of one bit, from bit 0 on
+MARKS = 7  # flags of one bit, from bit 0 on
 HALF_BITS = 16
 FLAG_WORDS = 3
 
@@ -28,12 +28,16 @@ class FrameFlags(NamedTuple):
         A light gain moves by 1/32 or more after this frame: it does not fit the light yet.
     resumed : bool
         Pixels were dropped before this frame began.
+    flipped : bool
+        A word that was read from a memory while the frame was in flight had a flipped bit.
+    residual : bool
+        The depth of the frame does not fit its slopes.
     light_gains : tuple of int
         Gains of red, green and blue in force, in units of 2**-15; 0 without light gains.
     dark, steep : int
         Dark pixels, and pixels steeper than the slopes of the calibration; 65,535 stands for more.
     others : int
-        Bits 5 to 15 of the first word, which a later device may use.
+        Bits 7 to 15 of the first word, which a later device may use.
     """
 
     colours_clipped: bool = False
@@ -41,6 +45,8 @@ class FrameFlags(NamedTuple):
     zero_clipped: bool = False
     light_moves: bool = False
     resumed: bool = False
+    flipped: bool = False
+    residual: bool = False
     light_gains: tuple[int, int, int] = (0, 0, 0)
     dark: int = 0
     steep: int = 0
@@ -49,7 +55,7 @@ class FrameFlags(NamedTuple):
     @property
     def words(self) -> tuple[int, ...]:
         """Words of the record."""
-        bits = self.colours_clipped, self.depth_clipped, self.zero_clipped, self.light_moves, self.resumed
+        bits = [int(getattr(self, name)) for name in self._fields[:MARKS]]
         marks = joined(bits, 1) | self.others << MARKS
         red, green, blue = self.light_gains
         return tuple(joined(halves, HALF_BITS) for halves in ((marks, red), (green, blue), (self.dark, self.steep)))
@@ -59,8 +65,8 @@ class FrameFlags(NamedTuple):
         """Return the flags of words of a record."""
         halves = [half for word in words for half in split(word, 2, HALF_BITS)]
         marks, red, green, blue, dark, steep = halves
-        colours, depth, zero, moves, resumed = map(bool, split(marks, MARKS, 1))
-        return cls(colours, depth, zero, moves, resumed, (red, green, blue), dark, steep, marks >> MARKS)
+        set_marks = map(bool, split(marks, MARKS, 1))
+        return cls._make((*set_marks, (red, green, blue), dark, steep, marks >> MARKS))
 
 
 NO_FLAGS = FrameFlags()

@@ -12,7 +12,7 @@ import numpy as np
 
 from tactile_depth.chip.calibration import Calibration
 from tactile_depth.chip.configuration import Configuration
-from tactile_depth.chip.contact.frame_flags import HALF_BITS, FrameFlags
+from tactile_depth.chip.contact.frame_flags import HALF_BITS, NO_FLAGS
 from tactile_depth.chip.fixed_point import joined, split
 from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.resources import Parts
@@ -63,8 +63,10 @@ class FrameMarks:
         if self._last is None or None in self._last_clipped:
             return None
         dark, moves, (red, green, blue) = self._last
-        marks = any(self._last_clipped), False, False, bool(moves), bool(resumed)
-        return joined(FrameFlags(*marks, (red, green, blue), dark, steep_count).words, 32)
+        counts = NO_FLAGS._replace(light_gains=(red, green, blue), dark=dark, steep=steep_count)
+        clipped = any(self._last_clipped)
+        flags = counts._replace(colours_clipped=clipped, light_moves=bool(moves), resumed=bool(resumed))
+        return joined(flags.words, 32)
 
     def clock(
         self, *, rst: int, en: int, slope_limit: int, dark: int, light_gains: int, light_moves: int, **pins: int

@@ -87,6 +87,7 @@ class Build:
             "DEPTH_UNIT": depth.pack(mantissa=p["DepthMantissa"], exponent=p["DepthExponent"] & exponent),
             "SLOPE_UNIT": slope.pack(mantissa=p["SlopeMantissa"], exponent=p["SlopeExponent"] & exponent),
             "ARITHMETIC": arithmetic_word(p),
+            "RESIDUAL_BOUND": p["ResidualBound"],
         }
 
 
@@ -100,6 +101,8 @@ class Events:
         Names of tactile_depth.chip.registers.event_registers.EVENTS.
     saturations : int
         Number of values clipped.
+    residual : int
+        Of the last frame.
     first_depth_latency : int or None
         Latency of the frame whose first depth value leaves; None without one.
     frame_start : bool
@@ -110,6 +113,7 @@ class Events:
 
     flags: frozenset[str] = frozenset()
     saturations: int = 0
+    residual: int = 0
     first_depth_latency: int | None = None
     frame_start: bool = False
     captured: frozenset[str] = frozenset()
@@ -144,6 +148,7 @@ class Live:
     arrived_columns: int = 0
     arrived_rows: int = 0
     self_test: int = 0
+    residual: int = 0
     capturing: frozenset[str] = frozenset()
     ending: frozenset[str] = frozenset()
     record: tuple[int, ...] = (0,) * len(RECORD)
@@ -260,6 +265,7 @@ class AxilRegisters:
         self.events.clock(
             self._arrived.flags,
             self._arrived.saturations,
+            events.residual,
             events.first_depth_latency,
             self._mask,
         )

@@ -17,6 +17,7 @@ NM_PER_MM = 1_000_000
 BESIDE_ARITHMETIC = (
     *("Lanes", "RowInverseIn", "RowInverseOut", "WordsPerRow", "DownWords", "DownTableWords", "UpTableWords"),
     *("DownSettledWidth", "UpSettledWidth", "FrameLatency", "StoreStyle", "CaptureLog2", "PitchNm", "TablesCrc"),
+    *("Parity", "ResidualBound", "CheckDropped", "CheckInDropped", "CheckScale", "CheckScaleFraction", "CheckSumWidth"),
 )
 """Fields of Config that depth does not depend on, or that follow from the others, beside those of the camera."""
 

@@ -18,9 +18,14 @@ STICKY_EVENTS = {
     "out_of_step": "out_of_step",
     "dark": "dark",
     "depth_dropped": "depth_dropped",
+    "flipped": "flipped",
+    "residual": "residual",
 }
 """Event to its bit of STATUS."""
-INTERRUPT_EVENTS = {**dict.fromkeys(FAULTS, "frame_dropped"), "record_valid": "record"}
+INTERRUPT_EVENTS = {
+    **dict.fromkeys(FAULTS, "frame_dropped"),
+    **{"record_valid": "record", "flipped": "flipped", "residual": "residual"},
+}
 """Event to its bit of INTERRUPT_STATUS."""
 EVENT_COUNTERS = {
     "frame_in": "FRAMES_IN",
@@ -29,12 +34,14 @@ EVENT_COUNTERS = {
     "dark": "DARK_PIXELS",
     "depth_dropped": "DEPTH_DROPPED",
     "record_lost": "RECORDS_LOST",
+    "flipped": "FLIPS",
+    "residual": "RESIDUALS",
 }
 """Event to the register that counts it."""
 STICKY_BITS = {event: STATUS.field(bit).mask for event, bit in STICKY_EVENTS.items()}
 INTERRUPT_BITS = {event: INTERRUPT_STATUS.field(bit).mask for event, bit in INTERRUPT_EVENTS.items()}
 EVENTS = tuple(dict.fromkeys((*STICKY_EVENTS, *INTERRUPT_EVENTS, *EVENT_COUNTERS)))
-SATURATIONS = "SATURATIONS"
+SATURATIONS, LARGEST = "SATURATIONS", "LARGEST_RESIDUAL"
 COUNTERS = (*dict.fromkeys(EVENT_COUNTERS.values()), SATURATIONS)
 LATENCY = "FIRST_DEPTH_LATENCY"
 ARRIVED = REGISTERS["ARRIVED"]
@@ -64,7 +71,9 @@ class EventRegisters:
     def reset(self) -> None:
         """Set every register to 0."""
         self.irq, self._interrupts = False, 0
-        self.values.update(dict.fromkeys(("STATUS", "INTERRUPT_STATUS", LATENCY, *COUNTERS), 0))
+        self._clears = False
+        self._late: tuple[bool, int | None] = False, None  # a clearing and a residual of the cycle before
+        self.values.update(dict.fromkeys(("STATUS", "INTERRUPT_STATUS", LATENCY, LARGEST, *COUNTERS), 0))
 
     def write(self, name: str, ones: int) -> None:
         """Clear what a write of `ones` clears."""
@@ -72,9 +81,15 @@ class EventRegisters:
             self.values[name] &= ~ones
         elif name == "CONTROL" and ones & CONTROL.field("clear_counters").mask:
             self.values.update(dict.fromkeys(COUNTERS, 0))
+            self._clears = True
 
     def clock(
-        self, events: Collection[str], saturations: int, first_depth_latency: int | None, interrupt_mask: int
+        self,
+        events: Collection[str],
+        saturations: int,
+        residual: int,
+        first_depth_latency: int | None,
+        interrupt_mask: int,
     ) -> None:
         """Take the events of one cycle, after the write of that cycle.
 
@@ -83,6 +98,8 @@ class EventRegisters:
         events : collection of str, of `EVENTS`
         saturations : int
             Number of values clipped.
+        residual : int
+            Of the frame of a record; it counts with the event `record_valid`.
         first_depth_latency : int or None
             None if no frame's first depth leaves.
         interrupt_mask : int
@@ -98,6 +115,10 @@ class EventRegisters:
         for name in {EVENT_COUNTERS[event] for event in events if event in EVENT_COUNTERS}:
             values[name] = min(values[name] + 1, WORD)
         values[SATURATIONS] = min(values[SATURATIONS] + saturations, WORD)
+        clears, late = self._late
+        left = 0 if clears else values[LARGEST]
+        values[LARGEST] = left if late is None else max(left, late)
+        self._late, self._clears = (self._clears, residual if "record_valid" in events else None), False
         if first_depth_latency is not None:
             values[LATENCY] = first_depth_latency
         self._interrupts = values["INTERRUPT_STATUS"]

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: Apache-2.0
+"""self_check against its model: the verdict in every clock; frames without a pause, gaps, pauses, the bound, reset."""
+
+import random
+from typing import Any
+
+import cocotb
+import numpy as np
+from cocotb.triggers import RisingEdge
+
+from formal.entries import Proof
+from tactile_depth.chip.poisson.self_check import Check, latency, self_check
+from tb.pins import Driver
+from tb.stream import parameters, parametrize, start_clock, uniform
+from tb.structures import ICARUS, VERILATOR, of_parameters
+
+NAMES = (
+    "Rows Columns Lanes InWidth Width InDropped Dropped Scale ScaleFraction SumWidth Bound Neumann BottomFirst "
+    "FrameLatency Parity"
+)
+built = of_parameters(NAMES)
+STRUCTURES = (
+    built(9, 64, 1, 15, 15, 5, 4, 16130, 14, 11, 212, 1, 1, 300, 1, on=VERILATOR),
+    built(8, 32, 1, 8, 7, 1, 0, 101, 7, 10, 30, 0, 0, 270, 0, on=ICARUS, mutants=ICARUS),
+    built(9, 32, 4, 9, 8, 0, 2, 77, 7, 9, 40, 1, 1, 45, 1, on=ICARUS, mutants=ICARUS),
+    built(8, 32, 2, 7, 7, 0, 1, 77, 7, 8, 20, 0, 1, 75, 0, on=ICARUS, mutants=ICARUS),
+    built(8, 64, 8, 12, 14, 3, 3, 3000, 12, 12, 1504, 0, 1, 100, 0),
+    built(8, 64, 1, 24, 24, 5, 3, 14564, 14, 23, 3405, 1, 0, 600, 0),
+    built(96, 128, 1, 15, 15, 5, 4, 32255, 15, 11, 212, 1, 1, 565, 1),
+)
+PROOFS = (
+    Proof("rows and beats are only counted; any largest residual", {"Rows": 2, "Lanes": 1}, free=("largest",)),
+    Proof("trees; a number of rows that does not", {"Rows": 3, "Lanes": 4}, free=("largest",)),
+)
+FRAMES = 5
+
+
+def check_of(dut: Any) -> Check:
+    """Return the check of the device."""
+    names = "Neumann Dropped InDropped Scale ScaleFraction SumWidth Bound"
+    neumann, *numbers = parameters(dut, *names.split())
+    return Check(bool(neumann), *numbers)
+
+
+class Timeline:
+    """Pins in each cycle with en, and the cycles of the verdicts: frames in, and out as a solver lets them leave."""
+
+    def __init__(self, dut: Any, gap: float, rest: float) -> None:
+        names = "Rows Columns Lanes Width BottomFirst FrameLatency"
+        self.rows, self.columns, self.lanes, self.width, self.bottom_first, self.frame_latency = parameters(
+            dut, *names.split()
+        )
+        self.chance, self.gap, self.rest = np.random.default_rng(cocotb.RANDOM_SEED), gap, rest
+        self.pins: dict[int, dict[str, int]] = {}
+        self.now = self.left = 0  # the next cycle for a word, and for depths
+        self.ends: list[int] = []  # cycles of the last depths of the frames
+
+    def add(self, f: Any, z: Any) -> None:
+        """Let a frame come, and its depths leave."""
+        pixels = self.rows * self.columns
+        self.now = max(self.now, self.left - self.frame_latency - pixels)  # a solver holds no frame back
+        for n, word in enumerate(f.ravel().tolist()):
+            while self.chance.random() < self.gap:
+                self.now += 1
+            self.set(self.now, in_valid=1, in_frame_start=int(n == 0), in_data=word)
+            self.now += 1
+        self.left = max(self.left, self.now - 1 + self.frame_latency)
+        for n, row in enumerate(z[::-1] if self.bottom_first else z):
+            while n and self.chance.random() < self.rest:
+                self.left += 1
+            for beat, codes in enumerate(row.reshape(-1, self.lanes).tolist()):
+                data = sum((code & (1 << self.width) - 1) << lane * self.width for lane, code in enumerate(codes))
+                self.set(self.left, out_start=int(beat == 0), out_frame_start=int(beat == n == 0), out_data=data)
+                self.left += 1
+        self.ends.append(self.left - 1)
+
+    def at(self, cycle: int) -> dict[str, int]:
+        idle = {"in_valid": 0, "in_frame_start": 0, "in_data": 0, "out_start": 0, "out_frame_start": 0, "out_data": 0}
+        return self.pins.setdefault(cycle, idle | {"rst": 0})
+
+    def set(self, cycle: int, **values: int) -> dict[str, int]:
+        self.at(cycle).update(values)
+        return self.pins[cycle]
+
+    def stimuli(self) -> list[dict[str, int]]:
+        last = max(self.pins) + latency(self.lanes) + 12
+        return [self.at(cycle) for cycle in range(last)]
+
+
+async def play(dut: Any, stimuli: list[dict[str, int]], ends: dict[int, Any], pause: float) -> None:
+    """Play cycles with en, and check the verdict in every clock.
+
+    Parameters
+    ----------
+    ends : dict
+        The cycle of the last depths of each frame to its residual.
+    pause : float
+        Chance of a clock without en before each cycle, with its pins. The check goes on in it.
+    """
+    (lanes,), bound = parameters(dut, "Lanes"), check_of(dut).bound
+    chance, edge, write = random.Random(cocotb.RANDOM_SEED), RisingEdge(dut.clk), Driver(dut)
+    start_clock(dut.clk)
+    write(**dict.fromkeys(stimuli[0], 0) | {"rst": 1, "en": 1})
+    await edge
+    await edge
+    residual = 0
+    waiting: list[tuple[int, int]] = []  # clocks to each verdict that is to come
+    for cycle, words in enumerate(stimuli):
+        en = False
+        while not en:
+            en = chance.random() >= pause
+            write(**words, en=en)
+            await edge
+            got = int(dut.residual.value), int(dut.beyond.value)
+            assert got == (residual, residual > bound), f"cycle {cycle}"
+            waiting = [(left - 1, size) for left, size in waiting]
+            if en and cycle in ends:
+                waiting.append((latency(lanes) - 1, ends[cycle]))
+            if waiting and not waiting[0][0]:
+                residual = waiting.pop(0)[1]
+            if en and words["rst"]:
+                waiting, residual = [], 0
+    assert not waiting
+
+
+async def check(dut: Any, f: Any, z: Any, gap: float = 0.0, rest: float = 0.0, pause: float = 0.0) -> None:
+    timeline = Timeline(dut, gap, rest)
+    for frame in zip(f, z, strict=True):
+        timeline.add(*frame)
+    ends = dict(zip(timeline.ends, self_check(f, z, check_of(dut)).tolist(), strict=True))
+    await play(dut, timeline.stimuli(), ends, pause)
+
+
+def random_frames(dut: Any, frames: int, amplitude: float | None) -> Any:
+    rows, columns, in_width, width = parameters(dut, "Rows", "Columns", "InWidth", "Width")
+    shape = (frames, rows, columns)
+    return uniform(shape, in_width, amplitude), uniform(shape, width, amplitude)[:, ::-1, ::-1]
+
+
+@cocotb.test
+@parametrize(
+    (("gap", "rest", "pause"), [(0.0, 0.0, 0.0), (0.0, 0.0, 0.3), (0.2, 0.0, 0.0), (0.1, 0.3, 0.2)]),
+    ("amplitude", [1.0, None, 0.1]),
+)
+async def frames(dut: Any, gap: float, rest: float, pause: float, amplitude: float | None) -> None:
+    f, z = random_frames(dut, FRAMES, amplitude)
+    await check(dut, f, z, gap, rest, pause)
+
+
+@cocotb.test
+async def single_words(dut: Any) -> None:
+    """Send frames that are zero but for one word, near each edge: each says where it counts, and how often."""
+    rows, columns, in_width, width = parameters(dut, "Rows", "Columns", "InWidth", "Width")
+    at = [(row, column) for row in (0, 1, rows - 1) for column in (0, 1, 3, columns // 2, columns - 2, columns - 1)]
+    f, z = np.zeros((2, 2 * len(at), rows, columns), np.int64)
+    for n, (row, column) in enumerate(at):
+        f[n, row, column] = (1 << (in_width - 1)) - 1 >> n % 2
+        z[len(at) + n, row, column] = -1 << (width - 1) >> n % 2
+    if rows * columns < 1024:
+        await check(dut, f, z)
+    else:
+        await check(dut, f[::7], z[::7])
+
+
+@cocotb.test
+async def near_the_bound(dut: Any) -> None:
+    """Send frames whose residuals are the bound, one more and one less, from either side of zero."""
+    rows, columns, in_width = parameters(dut, "Rows", "Columns", "InWidth")
+    device = check_of(dut)
+    words = np.arange(-(1 << (in_width - 1)), 1 << (in_width - 1), max(1, (1 << in_width) >> 12))
+    f = np.zeros((len(words), 2, columns), np.int64)
+    f[:, 1, 1 : columns // 2] = words[:, None]
+    residuals = self_check(f, np.zeros_like(f), device)
+    near = [
+        np.flatnonzero((residuals == device.bound + more) & (words * side > 0))[:1]
+        for more in (0, 1, -1)
+        for side in (1, -1)
+    ]
+    chosen = np.zeros((sum(map(len, near)), rows, columns), np.int64)
+    chosen[:, -1] = f[np.concatenate(near), 1]
+    await check(dut, chosen, np.zeros_like(chosen))
+
+
+@cocotb.test
+@parametrize(cycles=[1, 40, 200, 333])
+async def reset(dut: Any, cycles: int) -> None:
+    """Reset some cycles before the end of what is played; then other frames come."""
+    f, z = random_frames(dut, 4, 1.0)
+    residuals = self_check(f, z, check_of(dut)).tolist()
+    parts = [Timeline(dut, 0.0, 0.0) for _ in range(2)]
+    for n, frame in enumerate(zip(f, z, strict=True)):
+        parts[n // 2].add(*frame)
+    before = parts[0].stimuli()
+    before = before[: max(1, parts[0].ends[-1] + latency(parts[0].lanes) - cycles)]
+    begun = len(before) + 1
+    ends = {end: residual for end, residual in zip(parts[0].ends, residuals[:2], strict=True) if end < begun}
+    ends |= {begun + end: residual for end, residual in zip(parts[1].ends, residuals[2:], strict=True)}
+    clear = {**dict.fromkeys(before[0], 0), "rst": 1}
+    await play(dut, [*before, clear, *parts[1].stimuli()], ends, 0.1 * (cycles % 2))
