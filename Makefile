@@ -37,6 +37,7 @@ override STAMP := $(VENV)/complete
 override TOOLS := $(VENV)/verification
 override BASELINES := $(VENV)/baselines
 override HARDWARE := $(VENV)/hardware
+override SITE := $(VENV)/site
 override LIVE := .venv-live
 # Runs a module. Its processes have a mark, by which they end when SIGKILL ends make: commands/common/signals.py.
 override run := exec env TACTILE_DEPTH_RUN="$$TACTILE_DEPTH_RUN/$$PPID-$$$$" $(PY) -m
@@ -49,7 +50,7 @@ override need_icarus := command -v iverilog > /dev/null || { \
 # Targets that run the command of their name; those of WITH_ICARUS need Icarus whatever the variables say.
 override WITH_ICARUS := lint mutate netlists quick regress sign-off test
 override COMMANDS := $(WITH_ICARUS) asic baselines budget calibrate certify extremes figures formal fpga presses \
-  reflex registers report sim sweep synth trade tune upsets wrap
+  reflex registers report sim site sweep synth trade tune upsets wrap
 
 .PHONY: help live-test system-tools setup clean $(COMMANDS)
 override .DEFAULT_GOAL := sim
@@ -64,7 +65,7 @@ $(COMMANDS):
 sim: $(STAMP)
 
 # Run the whole suite. CORE=a,b: all tests of these cores, on both simulators, and their lint. SIM=icarus: on one.
-test: $(HARDWARE)
+test: $(HARDWARE) $(SITE)
 
 # Write an HTML page with figures of latency, throughput, error, cost and extremes.
 report: $(STAMP)
@@ -104,8 +105,11 @@ reflex: $(STAMP)
 # Time the solve in software, frame by frame, against the clock cycles of the pipeline.
 baselines: $(BASELINES)
 
-# Write the tables of docs/results.md, docs/hardware.md and docs/software.md, and draw what pages show.
+# Write the tables of figures in pages of docs/, and draw what pages show.
 figures: $(TOOLS)
+
+# Write the pages of docs/ and a reference of the Python API as HTML into build/site.
+site: $(SITE)
 
 ## Hardware
 
@@ -160,7 +164,7 @@ system-tools:
 	  $$sudo apt-get update -qq && $$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -qq $(PACKAGES); }
 
 # Install the tools into .venv.
-setup: $(TOOLS) $(HARDWARE)
+setup: $(TOOLS) $(HARDWARE) $(SITE)
 
 # Remove build/.
 clean:
@@ -215,4 +219,11 @@ $(LIVE)/complete: requirements-live.txt requirements.txt
 $(HARDWARE): $(TOOLS) requirements-hardware.txt
 	@echo "setting up the hardware tools (once) .."
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-hardware.txt
+	@touch $@
+
+# What the pages are built with.
+$(SITE): $(STAMP) requirements-docs.txt
+	@echo "setting up the tools for pages (once) .."
+	@$(PY) -m pip install --quiet --disable-pip-version-check --constraint requirements.txt \
+	  --requirement requirements-docs.txt
 	@touch $@

@@ -318,12 +318,9 @@ def test_the_header_is_cpp_too(program: Program, tmp_path: Path, standard: str) 
     compiled(tool("g++"), *flags, source, "-o", tmp_path / "program")
 
 
-def test_the_program_and_the_results_on_the_page(tmp_path: Path) -> None:
+def test_the_example_and_the_results_on_the_page(tmp_path: Path) -> None:
     page = (ROOT / "docs" / "integrate.md").read_text()
-    code = re.search(r"^```c\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
-    assert code is not None
-    source = tmp_path / "program.c"
-    source.write_text(code[1])
+    source = ROOT / "examples" / "load_calibration.c"
     ball = td.sample("ball")
     td.Pipeline(ball.sensor, ball.reference, grid=(24, 32)).hardware(tmp_path)
     compiled(tool("gcc"), "-std=c99", *WARNINGS, f"-I{tmp_path}", "-c", source, "-o", tmp_path / "program.o")

@@ -39,3 +39,16 @@ def test_a_file_is_one_module_of_at_most_so_many_lines() -> None:
         assert re.findall(r"^(?:module|package) (\w+)", text, re.MULTILINE) == [path.stem]
         lines = text.partition("  // Refused.\n")[0].splitlines()
         assert len(lines) <= (LONGEST_TOP if path.stem == "tactile_depth" else LONGEST_CORE), path.name
+
+
+def test_the_top_has_one_clock() -> None:
+    """Look at the edges in all sources below the top."""
+    text = " ".join(repository.code(path.read_text()) for path in repository.sources("tactile_depth"))
+    assert {*re.findall(r"(?:posedge|negedge) (\w+)", text)} == {"clk"}
+
+
+def test_the_link_holds_no_depth_back() -> None:
+    """Find no ready of the depth and of the records that the pipeline sends to the link."""
+    ports = repository.code((repository.HDL / "link" / "link_unit.sv").read_text())
+    assert "s_axis_tvalid" in ports and "s_event_tvalid" in ports  # noqa: PT018
+    assert not re.search(r"\bs_(?:axis|event)_tready\b", ports)

@@ -73,14 +73,16 @@ def test_another_light_changes_no_press(
 
 
 def test_the_record_of_a_press_is_that_of_its_circle(pipeline: td.Pipeline, presses: Any) -> None:
-    """Measured: centroids 0.066 mm off on average, 0.269 at worst; areas 0.76 to 1.14 of the circle's, 0.97 on average.
+    """Measured: one contact each; centroids 0.066 mm off on average, 0.269 at worst; areas 0.76 to 1.14 of the
+    circle's, 0.97 on average.
 
-    docs/depth-map.md states these numbers, and those of all that is above the threshold.
+    docs/accuracy.md states these numbers, and those of all that is above the threshold.
     """
     found: dict[str, list[tuple[float, float]]] = {"area": [], "mask": []}
     for press in presses:
         result, ball = pipeline(press.image), on_grid(pipeline, press)
         value = measured(result, ball)
+        assert len(result.contacts) == 1, press.name
         found["area"].append((value.centroid, value.area))
         row, column = np.argwhere(result.mask).mean(axis=0)
         off = np.hypot(row - ball.y - 0.5, column - ball.x - 0.5) * pipeline.pixel_pitch_mm
@@ -96,7 +98,7 @@ def test_the_record_of_a_press_is_that_of_its_circle(pipeline: td.Pipeline, pres
 
 
 def test_more_light_is_read_as_contact_without_light_gains(real: Any, presses: Any) -> None:
-    """Compare peak and area, mean over presses, with 5 % more light. docs/depth-map.md states these numbers."""
+    """Compare peak and area, mean over presses, with 5 % more light. docs/light.md states these numbers."""
     sensor, found = td.load("gelsight-mini"), {}
     for on in (False, True):
         pipeline = td.Pipeline(sensor, real / "background.png", light_gains=on)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make figures`: write the tables of docs/{make-sim,architecture,results,hardware,software,error-budget}.md, and draw.
+"""`make figures`: write the tables of figures in PAGES of docs/ and that of promises (promises.py), and draw.
 
 Cycles, multipliers, bits and errors of the arithmetic are computed here, by the models that the RTL is compared with.
 Figures of runs that take minutes come from docs/figures.json, each with its commit, and with "changed" where the RTL,
@@ -28,7 +28,7 @@ from commands.cost.cost import CAMERAS, KINDS, XCZU7EV, cost
 from commands.hardware import estimate, lut_runs, memory_model, synth, synthesis
 from commands.hardware.targets import DEFAULT_TARGET, SEVEN_SERIES, TARGETS
 from commands.run.sim_table import coefficient_words
-from commands.study import baselines, budget, presses, trade_front
+from commands.study import baselines, budget, presses, promises, trade_front
 from commands.study.accuracy import errors
 from commands.study.press_map import press_map
 from tactile_depth.chip import latency
@@ -37,7 +37,7 @@ from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_
 from tactile_depth.chip.limits import most_lanes
 from tactile_depth.depth.twin import Twin
 
-NAMES = ("make-sim", "architecture", "results", "hardware", "software", "error-budget")
+NAMES = ("make-sim", "architecture", "results", "hardware", "software", "error-budget", "accuracy")
 PAGES = [ROOT / "docs" / f"{name}.md" for name in NAMES]
 TABLE = re.compile(r"(<!-- figures: ([^\n]+) -->\n).*?(\n<!-- end of figures -->)", re.DOTALL)
 GRIDS = (64, 128, 256)
@@ -468,3 +468,4 @@ def main() -> None:
         drawing.write_text(text)
     for page in PAGES:
         page.write_text(document(page))
+    promises.PAGE.write_text(promises.document())

@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 
 from commands.common import repository, simulator
+from tactile_depth.base.errors import InputError
 from tactile_depth.chip.camera.camera_front_end import camera_front_end, camera_front_end_parameters
 from tactile_depth.chip.camera.pixel_format import photograph
-from tactile_depth.chip.camera_configuration import FORMATS, CameraConfiguration
+from tactile_depth.chip.camera_configuration import FORMATS, CameraChoice, CameraConfiguration
+from tactile_depth.chip.configuration import Configuration
+from tactile_depth.chip.latency import last_pixel_to_first_depth, last_word_to_first_depth
 from tactile_depth.chip.resampling import resampling
 from tb.camera.tb_camera_front_end import GRID, PATTERNS, RATIOS, every_format_phase_and_ratio
 
@@ -74,3 +77,22 @@ def test_black_level_and_gains_scale_the_colours() -> None:
         camera = CameraConfiguration((60, 80), GRID, form, black_level=10 * scale, gains=(1.0, 2.0, 4.0))
         frame = camera_front_end(photograph(colours, camera), camera)
         assert frame[0, 0].tolist() == [100, 100, 80]
+
+
+def test_the_page_has_the_latency() -> None:
+    config = Configuration(columns=128, solver="tridiagonal")
+    pipeline = last_pixel_to_first_depth(config)
+    cycles = {form: last_word_to_first_depth(CameraChoice(form).on((480, 640), (128, 128)), config) for form in FORMATS}
+    pairs = {form for form, count in cycles.items() if count != cycles["rgb888"]}
+    assert pairs == {"yuyv", "yuyv_bytes"}
+    rgb, yuyv = cycles["rgb888"], cycles["yuyv"]
+    page = " ".join((repository.ROOT / "docs" / "camera.md").read_text().split())
+    assert f"the front end takes {rgb - pipeline} cycles, for YUYV whose" in page
+    assert f"second pixel of a pair {yuyv - pipeline}; with a tridiagonal pipeline" in page
+    assert f"colours as sent, {rgb} and {yuyv}." in page
+
+
+def test_a_pattern_below_a_ratio_of_two_is_refused() -> None:
+    assert CameraChoice("raw8").on((256, 256), (128, 128)).ratio == 2
+    with pytest.raises(InputError, match="2 are needed: below it some blocks lack a colour"):
+        CameraChoice("raw8").on((254, 254), (128, 128))

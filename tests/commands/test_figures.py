@@ -11,7 +11,7 @@ import pytest
 from commands.common import recorded, repository
 from commands.hardware import synth
 from commands.hardware.targets import DEFAULT_TARGET, TARGETS
-from commands.study import figures, presses
+from commands.study import budget, figures, presses
 from tactile_depth.base.errors import InputError
 
 WITHOUT_FIGURES = ("| variable |", "| J1 |", "| part |")  # heads of tables of settings and of pins
@@ -35,12 +35,51 @@ def test_a_page_has_no_other_tables_of_figures(page: Path) -> None:
     assert [head for head in heads if not head.startswith(WITHOUT_FIGURES)] == []
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/calibrate.md", "docs/error-budget.md", "docs/results.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/accuracy.md"])
 def test_a_page_quotes_how_accurate_the_default_configuration_is(page: str) -> None:
     ((_, document, _),) = figures.runs("presses")
     text = " ".join((repository.ROOT / page).read_text().split())
     assert presses.sentence(document) in text
     assert len(re.findall(r"[\d.]+ [mu]m in the middle of the picture", text)) == 1, "another set"
+
+
+def cells(text: str, row: str) -> list[str]:
+    """Return the cells of the first row with this head in a page."""
+    line = next(line for line in text.splitlines() if line.startswith(f"| {row} |"))
+    return [cell.strip() for cell in line.split("|")[2:-1]]
+
+
+def test_the_readme_has_the_figures_of_the_pages() -> None:
+    """Compare its latencies, errors and clock with the tables of docs/results.md and docs/hardware.md."""
+    docs = repository.ROOT / "docs"
+    readme, results = (repository.ROOT / "README.md").read_text(), (docs / "results.md").read_text()
+    tables = {
+        "real sensor¹, tridiagonal": "real sensor, tridiagonal",
+        "colour table², tridiagonal": "colours as sent, tridiagonal",
+        "colour table², spectral": "colours as sent, spectral",
+        "published design": "published design",
+    }
+    for name, table in tables.items():
+        text = results.partition(f"<!-- figures: {table} -->")[2]
+        assert cells(readme, f"{name}: latency") == cells(text, "first pixel to first depth, cycles")
+        row = "error, % of peak" + ", mean over 15 contacts (worst)" * (name == "published design")
+        assert cells(readme, f"{name}: error") == [cell.partition(" (")[0] for cell in cells(text, row)]
+    words = " ".join(readme.split())
+    real = results.partition("<!-- figures: real sensor, tridiagonal -->")[2]
+    cycles = cells(real, "last pixel to first depth, cycles")[1]
+    assert f"gives its first depth {cycles} cycles after the last pixel (real sensor, 128 x 128)" in words
+    clock = next(run[1] for run in figures.runs("fpga TARGET=ulx3s") if run[1]["data_width"] == 15)
+    assert f"is routed at {clock['fmax_mhz']:.1f} MHz (15-bit words, median of five seeds" in words
+    assert len(clock["fmax_mhz_by_seed"]) == 5
+
+
+def test_the_arithmetic_adds_less_than_a_tenth_of_a_micrometre() -> None:
+    ((_, document, _),) = figures.runs("budget")
+    assert document["setting"]["data_width"] == 24
+    for source in document["sources"]:
+        part = source["parts"].index("quantisation")
+        for place in source["places"].values():
+            assert all(place[measure]["rms_um"][part][0] < 0.1 for measure in budget.MEASURES)
 
 
 def test_a_run_of_other_sources_is_marked(monkeypatch: pytest.MonkeyPatch) -> None:

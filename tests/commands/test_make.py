@@ -58,7 +58,7 @@ def place(tmp_path: Path) -> Any:
     for requirements in ROOT.glob("requirements*.txt"):
         (tmp_path / requirements.name).touch()
     _program(tmp_path / ".venv" / "bin" / "python", SPY)
-    for stamp in ("complete", "verification", "baselines", "hardware"):  # each is newer than its predecessor
+    for stamp in ("complete", "verification", "baselines", "hardware", "site"):  # each is newer than its predecessor
         (tmp_path / ".venv" / stamp).touch()
     (tmp_path / ".venv-live").symlink_to(".venv")
     return tmp_path

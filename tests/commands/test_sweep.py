@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make sweep`: its configurations; no row is lost or measured twice; errors for bad input."""
 
+import contextlib
 import csv
 import json
 import os
@@ -13,6 +14,7 @@ import time
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -174,6 +176,22 @@ def test_a_torn_header_is_mended(tmp_path: Path, length: int) -> None:
     path.write_bytes(b"solver,boundary,rows,columns"[:length])
     assert table(tmp_path) == []
     assert SWEEP.complete(SMALL[:1], tmp_path) == study.read(path, Row)
+
+
+def test_a_sweep_goes_on_behind_a_cluster_that_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(_: Any, measure: Any, points: list[Point]) -> Iterator[Any]:
+        yield measure(points[0])
+        raise RuntimeError("the cluster failed")
+
+    client = SimpleNamespace(ncores=lambda: {"worker": 1})
+    monkeypatch.setattr(study, "cluster", lambda _: contextlib.nullcontext(client))
+    monkeypatch.setattr(study, "on_cluster", fails)
+    with pytest.raises(RuntimeError, match="the cluster failed"):
+        SWEEP.complete(SMALL[:2], tmp_path, "192.0.2.1:8786")
+    kept = (tmp_path / "sweep.csv").read_bytes()
+    assert kept.count(b"\n") == 2, "the head and a row"
+    assert len(SWEEP.complete(SMALL[:2], tmp_path)) == 2
+    assert (tmp_path / "sweep.csv").read_bytes().startswith(kept)
 
 
 @pytest.mark.parametrize("moment", ["SIGKILL", "SIGINT"])

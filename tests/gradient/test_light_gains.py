@@ -66,6 +66,17 @@ def test_a_slower_rate_takes_a_part_of_the_mean() -> None:
     np.testing.assert_allclose(np.array(moves[:2]) / moves[2], [[8] * 3, [4] * 3], rtol=0.02)
 
 
+def test_a_quarter_of_the_pixels_moves_the_gains() -> None:
+    """Let the light be off by 3 % where nothing touches, with as many steep slopes to either side elsewhere."""
+    quarter = -(-LIGHT.pixels // 4)
+    for untouched, moves in ((quarter, True), (quarter - 1, False)):
+        deviations = np.full((LIGHT.pixels, 3), 2 * LIGHT.near)
+        deviations[::2] *= -1
+        deviations[:untouched] = LIGHT.near // 4
+        assert LIGHT.move(deviations, np.full(3, LIGHT.unity)).all() == moves
+        assert LIGHT.move(deviations, np.full(3, LIGHT.unity)).any() == moves
+
+
 def test_a_very_large_contact_holds_the_gains() -> None:
     stream = LightFilter(LIGHT)
     stream.take(gel(1.0))

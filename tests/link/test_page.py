@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/link.md: its examples, tables and rates are those of the models."""
+"""docs/link.md and examples/link_packets.txt: bytes, tables and rates are those of the models."""
 
 import re
 
@@ -17,6 +17,7 @@ from tactile_depth.chip.link.framing import LONGEST_BODY, LONGEST_ON_LINE, most_
 from tactile_depth.chip.link.rates import rate
 
 PAGE = (ROOT / "docs" / "link.md").read_text()
+PACKETS = (ROOT / "examples" / "link_packets.txt").read_text()
 FLAGS = FrameFlags(light_gains=(0x8000,) * 3)
 RECORD = Record(3, 7, 1000, 256, (1, 0), 128, 1, (1, 0), (1, 0), 128, (16, 0), FLAGS)
 CODES = np.array([[1, -1], [256, 0]], np.int32)
@@ -44,7 +45,7 @@ FORMATS = {DepthFormat.WORDS: "24 bits", DepthFormat.SHORT: "16 bits", DepthForm
 
 
 def example_lines(name: str, packet: link.Packet) -> str:
-    """Return the lines of the page for a packet: 32 bytes in each."""
+    """Return the lines of the file for a packet: 32 bytes in each."""
     line = to_line(packet.pack())
     parts = [line[first : first + 32].hex(" ") for first in range(0, len(line), 32)]
     return "\n".join(f"{label:<13}{part}" for label, part in zip([name, *[""] * len(parts)], parts, strict=False))
@@ -60,13 +61,12 @@ def rate_line(grid: tuple[int, int], depth_format: DepthFormat) -> str:
 
 
 def test_the_examples_are_the_bytes_of_the_models() -> None:
-    block = PAGE.split("```\n")[1]
-    assert block == "".join(f"{example_lines(*example)}\n" for example in EXAMPLES.items())
+    assert "".join(f"{example_lines(*example)}\n" for example in EXAMPLES.items()) == PACKETS
 
 
 def test_the_examples_are_a_frame() -> None:
     host = DepthFrames()
-    line = bytes.fromhex(re.sub(r"(?m)^.{13}", "", PAGE.split("```\n")[1]))
+    line = bytes.fromhex(re.sub(r"(?m)^.{13}", "", PACKETS))
     (frame,) = host.feed(line)
     np.testing.assert_array_equal(frame.codes, CODES)
     assert (frame.record, host.lost, host.reader.bad_packets) == (RECORD, 0, 0)
@@ -75,7 +75,7 @@ def test_the_examples_are_a_frame() -> None:
 @pytest.mark.parametrize("title", SIZES)
 def test_the_fields_of_a_packet_follow_one_another(title: str) -> None:
     section = PAGE.split(f"### {title}\n")[1].split("\n#")[0]
-    offset = 0
+    offset = 1  # behind the kind
     for first, size in re.findall(r"^\| (\d+) \| ([\w ]+) \|", section, re.MULTILINE):
         assert int(first) == offset
         offset += int(size) if size.isdigit() else 0  # fields that repeat are the last
