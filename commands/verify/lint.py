@@ -37,6 +37,7 @@ FOLDER = repository.ROOT / "build" / "lint"
 TOOLS = repository.ROOT / "requirements-verification.txt"  # their versions
 BIN = Path(sys.executable).parent
 TIMEOUT_S = 300
+OLDEST_PYTHON = "3.10"  # of the package; commands run in a newer one
 DEFAULT_ROM = (128, 54)  # default words and bits of hdl/common/td_rom.sv
 DEFAULT_ENTRIES = 16  # of hdl/camera/camera_setup.sv
 
@@ -258,6 +259,7 @@ def checks() -> list[Check]:
     small = [structure for structure in designs if structure.config and structure.config.columns < GRIDS[1]]
     python = [sys.executable, "-m"]
     product = ["--package=tactile_depth", "--package=commands", "--package=formal", f"--cache-dir={FOLDER / 'mypy'}"]
+    oldest = [f"--python-version={OLDEST_PYTHON}", "--package=tactile_depth", f"--cache-dir={FOLDER / 'mypy-oldest'}"]
     return [
         *core_checks(list(repository.cores())),
         Check("yosys", "outermost", partial(yosys_cores, repository.outermost())),
@@ -270,6 +272,7 @@ def checks() -> list[Check]:
         Check("verible", "columns", partial(columns, others)),
         Check("ruff", "check", partial(output_of, [*python, "ruff", "check", "--quiet", "."])),
         Check("ruff", "format", partial(output_of, [*python, "ruff", "format", "--quiet", "--diff", "."])),
+        Check("mypy", "oldest", partial(output_of, [*python, "mypy", "--no-error-summary", *oldest])),
         Check("mypy", "product", partial(output_of, [*python, "mypy", "--no-error-summary", *product])),
         Check("mypy", "tests", partial(output_of, [*python, "mypy", "--no-error-summary"])),
     ]

@@ -287,7 +287,7 @@ def test_pyserial_is_missing(steady: td.Pipeline, monkeypatch: pytest.MonkeyPatc
         return load(name, *more)
 
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(td.DeviceError, match=r"a device on a serial line needs pyserial: pip install '\.\[serial\]'"):
+    with pytest.raises(td.DeviceError, match=r'needs pyserial: run pip install "tactile-depth\[serial\]"$'):
         td.Device("/dev/ttyUSB0", steady)
 
 

@@ -86,13 +86,13 @@ def test_another_python_of_a_clone_takes_that_of_make_setup(tmp_path: Path, monk
     monkeypatch.setattr(td, "__file__", str(tmp_path / "models" / "tactile_depth" / "__init__.py"))
     assert simulator.command_of(tmp_path, pins=False)[0][0] == str(own)
     own.unlink()
-    with pytest.raises(td.DeviceError, match=r"needs a clone .*: run `make setup` in a clone"):
+    with pytest.raises(td.DeviceError, match=r"needs the RTL, .*: clone https://.*, run `make setup` there"):
         simulator.command_of(tmp_path, pins=False)
 
 
 def test_a_wheel_has_no_simulator(steady: td.Pipeline, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(td, "__file__", str(tmp_path / "lib" / "tactile_depth" / "__init__.py"))
-    with pytest.raises(td.DeviceError, match="a simulated device needs a clone of the repository with its RTL: run"):
+    with pytest.raises(td.DeviceError, match="needs the RTL, which pip does not install: clone https"):
         td.Device("sim", steady)
 
 

@@ -10,6 +10,7 @@ from numbers import Integral, Real
 from typing import Any, NamedTuple
 
 LONGEST = 1000  # characters
+REPOSITORY = "https://github.com/tactile-depth/tactile-depth"  # where what messages name is
 
 
 def is_number(value: object) -> bool:

@@ -46,7 +46,7 @@ def require_circle_finder() -> None:
     if importlib.util.find_spec("skimage") is None:
         raise InputError(
             "a press has no circle, and scikit-image, which finds circles in pictures, is not installed: give the "
-            "circles, or run pip install '.[fit]' in the repository"
+            'circles, or run pip install "tactile-depth[fit]"'
         )
 
 

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import TypeVar
+
+Own = TypeVar("Own", bound="Choice")  # typing.Self, which Python 3.10 lacks
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +27,7 @@ class Choice:
     variable: str = ""
     option: str = ""
 
-    def of(self, field: str) -> Self:
+    def of(self: Own, field: str) -> Own:
         """Return the choice of a field with all its names."""
         argument = self.argument or field
         option = self.option or f"--{argument.replace('_', '-')} {{}}"

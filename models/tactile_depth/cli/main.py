@@ -18,7 +18,7 @@ from importlib.metadata import version
 from typing import NoReturn
 
 from tactile_depth.base import interruption
-from tactile_depth.base.errors import Argument, InputError, InputWarning
+from tactile_depth.base.errors import REPOSITORY, Argument, InputError, InputWarning
 from tactile_depth.base.files import cause
 from tactile_depth.chip.choices import Choice
 from tactile_depth.chip.configuration import CHOICES
@@ -29,6 +29,7 @@ from tactile_depth.device.errors import DeviceError
 PROGRAM = "tactile-depth"
 BAD_INPUT, FAILED = 2, 3
 DESCRIPTION = "Depth in millimetres from visuotactile fingertips, bit for bit as the hardware computes it."
+PAGES = f"Pages and issues: {REPOSITORY}"
 
 # Arguments of the package, and the options that a user of the command gave; {} is the value.
 SAME = (
@@ -65,7 +66,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog=PROGRAM, description=DESCRIPTION, allow_abbrev=False)
+    parser = _Parser(prog=PROGRAM, description=DESCRIPTION, epilog=PAGES, allow_abbrev=False)
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command in (depth, live, calibrate):
@@ -125,6 +126,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 128 + number
     except Exception:
         traceback.print_exc()
-        print(f"{PROGRAM}: an error of this program, not of the input: please report the lines above", file=sys.stderr)
+        report = f"please report the lines above: {REPOSITORY}/issues"
+        print(f"{PROGRAM}: an error of this program, not of the input: {report}", file=sys.stderr)
         return FAILED
     return 0

@@ -32,7 +32,7 @@ HINTS = {
     "win32": "try 0, 1, 2, and --backend dshow or msmf; close other programs that use it",
     "darwin": "try 0, 1, 2; allow the terminal the camera in System Settings, Privacy & Security",
 }
-INSTALL = "pip install '.[live]' in the repository"
+INSTALL = 'run pip install "tactile-depth[live]"'
 
 Item = np.ndarray | InputError  # a frame, or why one could not be read
 

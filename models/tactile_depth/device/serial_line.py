@@ -14,7 +14,7 @@ from tactile_depth.chip.link.rates import BITS_A_BYTE
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.transport import Pace
 
-INSTALL = "pip install '.[serial]' in the repository"
+INSTALL = 'run pip install "tactile-depth[serial]"'
 REPEAT_S, LIMIT_S, LOOK_S = 0.05, 1.0, 0.1
 STUCK_S = 5.0  # a port that takes no bytes for so long does not take any
 

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import tactile_depth
 from tactile_depth.base import files
+from tactile_depth.base.errors import REPOSITORY
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.transport import Pace
@@ -46,8 +47,9 @@ def command_of(folder: Path, pins: bool) -> tuple[list[str], Path]:
     # The simulator needs packages that `make setup` installs; another Python, as one with a viewer, may lack them.
     python = sys.executable if find_spec("cocotb_tools") else str(root / ".venv" / "bin" / "python")
     if not (root / "commands" / "run" / "device_sim.py").is_file() or not Path(python).exists():
-        problem = "a simulated device needs a clone of the repository with its RTL"
-        raise DeviceError(problem, remedy="run `make setup` in a clone, and use the Python of its .venv")
+        problem = "a simulated device needs the RTL, which pip does not install"
+        remedy = f"clone {REPOSITORY}, run `make setup` there, and use the Python of its .venv"
+        raise DeviceError(problem, remedy=remedy)
     return [python, "-m", COMMAND, str(folder), *([PINS] if pins else [])], root
 
 
