@@ -67,7 +67,7 @@ sim: $(STAMP)
 # Run the whole suite. CORE=a,b: all tests of these cores, on both simulators, and their lint. SIM=icarus: on one.
 test: $(HARDWARE) $(SITE)
 
-# Write an HTML page with figures of latency, throughput, error, cost and extremes.
+# Write an HTML page with figures of latency, throughput, error, cost and extremes. SHORT=1: in 3 minutes.
 report: $(STAMP)
 
 # Fit a calibration file to ball presses of known diameter. PRESSES=folder OUT=mine.npz

@@ -9,6 +9,7 @@ from typing import Any
 
 CLOCK_MHZ = 166.0
 FIRST_DEPTH_CYCLES = {64: 9421, 128: 35107, 256: 135448}  # after the first pixel
+FRAMES_PER_SECOND = {128: 10_106}  # measured
 
 # Resources of the XCZU7EV, as far as they are published for each grid.
 RESOURCES: dict[int, dict[str, int]] = {

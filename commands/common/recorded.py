@@ -25,6 +25,12 @@ def load() -> dict[str, dict[str, Any]]:
     return results
 
 
+def latest(command: str) -> dict[str, Any] | None:
+    """Return the last entry with figures among the lines of a command, as `presses`; None without any."""
+    lines = [entry for line, entry in sorted(load().items()) if line.split()[1] == command and "figures" in entry]
+    return lines[-1] if lines else None
+
+
 def save(results: Mapping[str, Any]) -> None:
     """Write the file, a line for each run."""
     lines = (f"{json.dumps(line)}: {json.dumps(entry)}" for line, entry in sorted(results.items()))

@@ -12,7 +12,7 @@ print(shown(Row, rows))
 import html
 import json
 import textwrap
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -60,11 +60,14 @@ class Table(NamedTuple):
         return above + "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
 
     def html(self) -> str:
+        """Return HTML; a table that is wider than the page scrolls inside itself."""
+
         def line(cells: Sequence[object], tag: str) -> str:
             return "<tr>" + "".join(f"<{tag}>{html.escape(str(cell))}</{tag}>" for cell in cells) + "</tr>"
 
         above = f"<h3>{html.escape(self.title)}</h3>" if self.title else ""
-        return f"{above}<table>{line(self.head, 'th')}{''.join(line(row, 'td') for row in self.rows)}</table>"
+        lines = f"{line(self.head, 'th')}{''.join(line(row, 'td') for row in self.rows)}"
+        return f"{above}<div class='scroll' tabindex='0'><table>{lines}</table></div>"
 
 
 def shown(kind: type, rows: Sequence[Any]) -> Table:
@@ -73,6 +76,12 @@ def shown(kind: type, rows: Sequence[Any]) -> Table:
     values = [row if isinstance(row, Mapping) else vars(row) for row in rows]
     cells = [[column.cell(row[name]) for name, column in stated.items()] for row in values]
     return Table([column.head for column in stated.values()], cells)
+
+
+def span(values: Iterable[float], form: str) -> str:
+    """Return the least and the greatest value as text."""
+    each = list(values)
+    return f"{min(each):{form}} to {max(each):{form}}"
 
 
 def counts(of: Mapping[str, int]) -> str:

@@ -7,7 +7,7 @@ library. `python -m commands.hardware.estimate COMMIT NAME=AT_45/asic.json,AT_18
 
 import json
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -147,6 +147,19 @@ def of_default_library(logic: Mapping[str, Any]) -> Estimate:
     clock_mw, toggling_mw = logic["clock_mw"] * by.clock, logic["toggling_mw"] * by.toggling
     scaled = {"area_mm2": area_mm2, "clock_mw": clock_mw, "toggling_mw": toggling_mw}
     return at_45_nm({**logic, **scaled, "leakage_mw": area_mm2 * by.leakage})
+
+
+def designs() -> Iterator[tuple[str, str, Estimate, str]]:
+    """Yield design, how its logic is known, estimate and commit; that of later RTL is known by the ratios."""
+    old = recorded_runs()
+    for name, run in old.items():
+        yield name, "", at_45_nm(run["at_45"]), run["commit"]
+    runs = [entry for line, entry in recorded.load().items() if line.startswith("make asic ") and "figures" in entry]
+    later = {entry["name"]: entry for entry in runs if "name" in entry}
+    for name, run in old.items():
+        if name in later and later[name]["commit"] != run["commit"]:
+            logic = later[name]["figures"]["logic"]
+            yield name, ", by the ratios", of_default_library(logic), later[name]["commit"]
 
 
 def rows(estimate: Estimate, logic: str) -> list[tuple[str, float, float, str]]:

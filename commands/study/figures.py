@@ -4,7 +4,7 @@
 Cycles, multipliers, bits and errors of the arithmetic are computed here, by the models that the RTL is compared with.
 Figures of runs that take minutes come from docs/figures.json, each with its commit, and with "changed" where the RTL,
 parameters and tables of the run, or the code that was timed, are no longer those of that commit. Waveforms and diagrams
-of pages are drawn from docs/waves/*.json and docs/*.dot.
+of pages are drawn from docs/waves/*.json and docs/*.dot, docs/film.png from real presses where they are.
 """
 
 import json
@@ -22,13 +22,13 @@ import wavedrom
 
 from commands.common import published, recorded, run_request
 from commands.common.repository import GENERATED, ROOT
-from commands.common.tabular import Table
+from commands.common.tabular import Table, span
 from commands.common.zero_offset import untouched
 from commands.cost.cost import CAMERAS, KINDS, XCZU7EV, cost
 from commands.hardware import estimate, lut_runs, memory_model, synth, synthesis
 from commands.hardware.targets import DEFAULT_TARGET, SEVEN_SERIES, TARGETS
 from commands.run.sim_table import coefficient_words
-from commands.study import baselines, budget, presses, promises, trade_front
+from commands.study import baselines, budget, press_film, presses, promises, trade_front
 from commands.study.accuracy import errors
 from commands.study.press_map import press_map
 from tactile_depth.chip import latency
@@ -186,7 +186,7 @@ def published_design() -> Table:
         ("DSP48E2", *of_grids(dsp)),
         ("as an ASIC, 45 nm", "-", f"{published.ASIC_AREA_MM2:.2f} mm2, {published.ASIC_POWER_MW:.0f} mW", "-"),
     ]
-    for name, one in {name: one for name, _, one, _ in at_45_nm() if name != "chip"}.items():
+    for name, one in {name: one for name, _, one, _ in estimate.designs() if name != "chip"}.items():
         area, power = span(one.placed_mm2, ".2f"), span(one.placed_mw, ".0f")
         rows.append((f"this design, {name}: estimate at 45 nm", "-", f"{area} mm2, {power} mW", "-"))
     return Table(("published", *map(str, GRIDS)), rows)
@@ -273,22 +273,6 @@ def measured() -> list[tuple[str, dict[str, Any], tuple[str, str]]]:
     return sorted(runs("asic"), key=lambda run: order.index(run[0]) if run[0] in order else len(order))
 
 
-def at_45_nm() -> Iterator[tuple[str, str, estimate.Estimate, str]]:
-    """Yield design, how its logic is known, estimate and commit; that of later RTL is known by the ratios."""
-    old = estimate.recorded_runs()
-    for name, run in old.items():
-        yield name, "", estimate.at_45_nm(run["at_45"]), run["commit"]
-    for name, figures, (commit, _) in measured():
-        if name in old and commit != old[name]["commit"]:
-            yield name, ", by the ratios", estimate.of_default_library(figures["logic"]), commit
-
-
-def span(values: Iterable[float], form: str) -> str:
-    """Return the least and the greatest value."""
-    each = list(values)
-    return f"{min(each):{form}} to {max(each):{form}}"
-
-
 def in_cells() -> Table:
     rows = []
     for name, figures, source in measured():
@@ -317,7 +301,7 @@ def recorded_at_45_nm() -> Table:
 
 def estimated() -> Table:
     rows: list[tuple[str, ...]] = []
-    for name, known, one, commit in at_45_nm():
+    for name, known, one, commit in estimate.designs():
         area = (f"{one.logic_mm2:.2f}", span(one.memory_mm2, ".2f"), span(one.placed_mm2, ".2f"))
         power = (f"{one.logic_mw:.0f}", f"{one.memory_mw:.0f}", span(one.placed_mw, ".0f"))
         rows.append((f"{name}{known}", *area, *power, commit))
@@ -469,3 +453,5 @@ def main() -> None:
     for page in PAGES:
         page.write_text(document(page))
     promises.PAGE.write_text(promises.document())
+    if reason := press_film.draw_if_there():
+        print(reason)

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make report`: one HTML page, and its figures as PNG: latency, throughput, depth, error, cost, extremes.
 
-Takes OUT=folder. It measures the contacts of the bench through the RTL of both solvers, over a thousand frames without
-a pause, the sweep, which continues where it stopped, and the extremes. It takes the results of `make budget`, `make
-reflex` and `make baselines` from build/, and runs the commands if there are none. It takes existing results of `make
-trade`, `make synth`, `make fpga` and `make asic`. Each figure names the command that makes it again.
+Takes OUT=folder and SHORT=1. It measures the contacts of the bench through the RTL of both solvers, over a thousand
+frames without a pause, the sweep, which continues where it stopped, and the extremes. It takes the results of `make
+budget`, `make reflex` and `make baselines` from build/, and runs the commands if there are none. It takes existing
+results of `make trade`, `make synth`, `make fpga` and `make asic`. Each figure names the command that makes it again.
+
+SHORT=1 measures the RTL alone: error budget and software are those of build/ or, without, of docs/figures.json; sweep
+and extremes are left out, and the reflex where build/ has none.
 """
 
 import json
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +20,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from commands.common import run_request, variables
+from commands.common import recorded, run_request, variables
 from commands.common.progress import duration
-from commands.common.published import CLOCK_MHZ, FIRST_DEPTH_CYCLES, RMS_PERCENT, WORST_RMS_PERCENT
+from commands.common.published import CLOCK_MHZ, FIRST_DEPTH_CYCLES, RMS_PERCENT
 from commands.common.repository import ROOT
 from commands.common.tabular import Table, shown
 from commands.hardware import asic, synth
@@ -28,33 +30,27 @@ from commands.run import reflex, reflex_tables, sim
 from commands.study import baselines, budget, extremes, study, sweep, trade, trade_front
 from commands.study.report_lanes import lanes_section
 from commands.study.report_page import LOOKS, PUBLISHED_LOOK, Section, page, results, saved
+from commands.study.report_summary import SIZE, UM_PER_MM, Run, exact_mm, summary
 from commands.study.transform_noise import Compliance
 from tactile_depth.base import files
 from tactile_depth.chip.configuration import COEFFICIENT, STORED, Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth
 from tactile_depth.chip.limits import COLUMNS
-from tactile_depth.depth import reference
-from tactile_depth.sensor.scenes import BENCH, SENSOR_WIDTH_MM, render
-from tactile_depth.sensor.synthetic import synthetic
+from tactile_depth.sensor.scenes import BENCH
 
 DEFAULT_OUT = ROOT / "build" / "report"
 PAGE = "report.html"
+RECORDED = "recorded at"  # commit of a document from docs/figures.json
 INTERRUPTED = "the rows of the sweep are kept, run it again to go on"
-SIZE = 128
 CONSECUTIVE = 1000  # frames, at least
-RTL_S = 240  # of these frames and the extremes, on two cores
-UM_PER_MM = 1000
+RTL_S, EXTREMES_S, BUDGET_S, REFLEX_S, PAGE_S = 100, 30, 45, 150, 15  # on two cores of 2.5 GHz
+COMMANDS = {"budget": budget, "reflex": reflex, "baselines": baselines}  # those that the report runs, by result
+LEFT_OUT = (
+    "SHORT=1 left out word lengths, depth lanes and the extremes, and the reflex unless `make reflex` has run. `make "
+    "report` has them."
+)
 EXTREMES_SIZE = 64
 EXTREMES_COMMAND = f"make extremes N={EXTREMES_SIZE} SHORT=1"
-
-
-@dataclass(frozen=True)
-class Run:
-    """Repeated contacts of the bench through the RTL."""
-
-    command: str
-    report: dict[str, Any]
-    depth_mm: np.ndarray  # of the contacts, once
 
 
 def run_rtl(solver: str, folder: Path) -> Run:
@@ -69,15 +65,41 @@ def run_rtl(solver: str, folder: Path) -> Run:
     return Run("make sim " + " ".join(words), report, depth)
 
 
+def of_commit(document: dict[str, Any]) -> str:
+    """Return a sentence on the origin of recorded results."""
+    return f" Recorded at commit {document[RECORDED]}." if RECORDED in document else ""
+
+
 def run_extremes(folder: Path) -> None:
     """Run `make extremes`. Raises Mismatch: a row is out of bounds."""
     if extremes.run(EXTREMES_SIZE, "verilator", folder, short=True):
         raise variables.Mismatch(f"a row of the extremes is out of bounds: see {folder}")
 
 
+def file_of(command: Any, name: str) -> Path:
+    """Return the file of results of make budget, make reflex or make baselines."""
+    path: Path = command.DEFAULT_OUT / f"{name}.json"
+    return path
+
+
+def recorded_document(command: Any, name: str) -> dict[str, Any] | None:
+    """Return the results that a command left in build/, or those in docs/figures.json; None without any."""
+    file = file_of(command, name)
+    if file.exists():
+        return dict(json.loads(file.read_text()))
+    entry = recorded.latest(name)
+    if entry is None:
+        return None
+    document = entry["figures"] | {RECORDED: entry["commit"]}
+    if name == "baselines":  # what is recorded leaves out the cycles of the present RTL
+        sizes = sorted({row["grid"] for row in document["software"]})
+        document["pipeline"] = baselines.pipeline(sizes, document["clock_mhz"])
+    return dict(document)
+
+
 def document_of(command: Any, name: str) -> dict[str, Any]:
     """Return the results of make budget, make reflex or make baselines; run the command first if it left none."""
-    file = command.DEFAULT_OUT / f"{name}.json"
+    file = file_of(command, name)
     if not file.exists():
         words = [
             f"OUT={command.DEFAULT_OUT}",
@@ -85,39 +107,6 @@ def document_of(command: Any, name: str) -> dict[str, Any]:
         ]  # it prints the load
         variables.read(command.run, words)
     return json.loads(file.read_text())
-
-
-def headline(runs: dict[str, Run]) -> Section:
-    rows = []
-    for solver, run in runs.items():
-        config = Configuration(columns=SIZE, solver=solver)
-        rms = run.report["rms_percent_of_peak"][: len(BENCH)]
-        cycles = first_depth_latency(config)
-        rows.append(
-            (
-                solver,
-                f"{cycles:,} ({cycles / CLOCK_MHZ:,.0f} us)",
-                f"{last_pixel_to_first_depth(config):,}",
-                f"{np.mean(rms):.4f} ({max(rms):.4f})",
-                "yes" if run.report["bit_exact"] else "no",
-            )
-        )
-    rows.append(
-        ("published", f"{FIRST_DEPTH_CYCLES[SIZE]:,} ({FIRST_DEPTH_CYCLES[SIZE] / CLOCK_MHZ:,.0f} us)", "-",
-         f"{RMS_PERCENT} ({WORST_RMS_PERCENT})", "-")
-    )  # fmt: skip
-    head = (
-        "solver",
-        f"first pixel to first depth, cycles (at {CLOCK_MHZ:g} MHz)",
-        "last pixel to first depth, cycles",
-        "RMS to double precision, % of peak: mean (worst)",
-        "RTL equals model on every code",
-    )
-    text = (
-        f"{SIZE} x {SIZE}, 24-bit words, 18-bit coefficients, default depth range, {len(BENCH)} contacts; no scale or "
-        "offset is fitted (the published figures have both fitted)."
-    )
-    return Section("summary", "In short", text, "; ".join(r.command for r in runs.values()), [Table(head, rows)])
 
 
 def latency_section(runs: dict[str, Run], folder: Path) -> Section:
@@ -171,8 +160,7 @@ def grid_section(folder: Path) -> Section:
 
 
 def depth_sections(runs: dict[str, Run], folder: Path) -> list[Section]:
-    frames = render("bench", SIZE).frames
-    want = reference.depth(frames, synthetic()) * SENSOR_WIDTH_MM / SIZE
+    want = exact_mm()
     sections = []
     for solver, run in runs.items():
         figure = Figure(figsize=(11, 12), layout="constrained")
@@ -201,9 +189,16 @@ def error_section(runs: dict[str, Run], folder: Path) -> Section:
     axis = figure.subplots()
     places, hatches = np.arange(len(BENCH)), ("", "///")
     for index, (solver, run) in enumerate(runs.items()):
-        rms = run.report["rms_percent_of_peak"][: len(BENCH)]
         at = places + 0.4 * (index - 0.5)
-        axis.bar(at, rms, 0.38, color=LOOKS[solver]["color"], hatch=hatches[index], edgecolor="white", label=solver)
+        axis.bar(
+            at,
+            run.rms_percent,
+            0.38,
+            color=LOOKS[solver]["color"],
+            hatch=hatches[index],
+            edgecolor="white",
+            label=solver,
+        )
     axis.axhline(RMS_PERCENT, color="black", linestyle=":", label=f"published, mean of 15 contacts: {RMS_PERCENT} %")
     axis.set_yscale("log")
     axis.set_xticks(places, [name.replace("_", " ") for name in BENCH], rotation=35, ha="right")
@@ -252,14 +247,16 @@ def word_section(rows: Sequence[sweep.Row], folder: Path) -> Section:
     return Section("words", "Word lengths", text, "make sweep", picture=saved(figure, folder, "words"))
 
 
-def budget_section() -> Section:
-    document = document_of(budget, "budget")
+def budget_section(document: dict[str, Any], folder: Path) -> Section:
     text = (
         "What a user gets, in mm, and what it is made of: one cause after the other is switched off, or replaced by "
         "the truth. Quantisation is the part of the arithmetic; all others are those of the sensor."
-    )
-    picture = budget.DEFAULT_OUT / "budget.png"
-    return Section("budget", "The error of a real sensor", text, "make budget", budget.tables(document), picture)
+    ) + of_commit(document)
+    picture = folder / "budget.png"
+    budget.plot(picture, document)
+    whole, *parts = budget.tables(document)
+    tables = [whole._replace(title="The whole error"), *parts]
+    return Section("budget", "The error of a real sensor", text, "make budget", tables, picture)
 
 
 def trade_sections() -> list[Section]:
@@ -305,9 +302,9 @@ def reflex_section(document: dict[str, Any]) -> Section:
 
 
 def baselines_section(document: dict[str, Any]) -> Section:
-    text = f"{baselines.setting(document)}. {'. '.join(baselines.sentences(document))}."
-    tables, picture = baselines.tables(document), baselines.DEFAULT_OUT / "baselines.png"
-    return Section("baselines", "The solve in software", text, "make baselines", tables, picture)
+    text = f"{baselines.setting(document)}. {'. '.join(baselines.sentences(document))}.{of_commit(document)}"
+    picture = None if RECORDED in document else baselines.DEFAULT_OUT / "baselines.png"
+    return Section("baselines", "The solve in software", text, "make baselines", baselines.tables(document), picture)
 
 
 def synth_section(document: dict[str, Any]) -> Section:
@@ -339,43 +336,56 @@ def hardware_sections() -> list[Section]:
     return [figure(documents[-1]) for flow, figure in flows.items() if (documents := results(flow))]
 
 
-def build(folder: Path) -> Path:
+def seconds(short: bool) -> dict[str, float]:
+    """Return the time that each part of the report takes, by its name, without parts that are there already."""
+    parts: dict[str, float] = {f"{CONSECUTIVE:,} frames through the RTL of each solver": RTL_S, "page": PAGE_S}
+    if not short:
+        parts |= {"sweep": sweep.SWEEP.seconds_left(sweep.plan(), sweep.DEFAULT_OUT), "extremes": EXTREMES_S}
+        takes = {"budget": BUDGET_S, "reflex": REFLEX_S, "baselines": baselines.SECONDS}
+        parts |= {name: takes[name] for name, command in COMMANDS.items() if not file_of(command, name).exists()}
+    return {name: time for name, time in parts.items() if time >= 1}
+
+
+def announce(parts: dict[str, float]) -> None:
+    """Print how long the report takes."""
+    each = ", ".join(f"{name} {duration(time)}" for name, time in parts.items())
+    print(f"report takes about {duration(sum(parts.values()))} on two cores ({each})", flush=True)
+
+
+def build(folder: Path, short: bool = False) -> Path:
     """Measure and write the page; returns its path. Raises InputError, Mismatch or RuntimeError."""
     files.make(folder, [PAGE])
-    missing = not (baselines.DEFAULT_OUT / baselines.RESULTS[0]).exists()
-    least = RTL_S + missing * baselines.SECONDS
-    print(f"report takes {duration(least)} at least, and the rows that the sweep lacks", flush=True)
+    announce(seconds(short))
 
     def step(name: str, call: Callable[..., Any], *arguments: Any) -> Any:
         print(f"{name} ..", flush=True)
         return call(*arguments)
 
     runs = {s: step(f"{s}: {CONSECUTIVE} frames through the RTL", run_rtl, s, folder) for s in COLUMNS}
-    rows = step("sweep", sweep.SWEEP.complete, sweep.plan(), sweep.DEFAULT_OUT)
-    step("extremes", run_extremes, folder / "extremes")
-    documents = [
-        step(name, document_of, command, name) for command, name in ((reflex, "reflex"), (baselines, "baselines"))
-    ]
-    figures = [
-        step("error budget", budget_section),
-        headline(runs),
+    of = recorded_document if short else document_of
+    documents = {name: step(name, of, command, name) for name, command in COMMANDS.items()}
+    sections = [
+        summary(dict(reversed(runs.items())), folder),
+        *([budget_section(documents["budget"], folder)] if documents["budget"] else []),
         latency_section(runs, folder),
         grid_section(folder),
         *depth_sections(runs, folder),
         error_section(runs, folder),
-        word_section(rows, folder),
         *trade_sections(),
-        lanes_section(rows, folder),
-        *extremes_sections(folder / "extremes"),
-        *hardware_sections(),
-        reflex_section(documents[0]),
-        baselines_section(documents[1]),
     ]
+    if not short:
+        rows = step("sweep", sweep.SWEEP.complete, sweep.plan(), sweep.DEFAULT_OUT)
+        step("extremes", run_extremes, folder / "extremes")
+        sections += [word_section(rows, folder), lanes_section(rows, folder)]
+        sections += extremes_sections(folder / "extremes")
+    sections += hardware_sections()
+    sections += [reflex_section(documents["reflex"])] if documents["reflex"] else []
+    sections += [baselines_section(documents["baselines"])] if documents["baselines"] else []
     with files.workspace(folder) as work:
-        (work / PAGE).write_text(page(figures))
+        (work / PAGE).write_text(page(sections, LEFT_OUT if short else ""))
         files.replace(work, [PAGE], folder)
     return folder / PAGE
 
 
-def main(out: variables.Place = DEFAULT_OUT) -> None:
-    print(f"report: {os.path.relpath(build(out))}")
+def main(out: variables.Place = DEFAULT_OUT, short: variables.Flag = False) -> None:
+    print(f"report: {os.path.relpath(build(out, short))}")

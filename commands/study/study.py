@@ -14,7 +14,7 @@ import io
 import logging
 import os
 import re
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, make_dataclass, replace
 from functools import partial
 from importlib.resources import files as resources
@@ -223,6 +223,17 @@ class Study(Generic[P, R]):
                 _append(file, self.header)
             yield file, rows
 
+    def seconds_left(self, points: Sequence[P], folder: Path) -> float:
+        """Return the time that the points take which the table in `folder` lacks, on the cores of this machine."""
+        path = folder / f"{self.name}.csv"
+        done: Mapping[P, R] = {}
+        with contextlib.suppress(InputError):  # `complete` refuses it
+            done, _ = self.kept(path, path.read_bytes() if path.is_file() else b"")
+        return self._seconds(point for point in points if point not in done)
+
+    def _seconds(self, points: Iterable[P], cores: int = 0) -> float:
+        return self.seconds * sum(point.pixels for point in points) / (cores or joblib.cpu_count())
+
     def complete(self, points: Sequence[P], folder: Path, scheduler: str | None = None) -> list[R]:
         """Measure the points that the table in `folder` lacks; return the rows of all in the order of `points`.
 
@@ -237,7 +248,7 @@ class Study(Generic[P, R]):
                 print(f"{len(points) - len(left)} of {len(points)} rows are there already: {there}")
             work = sum(point.pixels for point in left)
             cores = sum(client.ncores().values()) if client else joblib.cpu_count()
-            print(f"{len(left)} rows to measure: about {duration(self.seconds * work / cores)} on {cores} cores")
+            print(f"{len(left)} rows to measure: about {duration(self._seconds(left, cores))} on {cores} cores")
             shape = "{percentage:3.0f}%|{bar}| {postfix} [{elapsed} < {remaining}]"
             bar = stack.enter_context(progress_bar(total=work, bar_format=shape))
             fresh = on_cluster(client, self.cells, left) if client else on_all_cores(self.cells, left)
