@@ -25,6 +25,9 @@ DEVICES = {device.name: device for device in (XCZU7EV, ECP5)}
 FITTED, CHECKED = 0.037, 0.042  # largest difference of LUTs of logic
 NEAR = 16  # LUTs of memories: the tools leave out zeros, and build a deep one of a bit in another way
 
+SAVED = {  # blocks, where the tool leaves out a constant bit of a table of 37, whose words then fit one
+    ("LFE5U-85F", "COLS=32 DATA_WIDTH=15 GAIN_WIDTH=16 PARITY=1 PRESET=sensor ROWS=24 SELF_CHECK=1"): 1
+}
 CASES = [
     {"columns": 16, "bits_per_channel": 2},
     pytest.param(
@@ -200,7 +203,7 @@ def test_a_device_builds_memories_of_luts_up_to_the_size_in_its_package(device: 
 def test_the_model_is_near_the_recorded_runs(run: dict[str, Any]) -> None:
     """Bounds: a little above the largest differences in docs/hardware.md, for runs fitted and not fitted."""
     device, count = DEVICES[run["device"]], cost(Configuration(**run["configuration"]))
-    assert 0 <= count.blocks_of(device) - run["blocks"] <= 1  # the tool leaves out a constant bit of a table's words
+    assert count.blocks_of(device) - SAVED.get((run["device"], run["variables"]), 0) == run["blocks"]
     assert memories(count.config, device) == pytest.approx(run["memories"], abs=NEAR)
     assert count.multipliers_of(device) == pytest.approx(run["multipliers"], abs=2)  # products by constants
     error = sum(logic(count.config, device).values()) / sum(run["logic"].values()) - 1
