@@ -9,8 +9,8 @@
 //   words of s_axis: tuser in 25, tlast in 24, tdata below. They repeat without a pause
 //   flips, up to the end: place, bit (numbered through all words), clock from the first of the frame that enters
 // Without flips the output lists the places (scope, module, signal, bits and bytes of a word, words, and 1 if its bits
-// stay flipped when all combinational logic has followed, else it is a copy) and the codes of each frame; history.bin
-// gets the recorded places in each clock of the frame that enters.
+// stay flipped when all combinational logic has followed, else it is a copy), the codes of each frame and STATUS;
+// history.bin gets the recorded places in each clock of the frame that enters.
 // Otherwise a line for each flip: of the frames in flight, the next and the one after it, the largest change in codes
 // and in % of its frame's peak, and 1 if a frame did not come whole; then what the run without a flip lacks: marks in
 // word 12 of records, bits of STATUS (all ones: no answer).
@@ -162,6 +162,7 @@ class Run {
       for (const int32_t code : frames_[number].words) std::printf("%d ", code);
       std::puts("");
     }
+    std::printf("%u\n", no_flip_);
   }
 
   void Flip(const Place& place, long bit, long clock) {

@@ -62,7 +62,7 @@ CONFIG = {
         "CheckDropped_and_CheckInDropped_must_leave_two_bits": f"{CHECK} CheckDropped=23, {CHECK} CheckInDropped=-1",
         "CheckSumWidth_must_be_the_bits_that_stay_of_a_depth_to_32": f"{CHECK} CheckSumWidth=17, "
         f"{CHECK} CheckSumWidth=33",
-        "ResidualBound_must_fit_a_sum": f"{CHECK} ResidualBound=-1, {CHECK} ResidualBound=262144",
+        "ResidualBound_must_fit_a_sum": f"{CHECK} ResidualBound=-1, {CHECK} ResidualBound=8388608",
         "CheckScaleFraction_must_be_1_to_30_and_leave_the_time_to_multiply": f"{CHECK} CheckScaleFraction=31, "
         f"{CHECK} CheckScale=1 CheckScaleFraction=0",
         "CheckScale_must_be_at_least_1_and_below_2_to_the_CheckScaleFraction": f"{CHECK} CheckScale=0, "

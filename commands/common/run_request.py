@@ -17,8 +17,8 @@ from commands.common.variables import Several
 from tactile_depth.base.errors import InputError
 from tactile_depth.base.npy import is_file
 from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoice, CameraConfiguration
-from tactile_depth.chip.configuration import CHOICES, DEFAULTS, NUMBERS, WORDS, Configuration, can_check
-from tactile_depth.chip.limits import BOUNDARIES, COLUMNS, MODELS
+from tactile_depth.chip.configuration import CHOICES, DEFAULTS, NUMBERS, WORDS, Configuration
+from tactile_depth.chip.limits import BOUNDARIES, COLUMNS, MODELS, can_check
 from tactile_depth.pictures.frames import REST_SCENE
 from tactile_depth.sensor.built_in import load, read
 from tactile_depth.sensor.calibration_file import BUILT_IN

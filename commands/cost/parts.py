@@ -21,6 +21,8 @@ def parts(config: Configuration) -> Parts:
         if core := repository.cores().get(name):
             model = import_module(".".join(["tactile_depth.chip", *core.block.split("/"), name]))
             for part in getattr(model, "parts", lambda _: [])(config):
-                wider = {"width": part.width + config.parity} if isinstance(part, Memory) else {}
-                found.append(replace(part, core=name, **wider))
+                if isinstance(part, Memory) and config.parity:
+                    before = part.kind == "delay lines"  # a register
+                    part = replace(part, width=part.width + 1, words=part.words - before)
+                found.append(replace(part, core=name))
     return found

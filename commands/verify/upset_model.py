@@ -154,9 +154,9 @@ def build(config: Configuration) -> Path:
 
 
 def prepare(values: Mapping[str, str], folder: Path) -> Model:
-    """Build a configuration, and check that without a flip its codes are those of the model.
+    """Build a configuration, and check that without a flip its codes are those of the model, and none in doubt.
 
-    `folder` takes the tables. Raises RuntimeError if the codes differ.
+    `folder` takes the tables. Raises RuntimeError otherwise.
     """
     requests = [run_request.of_values({**values, "AT": at}) for at in PRESSES]
     designs = [synthesis.design(request) for request in requests]
@@ -178,7 +178,10 @@ def prepare(values: Mapping[str, str], folder: Path) -> Model:
 
     lines = played(pictures, [], [])
     end = lines.index("")
-    streamed = np.array([line.split() for line in lines[end + 1 :]], int).reshape(-1, config.rows, config.columns)
+    status = REGISTERS["STATUS"].unpack(int(lines[-1]))
+    if found := [name for name in ("flipped", "residual") if status[name]]:
+        raise RuntimeError(f"without a flip a check finds an error: STATUS.{found[0]} is 1")
+    streamed = np.array([line.split() for line in lines[end + 1 : -1]], int).reshape(-1, config.rows, config.columns)
     expected = np.resize(codes, streamed.shape)  # without light gains all repetitions are equal
     if len(streamed) != COMPARED or not np.array_equal(twin.upright(streamed), expected):
         raise RuntimeError("RTL without a flip differs from the model: run `make sim` with this configuration")

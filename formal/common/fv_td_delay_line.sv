@@ -4,7 +4,7 @@
 // What leaves in the first Delay enabled clocks after a reset is no one's word: a memory that has not been written is
 // read there. Those who use the line look only later, which their own proofs show.
 
-parameter int Width = 1, Delay = 5, Style = 3;
+parameter int Width = 1, Delay = 5, Style = 3, Parity = 0;
 input logic pick;
 
 logic due, held;

@@ -14,7 +14,7 @@ logic [AddressWidth-1:0] watched;  // chosen in the first clock, then constant
 logic [Width:0] stored;
 logic [1:0] present = '0, present_written = '0;  // behind the memory, in the register behind that
 logic [1:0][Width:0] present_word;
-logic shown_q = 1'b0, shown_written_q = 1'b0, shown_odd_q;
+logic [1:0] shown_q = '0, shown_written_q = '0, shown_odd_q;  // one and two clocks ago
 always_ff @(posedge clk) begin
   started <= 1'b1;
   if (!started) begin
@@ -36,18 +36,18 @@ always_ff @(posedge clk) begin
       present_written[1] <= present_written[0];
       present_word[1] <= present_word[0];
     end
-    shown_q <= present[Latency-1];
-    shown_written_q <= present_written[Latency-1];
-    shown_odd_q <= ^present_word[Latency-1];
+    shown_q <= {shown_q[0], present[Latency-1]};
+    shown_written_q <= {shown_written_q[0], present_written[Latency-1]};
+    shown_odd_q <= {shown_odd_q[0], ^present_word[Latency-1]};
   end
 end
 
 always_comb begin
   if (present[Latency-1]) as_stored: assert (read_data == present_word[Latency-1][Width-1:0]);
-  if (shown_q) odd: assert (flipped == shown_odd_q);
-  if (shown_q && shown_written_q) as_written: assert (!flipped);
-  flip_seen: cover (shown_q && flipped);
-  read_again: cover (shown_q && shown_written_q && present[Latency-1] && read_data != '0);
+  if (shown_q[1]) odd: assert (flipped == shown_odd_q[1]);
+  if (shown_q[1] && shown_written_q[1]) as_written: assert (!flipped);
+  flip_seen: cover (shown_q[1] && flipped);
+  read_again: cover (shown_q[1] && shown_written_q[1] && present[Latency-1] && read_data != '0);
 end
 
 bind dut.u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);

@@ -3,7 +3,7 @@
 // latest one that is whole when reading begins; with Late, if it is that or the one before as the header says. Frames
 // may be cut short; both sides pause as they like.
 
-parameter int Width = 2, Words = 4, Held = 12, LastFirst = 1, Late = 0, Parity = 1;
+parameter int Width = 1, Words = 3, Held = 8, LastFirst = 1, Late = 0, Parity = 1;
 localparam int Size = 1 << $clog2(Held), Half = Late == 0 ? 0 : 1 << ($clog2(Late) - 1), A = $clog2(Held);
 input logic pick;
 
@@ -17,7 +17,8 @@ wire ends = takes & (now == Words - 1);
 always_comb assume (!takes || in_frame_start || (begun && number < Words));
 
 // Reading: begun with its frame, words asked for; the word behind the memory, and in its register.
-logic reads, in_memory, in_register, was_out;
+logic reads, in_memory, in_register;
+logic [1:0] was_out;  // one and two cycles ago
 logic [31:0] asked;
 wire chooses = out_en & out_frame_start;
 wire own = followed & frame_whole & (later_whole ? Late != 0 && since < Half : Late == 0 || since == Half);
@@ -50,7 +51,7 @@ always_ff @(posedge clk) begin
   if (out_en && out_next) in_memory <= hits;
   if (out_en) in_register <= in_memory;
   if (!keeps) {in_memory, in_register} <= '0;
-  was_out <= in_register;
+  was_out <= {was_out[0], in_register};
   if (rst) begin
     {begun, followed, reads, in_memory, in_register, was_out} <= '0;
     number <= '0;
@@ -75,7 +76,7 @@ always_comb begin
         && dut.read_address == (LastFirst != 0 ? last - A'(asked) : first + A'(asked)));
     if (in_memory) behind_memory: assert (followed && dut.u_words.word == stored);
     if (in_register) is_read: assert (followed && out_data == value);
-    if (was_out) not_flipped: assert (!flipped);
+    if (was_out[1]) not_flipped: assert (!flipped);
     read_twice: cover (in_register && asked == Words && out_next);
   end
 end

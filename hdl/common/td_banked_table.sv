@@ -11,7 +11,7 @@
 // models/tactile_depth/chip/common/td_banked_table.py.
 //
 // Parity 1: each word is stored, and comes in File, with its parity on top. `flipped` is high two cycles after a
-// read_word of which an odd number of bits has flipped.
+// read_word of which an odd number of bits has flipped. A word is written a cycle later: trees of parity are slow.
 
 `default_nettype none
 
@@ -56,14 +56,25 @@ module td_banked_table #(
     bank <= rst ? table_bank : used;
   end
 
+  logic [1:0] free_writes, writes;  // of each bank
+  logic [AddressWidth-1:0] write_address;
   logic [StoredWidth-1:0] write_word;
+  assign free_writes = {free_write & ~bank, free_write & bank};
   if (Parity == 0) begin : g_plain
+    assign writes = free_writes;
+    assign write_address = free_write_address;
     assign write_word = free_write_word;
     assign flipped = 1'b0;
   end else begin : g_parity
-    assign write_word = {^free_write_word, free_write_word};
-    logic [StoredWidth-1:0] checked;  // behind a block memory a tree of gates comes too late
+    logic [1:0] writes_q = 2'b00;  // a cycle before the first reset writes nothing
+    logic [Width-1:0] word_q;
+    logic [StoredWidth-1:0] checked;
+    assign writes = writes_q;
+    assign write_word = {^word_q, word_q};
     always_ff @(posedge clk) begin
+      writes_q <= free_writes;
+      write_address <= free_write_address;
+      word_q <= free_write_word;
       checked <= word_in_use;
       flipped <= ^checked;
     end
@@ -74,8 +85,8 @@ module td_banked_table #(
     assign in_use = used == 1'(b);
     td_ram #(.Width(StoredWidth), .Depth(Depth), .Style(Style), .File(File)) u_ram (
       .clk,
-      .write_en     (free_write & bank != 1'(b)),
-      .write_address(free_write_address),
+      .write_en     (writes[b]),
+      .write_address,
       .write_data   (write_word),
       .read_en      (in_use ? en & read : free_read),
       .read_address (in_use ? read_address : free_read_address),

@@ -33,19 +33,25 @@ module td_delay_line #(
     assign flipped = 1'b0;
   end else begin : g_memory
     // The word read now leaves the read register one cycle later: it is the one written Depth - 1 cycles ago. A block
-    // memory is slow, so a register is behind it.
+    // memory is slow, so a register is behind it; a tree of parity is slow, so one is before it.
     localparam bit Block = Style == 1 || (Style == 3 && Width * Delay > td_memory_pkg::DistributedBits);
-    localparam int Depth = Block ? Delay - 1 : Delay;
+    localparam int Depth = Delay - int'(Block) - Parity;
     localparam int AddressWidth = $clog2(Depth);
     logic [AddressWidth-1:0] pointer;
     logic [AddressWidth-1:0] pointer_next;
+    logic [Width-1:0] written;
     assign pointer_next = (pointer == AddressWidth'(Depth - 1)) ? '0 : pointer + AddressWidth'(1);
     td_parity_ram #(
       .Width(Width), .Depth(Depth), .Style(Block ? 1 : 0), .Latency(Block ? 2 : 1), .Parity(Parity)
     ) u_ram (
-      .clk, .en, .write_en(en), .write_address(pointer), .write_data(in), .read_en(en), .read_address(pointer_next),
-      .read_data(out), .flipped
+      .clk, .en, .write_en(en), .write_address(pointer), .write_data(written),
+      .read_en(en), .read_address(pointer_next), .read_data(out), .flipped
     );
+    if (Parity == 0) begin : g_straight
+      assign written = in;
+    end else begin : g_register
+      always_ff @(posedge clk) if (en) written <= in;
+    end
     always_ff @(posedge clk) begin
       if (en) pointer <= pointer_next;
       if (rst) pointer <= '0;

@@ -2,7 +2,7 @@
 // td_parity_ram: a td_ram with a parity bit in each word, and with a register behind it.
 //
 // Latency 1: read_data is valid 1 cycle after a read. Latency 2: it is in a register, which takes the word that was
-// read last in each cycle with en. `flipped` is high one cycle later, while an odd number of bits of that word differs
+// read last in each cycle with en. `flipped` is high two cycles later, while an odd number of bits of that word differs
 // from what was written; a word that was never written counts as any. Parity 0: no bit more, and `flipped` is low.
 // A File holds words with their parity on top. Bit-accurate model:
 // models/tactile_depth/chip/common/td_parity_ram.py.
@@ -46,7 +46,11 @@ module td_parity_ram #(
     assign flipped = 1'b0;
   end else begin : g_parity
     assign write_word = {^write_data, write_data};
-    always_ff @(posedge clk) flipped <= ^word_out;
+    logic [StoredWidth-1:0] checked;  // behind a block memory a tree of gates comes too late
+    always_ff @(posedge clk) begin
+      checked <= word_out;
+      flipped <= ^checked;
+    end
   end
 
   if (Latency < 1 || Latency > 2) begin : g_refused_0

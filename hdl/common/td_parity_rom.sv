@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // td_parity_rom: a td_rom with a parity bit in each word, and with a register behind it.
 //
-// Data leaves Latency enabled cycles after its address, 1 or 2. `flipped` is high one cycle later, while an odd number
+// Data leaves Latency enabled cycles after its address, 1 or 2. `flipped` is high two cycles later, while an odd number
 // of bits of that word differs from the File, whose words have their parity on top. Parity 0: no bit more, and
 // `flipped` is low. Bit-accurate model: models/tactile_depth/chip/common/td_parity_rom.py.
 
@@ -23,8 +23,10 @@ module td_parity_rom #(
   output logic                    flipped
 );
 
-  logic [Width+Parity-1:0] word, word_out;
-  td_rom #(.Width(Width + Parity), .Depth(Depth), .Style(Style), .File(File)) u_rom (.clk, .en, .address, .data(word));
+  localparam int StoredWidth = Width + Parity;
+
+  logic [StoredWidth-1:0] word, word_out;
+  td_rom #(.Width(StoredWidth), .Depth(Depth), .Style(Style), .File(File)) u_rom (.clk, .en, .address, .data(word));
   if (Latency == 1) begin : g_straight
     assign word_out = word;
   end else begin : g_register
@@ -34,7 +36,11 @@ module td_parity_rom #(
   if (Parity == 0) begin : g_plain
     assign flipped = 1'b0;
   end else begin : g_parity
-    always_ff @(posedge clk) flipped <= ^word_out;
+    logic [StoredWidth-1:0] checked;  // behind a block memory a tree of gates comes too late
+    always_ff @(posedge clk) begin
+      checked <= word_out;
+      flipped <= ^checked;
+    end
   end
 
   if (Latency < 1 || Latency > 2) begin : g_refused_0

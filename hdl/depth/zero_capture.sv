@@ -101,9 +101,9 @@ module zero_capture
     .write_en, .write_block(write_node), .write_sums(sums), .write_complete(complete)
   );
   logic last_flipped;  // the word that was read last; without a read it is unknown
-  logic [1:0] read_q;
-  assign flipped = last_flipped & read_q[1];
-  always_ff @(posedge clk) read_q <= rst ? '0 : {read_q[0], read_en};
+  logic [2:0] read_q;
+  assign flipped = last_flipped & read_q[2];
+  always_ff @(posedge clk) read_q <= rst ? '0 : {read_q[1:0], read_en};
   td_parity_ram #(.Width(Side * SumWidth), .Depth(Nodes), .Style(1), .Parity(Parity)) u_sums (
     .clk, .en(1'b1), .flipped(last_flipped), .write_en, .write_address(write_node), .write_data(sums),
     .read_en, .read_address(read_node), .read_data(sums_read)

@@ -42,13 +42,13 @@ module divergence_sums
   logic [ColumnWidth-1:0] column;  // of the next word, if it does not begin a frame
   logic [Sums-1:0] parts;  // sums that the word is a part of
   logic begins, first_row;  // the row that comes, the row whose sums leave: the first of a frame
-  logic later, ends, row_there;  // later: not the first word of a frame, which is a part of none
+  logic ends, row_there;
   logic signed [Kept-1:0] kept;
-  assign later = in_valid & ~in_frame_start;
   always_ff @(posedge clk) begin
     if (en && in_valid && in_frame_start) column <= ColumnWidth'(1);
     else if (en && in_valid) column <= column + ColumnWidth'(1);
-    if (rst || (en && !later)) {parts, ends} <= '0;
+    if (rst || (en && !in_valid)) {parts, ends} <= '0;
+    else if (en && in_frame_start) {parts, ends} <= {check_sums('0, Columns), 1'b0};
     else if (en) {parts, ends} <= {check_sums(10'(column), Columns), column == '1};
     if (en) kept <= in_data[Width-1:Dropped];
     if (en) row_there <= ends;

@@ -4,11 +4,13 @@
 //   F[i] = sum_j b[j] f[i,j]    R[i] = sum_j b[j] z[i,j]    S[i] = sum_j b[j] (z[i,j-1] - 2 z[i,j] + z[i,j+1])
 //   residual of row i = R[i-1] - 2 R[i] + R[i+1] + S[i] - Scale / 2^ScaleFraction F[i]
 //
-// It is only rounding if every bit of the solver was right. There are three patterns b: the signs of Rudin and Shapiro,
-// each of them 1, 2 or 4 times, and 0 in the first and in the last column. Sums of all inner columns and of the minus
-// signs alone are taken; the first minus twice the second is that of the signs. f loses InDropped low bits, z loses
-// Dropped; a sum begins with half of what that takes from it. Beyond an edge R is that of the outer row (Neumann), or
-// its complement. Sums wrap at SumWidth bits. There are adders only.
+// It is only rounding if every bit of the solver was right. Three patterns b are in td_check_pkg: the signs of Rudin
+// and Shapiro, each of them 1, 2 or 4 times, and 0 in the last column. Sums of all other columns and of the minus signs
+// alone are taken; the first minus twice the second is that of the signs. An error in a transform is often the same, or
+// opposite, in two columns as far from the middle: so the signs of one pattern are opposite there, and a quarter of the
+// residual of all columns but the last counts too. f loses InDropped low bits, z loses Dropped; a sum begins with half
+// of what that takes from it. Beyond an edge z and R are those of the outer column or row (Neumann), or their
+// complements. Sums wrap at SumWidth bits. There are adders only.
 //
 // Streams in: divergence f in raster order, gaps anywhere; depths z, a row in successive cycles with en, rows in raster
 // order or the bottom row first. A row's F waits in a memory; FrameLatency says for how long. Out: for each frame the
@@ -52,7 +54,7 @@ module self_check
   output logic                      flipped           // a word that was read has a flipped bit
 );
 
-  localparam int Sums = CheckSums;  // of a row: of all inner columns, then of the minus signs of each pattern
+  localparam int Sums = CheckSums;  // of a row: of all columns but the last, then of the minus signs of each pattern
   localparam int Leave = BottomFirst != 0 ? (Rows + Lanes - 1) / Lanes : 1;
   localparam int Held = Rows + Leave + (FrameLatency + Columns - 1) / Columns + 3;  // rows that come while one waits
 
@@ -100,6 +102,7 @@ module self_check
   logic [Lanes-1:0][Kept-1:0] now, z, z_q, z_q2;
   logic [Lanes-1:0][RiseWidth-1:0] rise;  // to the depth on the right
   logic [RiseWidth-1:0] rise_before;      // to the first lane
+  logic begins, begins_q;                 // the first beat of a row
   logic [Sums-1:0][Lanes-1:0][Kept-1:0] words;           // as they come to each sum
   logic [Sums-1:0][Lanes-1:0][SecondWidth-1:0] seconds;  // second differences there
   logic [Lanes-1:0][Sums-1:0] parts, parts_q, parts_q2;   // sums that a depth is a part of
@@ -119,8 +122,9 @@ module self_check
     end
   end
   always_ff @(posedge clk) begin
-    if (shifts) {z, z_q, parts_q} <= {now, z, parts};
-    if (shifts_q[1]) {z_q2, parts_q2, rise_before} <= {z_q, parts_q, rise[Lanes-1]};
+    if (shifts) {z, z_q, parts_q, begins, begins_q} <= {now, z, parts, beat == '0, begins};
+    if (shifts_q[1]) {z_q2, parts_q2} <= {z_q, parts_q};
+    if (shifts_q[1]) rise_before <= !begins_q ? rise[Lanes-1] : Neumann != 0 ? '0 : RiseWidth'($signed({z_q[0], 1'b1}));
     words <= {words[Sums-2:0], z_q2};
     seconds[Sums-1:1] <= seconds[Sums-2:0];
     if (rst) {parts_q, parts_q2} <= '0;
@@ -170,10 +174,10 @@ module self_check
   // The equation, one sum in a cycle. What a row leaves to the next one waits while the other sums pass.
 
   logic first, last, slot_q, outside, read, read_q;
-  logic [3:1] totals_q;
+  logic [4:1] totals_q;
   logic [4:1] checks_q;
   logic [5:1] ends_frame_q;
-  logic [SumWidth-1:0] r, s, s_before, change, bend, scaled_sum, known, rest, total, of_signs;
+  logic [SumWidth-1:0] r, s, s_before, change, bend, scaled_sum, known, rest, total, of_signs, checked;
   logic [Sums-1:0][SumWidth-1:0] r_waits, s_waits, change_waits;
   logic [SumWidth-2:0] size, largest;
   logic [SumWidth-1:0] excess;  // negative: size is larger
@@ -182,7 +186,8 @@ module self_check
   assign read = (ends_q[Ahead] & ~row_first) | (slots[Sums-2:0] != '0 & ~first) | (slots[Sums-1] & last)
       | slots[2*Sums-2:Sums] != '0;
   assign s = row_s[0] | row_s[1] | row_s[2] | row_s[3];
-  assign size = of_signs[SumWidth-2:0] ^ {(SumWidth - 1){of_signs[SumWidth-1]}};
+  assign checked = totals_q[4] ? SumWidth'($signed(total) >>> 2) : of_signs;
+  assign size = checked[SumWidth-2:0] ^ {(SumWidth - 1){checked[SumWidth-1]}};
   assign excess = {1'b0, largest} - {1'b0, size};
   if (Neumann != 0) begin : g_neumann
     assign r = row_r[0] | row_r[1] | row_r[2] | row_r[3];
@@ -216,8 +221,8 @@ module self_check
     rest <= bend + known;
     if (totals_q[3]) total <= rest;
     of_signs <= total - (rest << 1);
-    totals_q <= {totals_q[2:1], slots[0] | slots[Sums]};
-    checks_q <= {checks_q[3:1], read_q & ~slots[0] & ~slots[Sums]};
+    totals_q <= {totals_q[3:1], slots[0] | slots[Sums]};
+    checks_q <= {checks_q[3:1], read_q};
     read_q <= read;
     ends_frame_q <= {ends_frame_q[4:1], slots[2*Sums-1]};
     if (ends_frame_q[5]) {residual, beyond} <= {largest, largest > (SumWidth - 1)'($unsigned(Bound))};

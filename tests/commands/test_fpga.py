@@ -31,9 +31,9 @@ endmodule
 """,
     "td_delay_line": """\
 module td_delay_line #(parameter int Width = 54, parameter int Delay = 64, parameter int Style = 3) (
-  input logic clk, rst, en, input logic [Width-1:0] in, output logic [Width-1:0] out
+  input logic clk, rst, en, input logic [Width-1:0] in, output logic [Width-1:0] out, output logic flipped
 );
-  netlist u_netlist (.clk, .rst, .en, .in, .out);
+  netlist u_netlist (.clk, .rst, .en, .in, .out, .flipped);
 endmodule
 """,
 }

@@ -14,7 +14,7 @@ from PIL import Image
 from commands.common import wrapper
 from commands.hardware import ecp5, fpga, fusesoc, wrapped, yosys
 from tactile_depth.base.files import RECORD
-from tactile_depth.chip.configuration import can_check
+from tactile_depth.chip.limits import can_check
 from tactile_depth.chip.rom_files import table_files
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.sensor.built_in import load

@@ -22,6 +22,8 @@ from tactile_depth.chip.choices import Choice, Number, Width
 from tactile_depth.chip.fixed_point import Format
 from tactile_depth.chip.limits import (
     BOUNDARIES,
+    CHECK_BEATS,
+    CHECK_COLUMNS,
     COARSEST_LSB,
     COEFFICIENT_LIMITS,
     COLOUR_COEFFICIENT,
@@ -43,20 +45,13 @@ from tactile_depth.chip.limits import (
     ULTRA_WIDTH,
     ULTRA_WORDS,
     Boundary,
+    can_check,
     most_lanes,
 )
 from tactile_depth.chip.poisson.transform.fft import twiddle_stages
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.poisson.transform.twiddle import coefficient_gain
 from tactile_depth.chip.resources import BLOCK, ULTRA
-
-CHECK_COLUMNS, CHECK_BEATS = 32, 8  # at least, of the check of frames
-
-
-def can_check(columns: int, lanes: int) -> bool:
-    """Return whether frames of a grid can check themselves; a row of many lanes leaves time for their sums."""
-    beats = columns // max(1, lanes)
-    return columns >= CHECK_COLUMNS and beats >= max(CHECK_BEATS, 3 + lanes.bit_length())
 
 
 @former_names(auto_zero="zero_offset")

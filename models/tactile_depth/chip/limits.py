@@ -26,6 +26,7 @@ EXACT_LENGTHS = (8, 4096)  # rows and columns of a grid in double precision
 MOST_LANES = 64
 COLUMNS_PER_LANE = 2  # at least: the second row of a pair comes so many clocks after the first
 ZERO_OFFSET_COLUMNS_PER_LANE = 4  # at least: the capture of the zero offset adds in three clocks, td_block_sum.sv
+CHECK_COLUMNS, CHECK_BEATS = 32, 8  # at least, of the check of frames
 MODELS: tuple[str, ...] = get_args(Model)
 BOUNDARIES: tuple[Boundary, ...] = get_args(Boundary)
 GRADIENT_LIMITS = (2.0**-6, 2.0**6)
@@ -41,6 +42,12 @@ DARKEST_LOG2 = 3  # a reference of 8 grey levels gives the full scale of a gain
 def most_lanes(columns: int, zero_offset: bool = False) -> int:
     """Return the largest number of lanes of the tridiagonal solver."""
     return min(columns // (ZERO_OFFSET_COLUMNS_PER_LANE if zero_offset else COLUMNS_PER_LANE), MOST_LANES)
+
+
+def can_check(columns: int, lanes: int) -> bool:
+    """Return whether frames of a grid can check themselves; a row of many lanes leaves time for their sums."""
+    beats = columns // max(1, lanes)
+    return columns >= CHECK_COLUMNS and beats >= max(CHECK_BEATS, 3 + lanes.bit_length())
 
 
 DEVIATION = Format(17, 15)

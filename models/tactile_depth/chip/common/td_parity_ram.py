@@ -30,6 +30,7 @@ class ParityRam:
         self.words, self.width, self.latency, self.parity = [*words], width, latency, parity
         self._read: int | None = None
         self._registered: int | None = None
+        self._checked: int | None = None
         self._flipped: int | None = None
 
     def clock(self, **pins: Any) -> dict[str, int | None]:
@@ -37,7 +38,7 @@ class ParityRam:
         word = self._registered if self.latency == 2 else self._read
         out = {"read_data": word if word is None else word & (1 << self.width) - 1}
         out["flipped"] = self._flipped if self.parity else 0
-        self._flipped = is_odd(word)
+        self._flipped, self._checked = is_odd(self._checked), word
         if pins["en"]:
             self._registered = self._read
         if pins["read_en"]:

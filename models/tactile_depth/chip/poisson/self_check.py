@@ -28,6 +28,7 @@ SIGMAS = 6.0  # bound over the RMS of the residuals of noise, at least: 2e-9 of 
 NOISE_FRAMES = 4  # the last ones of `extreme_slopes`
 KEPT_LOG2 = 7  # bits of that residual which stay when low bits of a depth are dropped
 EXACT_WIDTH = 62  # of sums that do not wrap
+TOTAL_LOG2 = 2  # the sum of all columns counts for 1 / 2**TOTAL_LOG2 of it, so that it does not set the bound
 WRAP_LOG2 = 3  # a sum wraps at this many bits above the bound
 
 
@@ -60,8 +61,8 @@ class Check:
 def residuals(f: np.ndarray, z: np.ndarray, check: Check) -> np.ndarray:
     """Return what divergence codes and depth codes, int64 (..., rows, columns), leave of each row's equation.
 
-    Rows in raster order. The rows beyond the edges are equal to the outer rows (Neumann) or minus them; minus R is here
-    its complement, -R - 1, which costs no adder.
+    The first pattern is all ones, and counts for less. Rows in raster order. Rows and columns beyond the edges
+    are equal to the outer ones (Neumann) or minus them; minus x is here its complement, -x - 1, which costs no adder.
 
     Returns
     -------
@@ -70,11 +71,14 @@ def residuals(f: np.ndarray, z: np.ndarray, check: Check) -> np.ndarray:
     kept = z >> check.dropped
     parts = sums(z.shape[-1]).T
     r = kept @ parts + begin(z.shape[-1], check.dropped)
-    s = np.diff(kept, 2, axis=-1) @ parts[1:-1]
+    left = kept[..., :1] if check.neumann else ~kept[..., :1]
+    s = np.diff(np.concatenate((left, kept), axis=-1), 2, axis=-1) @ parts[:-1]
     first, last = (r[..., :1, :], r[..., -1:, :]) if check.neumann else (~r[..., :1, :], ~r[..., -1:, :])
     bend = np.diff(np.concatenate((first, r, last), axis=-2), 2, axis=-2)
-    left = bend + s - divergence_sums(f, check.in_dropped, check.scale, check.scale_fraction)
-    return wrapped(left[..., :1] - 2 * left[..., 1:], check.sum_width)
+    rest = bend + s - divergence_sums(f, check.in_dropped, check.scale, check.scale_fraction)
+    total = rest[..., :1]
+    of_signs = wrapped(total - 2 * rest[..., 1:], check.sum_width)
+    return np.concatenate((wrapped(total, check.sum_width) >> TOTAL_LOG2, of_signs), axis=-1)
 
 
 def wrapped(words: np.ndarray, width: int) -> np.ndarray:
@@ -114,8 +118,9 @@ def check_of(config: Configuration) -> Check:
     left = residuals(f, z, replace(check, sum_width=EXACT_WIDTH))
     rms = np.sqrt((left[-NOISE_FRAMES:] ** 2.0).mean(axis=(0, 1))).max()
     bound = math.ceil(max(MARGIN * int(np.abs(left).max()), SIGMAS * rms))
-    least = config.depth.width - check.dropped  # no single depth that is wrong by a power of two is lost
-    return replace(check, bound=bound, sum_width=max(least, bound.bit_length() + WRAP_LOG2))
+    widest = max(config.depth.width - check.dropped, config.divergence.width - check.in_dropped)
+    # No two words that are wrong by the same power of two, their highest bit, are lost.
+    return replace(check, bound=bound, sum_width=max(widest + 1, bound.bit_length() + WRAP_LOG2))
 
 
 def without_bound(config: Configuration, dropped: int) -> Check:
