@@ -55,6 +55,14 @@ def test_holes_are_seen(outcome: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     assert {survivor["verdict"] for survivor in result.survivors} <= {"equivalent", "different"}
 
 
+def test_an_open_mutant_counts_as_a_hole_and_a_contradiction_fails() -> None:
+    counts = {"mutants": 100, "killed": 95, "equivalent": 1}
+    assert mutate.Outcome(SMALL, **counts, open=4).score == 100 * 95 / 99
+    assert mutate.Outcome(SMALL, **counts, open=4).passed
+    assert not mutate.Outcome(SMALL, **counts, open=4, contradictions=1).passed
+    assert not mutate.Outcome(SMALL, mutants=100, killed=94, equivalent=1, open=5).passed
+
+
 def test_survivors_of_a_core_with_cores_inside_can_be_settled(tmp_path: Path) -> None:
     """Build the graph of a core with cores inside: the cores are a part of it."""
     core, (built, *_) = "axil_registers", repository.structures("axil_registers")
