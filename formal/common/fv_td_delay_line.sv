@@ -20,7 +20,7 @@ always_comb begin
   end
 end
 
-if (Delay > 4) begin : g_memory  // longer than the longest shift register
+if (Delay > 4 && Style != 4) begin : g_memory  // longer than the longest shift register
   bind dut.g_memory.u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
 end
 

@@ -173,7 +173,7 @@ logic [Latency-2:0] places_kept;
 logic [6:4] corrections_kept;
 always_comb begin
   for (int k = 0; k < Latency - 1; k++) places_kept[k] = !valid[k] || dut.position_q[k] == place[k];
-  for (int k = 4; k < 7; k++) corrections_kept[k] = !valid[k] || dut.corrections[k-4][Axis] == corrections[k];
+  for (int k = 4; k < 7; k++) corrections_kept[k] = !valid[k] || dut.u_corrections.g_shift.taps[k-4][2*Axis+:2] == corrections[k];
   if (started) begin
     places_wait: assert (places_kept == '1);
     corrections_wait: assert (corrections_kept == '1);
@@ -280,17 +280,16 @@ end
 
 // Products and sums.
 for (genvar c = 0; c < 3; c++) begin : g_sum
-  logic [5+c:0][1:0] waiting;
-  logic [5+c:0] waits;
+  logic [6+c:0][1:0] waiting;
+  logic [6+c:0] waits;
   logic signed [ProductWidth-1:0] factors, product;
   logic signed [Exact-1:0] sum;
-  assign waiting = dut.g_axis[Axis].g_colour[c].waiting;
-  assign factors = ProductWidth'(dut.g_axis[Axis].g_colour[c].coefficient_q)
-      * ProductWidth'(dut.g_axis[Axis].g_colour[c].deviation_q);
+  assign waiting = dut.g_wait[c].u_wait.g_shift.taps;
+  assign factors = ProductWidth'($signed(dut.coefficients[c][Axis])) * ProductWidth'($signed(dut.late[c]));
   assign product = dut.g_axis[Axis].g_colour[c].product;
   assign sum = Exact'($signed(dut.sums[3*Axis+c]));
   always_comb begin
-    for (int k = 0; k < 6 + c; k++) waits[k] = !valid[k] || waiting[k] == (c == Colour ? deviations[k] : '0);
+    for (int k = 0; k < 7 + c; k++) waits[k] = !valid[k] || waiting[k] == (c == Colour ? deviations[k] : '0);
     if (started) begin
       deviations_wait: assert (waits == '1);
       if (valid[6+c]) multiplied: assert (factors == (c == Colour ? products[6+c] : '0));

@@ -9,8 +9,8 @@
 module td_delay_line #(
   parameter int Width = 54,
   parameter int Delay = 64,
-  parameter int Style = 3,  // of a memory, 0, 1 or 3: see td_ram.sv
-  parameter int Parity = 0  // of a memory, see td_parity_ram.sv
+  parameter int Style = 3,  // of a memory, 0, 1 or 3: see td_ram.sv; 4: registers, however long the delay is
+  parameter int Parity = 0  // of a memory or of Style 4, see td_parity_ram.sv
 ) (
   input  wire              clk,
   input  wire              rst,
@@ -22,15 +22,23 @@ module td_delay_line #(
 
   localparam int LongestShift = 4;
 
-  if (Delay <= LongestShift) begin : g_shift
-    logic [Delay-1:0][Width-1:0] taps;  // the oldest word on top
+  if (Delay <= LongestShift || Style == 4) begin : g_shift
+    localparam int StoredWidth = Style == 4 ? Width + Parity : Width;
+    logic [StoredWidth-1:0] comes;
+    logic [Delay-1:0][StoredWidth-1:0] taps;  // the oldest word on top
     if (Delay == 1) begin : g_one
-      always_ff @(posedge clk) if (en) taps <= in;
+      always_ff @(posedge clk) if (en) taps <= comes;
     end else begin : g_many
-      always_ff @(posedge clk) if (en) taps <= {taps[Delay-2:0], in};
+      always_ff @(posedge clk) if (en) taps <= {taps[Delay-2:0], comes};
     end
-    assign out = taps[Delay-1];
-    assign flipped = 1'b0;
+    assign out = taps[Delay-1][Width-1:0];
+    if (StoredWidth == Width) begin : g_plain
+      assign comes = in;
+      assign flipped = 1'b0;
+    end else begin : g_parity
+      assign comes = {^in, in};
+      always_ff @(posedge clk) flipped <= ^taps[Delay-1];
+    end
   end else begin : g_memory
     // The word read now leaves the read register one cycle later: it is the one written Depth - 1 cycles ago. A block
     // memory is slow, so a register is behind it; a tree of parity is slow, so one is before it.

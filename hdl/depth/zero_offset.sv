@@ -47,10 +47,10 @@ module zero_offset
   output logic [Lanes*Width-1:0]          out_data,            // depth codes, signed
   output logic                            active,              // a frame is inside
   output logic [$clog2(Lanes):0]          saturations,         // clip count, delayed
-  output logic                            flipped              // a word that was read has a flipped bit
+  output logic                            flipped              // a word that was read, or a zero offset, has one
 );
 
-  logic zero_valid, map_active;
+  logic zero_valid, map_active, map_flipped;
   depth_position_t zero_position;
   logic [Lanes-1:0][Width-1:0] depths, zero_words, rounded;
   td_node_map #(
@@ -63,8 +63,18 @@ module zero_offset
     .capture_read(1'b0), .capture_read_node(capture_write_node), .capture_read_words(),
     .in_valid, .in_frame_start(in_position.frame_start), .in_data({in_position, in_data}),
     .out_valid(zero_valid), .out_data({zero_position, depths}), .out_words(zero_words), .active(map_active),
-    .flipped
+    .flipped(map_flipped)
   );
+  if (Parity == 0) begin : g_plain
+    assign flipped = map_flipped;
+  end else begin : g_check  // zero offsets come from the table alone
+    logic differs;
+    assign flipped = map_flipped | differs;
+    td_repeat_check #(.Width(Lanes * Width)) u_repeat (
+      .clk, .rst, .en, .in_valid(zero_valid), .in_first(zero_position.frame_start),
+      .in_last(zero_position.frame_end), .in_bank(table_in_use), .in_data(zero_words), .differs
+    );
+  end
 
   logic [Lanes-1:0] clipped;
   logic [$clog2(Lanes):0] count;  // of clipped values

@@ -57,7 +57,7 @@ module flat_field
   output logic [OutWidth-1:0]    out_blue,
   output logic                   dark,
   output logic [1:0]             saturations,  // clip count, delayed
-  output logic                   flipped      // a word that was read has a flipped bit
+  output logic                   flipped      // a word that was read, or a gain, has a flipped bit
 );
 
   localparam int ToOut = 2;  // stages between the gain and the output
@@ -66,7 +66,7 @@ module flat_field
 
   // Colours in the order of the gains: red, green, blue from the lowest.
 
-  logic frame_start, dim_in, dim, gain_valid;
+  logic frame_start, dim_in, dim, gain_valid, map_flipped;
   logic [7:0] red, green, blue, level, level_q;
   logic [2:0][7:0] colours;
   position_t gain_position;
@@ -83,8 +83,19 @@ module flat_field
     .capture_write, .capture_write_node, .capture_words(capture_gains),
     .capture_read, .capture_read_node, .capture_read_words(capture_read_gains),
     .in_valid, .in_frame_start(frame_start), .in_data({in_position, dim_in, blue, green, red}),
-    .out_valid(gain_valid), .out_data({gain_position, dim, colours}), .out_words(gains), .active(), .flipped
+    .out_valid(gain_valid), .out_data({gain_position, dim, colours}), .out_words(gains), .active(),
+    .flipped(map_flipped)
   );
+  if (Parity == 0) begin : g_plain
+    assign flipped = map_flipped;
+  end else begin : g_check  // gains come from the table alone
+    logic differs;
+    assign flipped = map_flipped | differs;
+    td_repeat_check #(.Width(3 * GainWidth)) u_repeat (
+      .clk, .rst, .en, .in_valid(gain_valid), .in_first(gain_position.first_row & gain_position.first_column),
+      .in_last(gain_position.last_row & gain_position.last_column), .in_bank(table_in_use), .in_data(gains), .differs
+    );
+  end
 
   logic dead;
   logic [ToOut-1:0] valid_q, dark_q;

@@ -58,7 +58,7 @@ module polynomial_gradient
   output logic signed [Width-1:0]          out_gx,      // slope code, F + G - Drop fraction bits
   output logic signed [Width-1:0]          out_gy,      // the same
   output logic [1:0]                       saturations,  // clip count, delayed
-  output logic                             flipped      // a word that was read has a flipped bit
+  output logic                             flipped      // a word, a coefficient, or a deviation has a flipped bit
 );
 
   localparam int Colours = 3;
@@ -86,10 +86,7 @@ module polynomial_gradient
   assign first = {first_q, frame_start};
   assign row = {row_q, in_valid & in_position.first_column};
   always_ff @(posedge clk) begin
-    if (en) begin
-      first_q <= first[ToLast-1:0];
-      row_q <= row[ToLast-1:0];
-    end
+    if (en) {first_q, row_q} <= {first[ToLast-1:0], row[ToLast-1:0]};
     if (rst) {first_q, row_q} <= '0;
   end
 
@@ -99,37 +96,56 @@ module polynomial_gradient
   logic [IndexWidth-1:0] table_index;
   logic [WordWidth-1:0] table_word, fetched_word;
   logic [2*Colours-1:0] in_use, flips;
+  logic [Colours-1:0] differs;
+  logic [Colours:0] odd;  // what waits has a flipped bit
   logic [2*Colours-1:0][WordWidth-1:0] fetched_words;
-  td_table_port #(
-    .Select(TableSelectCoefficients), .IndexWidth(IndexWidth), .Width(WordWidth), .Signed(1)
-  ) u_port (
+  td_table_port #(.Select(TableSelectCoefficients), .IndexWidth(IndexWidth), .Width(WordWidth), .Signed(1)) u_port (
     .clk, .rst, .table_command, .table_answer, .write(table_write), .read(table_read), .index(table_index),
     .word(table_word), .free_word(fetched_word)
   );
   assign frame_start = in_valid & in_position.first_row & in_position.first_column;
   assign table_in_use = in_use[2*Colours-1];
-  assign flipped = flips != '0;
+  assign flipped = {flips, differs, odd} != '0;
   always_comb begin
     fetched_word = '0;
     for (int i = 0; i < 2 * Colours; i++) fetched_word = fetched_word | fetched_words[i];
   end
 
-  logic [Colours-1:0][DeviationWidth-1:0] deviation;
+  // Deviations wait for their coefficients, which come from the tables alone: so those of a frame are checked.
+
+  logic [Colours-1:0][DeviationWidth-1:0] deviation, late;
+  logic [Colours-1:0][1:0][CoeffWidth-1:0] coefficients;
   assign deviation = {in_blue, in_green, in_red};
+  for (genvar colour = 0; colour < Colours; colour++) begin : g_wait
+    localparam int Ready = ToCoefficient + colour;
+    td_delay_line #(.Width(DeviationWidth), .Delay(Ready + 1), .Style(4), .Parity(Parity)) u_wait (
+      .clk, .rst, .en, .in(deviation[colour]), .out(late[colour]), .flipped(odd[colour])
+    );
+    if (Parity == 0) begin : g_plain
+      assign differs[colour] = 1'b0;
+    end else begin : g_check
+      wire position_t at = position_q[Ready];
+      td_repeat_check #(.Width(2 * CoeffWidth)) u_repeat (
+        .clk, .rst, .en, .in_valid(valid_q[Ready]), .in_first(at.first_row & at.first_column),
+        .in_last(at.last_row & at.last_column), .in_bank(in_use[colour]), .in_data(coefficients[colour]),
+        .differs(differs[colour])
+      );
+    end
+  end
 
   logic [2*Colours-1:0][SumWidth-1:0] sums;  // of the products up to each colour
   logic [1:0][Width-1:0] slopes;
   logic [1:0] clipped;
 
-  logic [CorrectionDelay-1:0][1:0][CorrectionWidth-1:0] corrections;
-  always_ff @(posedge clk) begin
-    if (en) corrections <= (2 * CorrectionWidth * CorrectionDelay)'({corrections, correction_gy, correction_gx});
-  end
+  logic [1:0][CorrectionWidth-1:0] corrections;
+  td_delay_line #(.Width(2 * CorrectionWidth), .Delay(CorrectionDelay), .Style(4), .Parity(Parity)) u_corrections (
+    .clk, .rst, .en, .in({correction_gy, correction_gx}), .out(corrections), .flipped(odd[Colours])
+  );
 
   for (genvar axis = 0; axis < 2; axis++) begin : g_axis
     logic signed [CorrectionWidth-1:0] correction_q;
     logic signed [SumWidth-1:0] correction, scaled;
-    assign correction_q = corrections[CorrectionDelay-1][axis];
+    assign correction_q = corrections[axis];
     always_comb begin  // a constant of few ones: adders, and no multiplier
       scaled = '0;
       for (int i = 0; i < 31; i++) if (CorrectionUnit[i]) scaled = scaled + (SumWidth'(correction_q) <<< i);
@@ -146,9 +162,10 @@ module polynomial_gradient
       logic [WordWidth-1:0] word, free_word;
       logic [TermWidth-1:0] term;
       assign offset = TermWidth'(table_index - IndexWidth'(Terms * Polynomial));
-      always_ff @(posedge clk) begin  // beside table_index
+      always_ff @(posedge clk) begin
+        fetched <= table_read & own_entry;
         own_entry <= IndexWidth'(table_command.index) - IndexWidth'($unsigned(Terms * Polynomial))
-            < IndexWidth'($unsigned(Terms));
+            < IndexWidth'($unsigned(Terms));  // beside table_index
       end
       always_ff @(posedge clk) begin
         if (en) begin
@@ -169,7 +186,6 @@ module polynomial_gradient
         .free_read(table_read & own_entry), .free_read_address(offset), .free_word,
         .flipped(flips[Polynomial])
       );
-      always_ff @(posedge clk) fetched <= table_read & own_entry;
       assign fetched_words[Polynomial] = fetched ? free_word : '0;
 
       // Along the raster, by differences. Those of a row's first pixel are in a ring, in the order D, A, B, E, H, F.
@@ -204,21 +220,11 @@ module polynomial_gradient
       end
 
       // The product.
-      localparam int Delay = ToCoefficient + colour;
-      logic [Delay-1:0][DeviationWidth-1:0] waiting;
-      logic signed [DeviationWidth-1:0] deviation_q;
-      logic signed [CoeffWidth-1:0] coefficient_q;
       logic signed [ProductWidth-1:0] product;
       td_multiply #(.AWidth(DeviationWidth), .BWidth(CoeffWidth)) u_product (
-        .clk, .en, .a(deviation_q), .b(coefficient_q), .product
+        .clk, .en, .a(late[colour]), .b(coefficients[colour][axis]), .product
       );
-      always_ff @(posedge clk) begin
-        if (en) begin
-          waiting <= {waiting[Delay-2:0], deviation[colour]};
-          deviation_q <= $signed(waiting[Delay-1]);
-          coefficient_q <= $signed(value[TotalWidth-1-:CoeffWidth]);
-        end
-      end
+      always_ff @(posedge clk) if (en) coefficients[colour][axis] <= value[TotalWidth-1-:CoeffWidth];
       logic signed [SumWidth-1:0] sum_before;
       assign sum_before = colour == 0 ? correction : $signed(sums[Before]);
       always_ff @(posedge clk) if (en) sums[Polynomial] <= sum_before + SumWidth'(product);

@@ -20,6 +20,7 @@ STRUCTURES = (
     built(8, 5, 3, 0, on=ICARUS, mutants=ICARUS),
     built(8, 6, 1, 0, on=ICARUS, mutants=ICARUS),
     built(8, 5, 1, 1, on=ICARUS, mutants=ICARUS),
+    built(8, 6, 4, 1, on=ICARUS, mutants=ICARUS),
     built(70, 8, 0, 1),
     built(12, 33, 3, 0),
     built(70, 128, 3, 1),
@@ -34,6 +35,7 @@ PROOFS = tuple(
         (8, 3, 0, f"in memory, the pointer runs over at a power of two; {WORD_FREE}"),
         (6, 1, 0, f"in a block memory with a register behind it; {WORD_FREE}"),
         (6, 1, 1, f"in a block memory with a register before it too; {WORD_FREE}"),
+        (6, 4, 1, "registers with a parity bit; words are not looked into"),
     )
 )
 

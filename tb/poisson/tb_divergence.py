@@ -8,12 +8,14 @@ import numpy as np
 
 from formal.entries import Proof
 from tactile_depth.chip.poisson.divergence import LATENCY, divergence
+from tactile_depth.chip.poisson.raster_check import LAST_COLUMN
 from tb.stream import (
     Bench,
     StreamDriver,
     StreamMonitor,
     check_frame_starts,
     check_maps,
+    drive,
     extremes,
     parameters,
     parametrize,
@@ -23,14 +25,15 @@ from tb.stream import (
 )
 from tb.structures import ICARUS, VERILATOR, of_parameters
 
-built = of_parameters("Columns Width Neumann")
+built = of_parameters("Columns Width Neumann Parity")
 STRUCTURES = (
-    built(16, 21, 0, on=VERILATOR),
-    built(16, 6, 0, on=ICARUS),
-    built(32, 24, 1, on=ICARUS),
-    built(128, 35, 0),
-    built(16, 21, 1),
-    built(4, 3, 1, mutants=ICARUS),
+    built(16, 21, 0, 1, on=VERILATOR),
+    built(16, 6, 0, 0, on=ICARUS),
+    built(32, 24, 1, 1, on=ICARUS),
+    built(128, 35, 0, 0),
+    built(16, 21, 1, 0),
+    built(4, 3, 1, 0, mutants=ICARUS),
+    built(4, 3, 0, 1, mutants=ICARUS),
 )
 PROOFS = tuple(
     Proof("the subtractions are exact at any width; columns and rows are only counted", {"Neumann": neumann})
@@ -86,3 +89,20 @@ async def reset_in_mid_frame(dut: Any) -> None:
     """Reset at each of the first words, and in the second row."""
     width, columns = parameters(dut, "Width", "Columns")
     await check(dut, uniform((2, 4, columns, 2), width), interrupts=[1, 2, 3, 4, columns, 5 * columns // 4])
+
+
+@cocotb.test
+async def columns_are_counted(dut: Any) -> None:
+    """Change the mark of the last column at some pixels: with parity each is told a cycle later, and no other."""
+    width, columns, parity = parameters(dut, "Width", "Columns", "Parity")
+    words = pixels(uniform((1, 8, columns, 2), width))
+    chance = np.random.default_rng(cocotb.RANDOM_SEED)
+    wrong = [n > 2 * columns and chance.random() < 0.1 for n in range(len(words))]  # when the line has been written
+    mask = (1 << width) - 1
+    stimuli = [
+        {"rst": 0, "in_valid": 1, "in_gx": gx & mask, "in_gy": gy & mask, "in_position": position ^ LAST_COLUMN * odd}
+        for (gx, gy, position), odd in zip(words, wrong, strict=True)
+    ]
+    pins = await drive(dut, stimuli, ["flipped"])
+    told = [bool(int(flag)) for flag in pins["flipped"][columns + 4 :]]
+    assert told == [odd and bool(parity) for odd in wrong[columns + 3 : -1]]

@@ -56,7 +56,7 @@ def test_holes_are_seen(outcome: Any, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_an_open_mutant_counts_as_a_hole_and_a_contradiction_fails() -> None:
-    counts = {"mutants": 100, "killed": 95, "equivalent": 1}
+    counts: dict[str, Any] = {"mutants": 100, "killed": 95, "equivalent": 1}
     assert mutate.Outcome(SMALL, **counts, open=4).score == 100 * 95 / 99
     assert mutate.Outcome(SMALL, **counts, open=4).passed
     assert not mutate.Outcome(SMALL, **counts, open=4, contradictions=1).passed
