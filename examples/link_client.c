@@ -97,7 +97,9 @@ static void load(struct link *l, const uint8_t *picture)
   if (!l->failure)
     l->failure = results[result];
   link_write(l, TACTILE_DEPTH_THRESHOLD_ADDRESS, TACTILE_DEPTH_THRESHOLD);
+  link_write(l, TACTILE_DEPTH_OFF_THRESHOLD_ADDRESS, TACTILE_DEPTH_OFF_THRESHOLD);
   link_write(l, TACTILE_DEPTH_AREA_THRESHOLD_ADDRESS, TACTILE_DEPTH_AREA_THRESHOLD);
+  link_write(l, TACTILE_DEPTH_MINIMUM_AREA_ADDRESS, TACTILE_DEPTH_MINIMUM_AREA);
   link_write(l, TACTILE_DEPTH_DARK_LEVEL_ADDRESS, 0);
   link_flush(l);
 }

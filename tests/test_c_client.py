@@ -3,6 +3,7 @@
 
 import ctypes
 import itertools
+import json
 import pickle
 import re
 import subprocess
@@ -19,6 +20,7 @@ from commands.common.repository import ROOT
 from commands.common.simulator import check
 from tactile_depth.chip.link import packets as link
 from tactile_depth.chip.link.framing import LONGEST_BODY, cobs_decode, to_line
+from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.registers.table_banks import COMMIT
 from tests.device.cable import Cable, setup_of
 from tests.test_c_header import compiled, tool
@@ -228,6 +230,19 @@ def test_it_runs_twice_and_over_tables_that_no_frame_has_taken(
         assert device.registers["TABLE_COMMIT"]
     for _ in range(2):
         assert client.run(str(cable.path)).returncode == 0
+
+
+def test_it_writes_every_register_that_contacts_depend_on(tmp_path: Path, plug: Callable[..., Cable]) -> None:
+    """With OFF_THRESHOLD as after a reset each frame of a press begins or ends a contact."""
+    client = client_of(tmp_path, threshold_mm=0.02)
+    cable = plug(client.pipeline)
+    wanted = json.loads((client.folder / "parameters.json").read_text())["registers"]
+    assert wanted["MINIMUM_AREA"] != REGISTERS["MINIMUM_AREA"].reset, "the test is void"
+    for _ in range(2):
+        assert client.run(str(cable.path)).returncode == 0
+    with td.Device(cable.address, client.pipeline) as device:
+        assert {name: device.registers[name] for name in wanted} == wanted
+        assert [device.registers[f"RECORD_EVENT.{name}"] for name in ("touching", "began", "ended")] == [1, 0, 0]
 
 
 def test_what_fails_is_said(client: Client, plug: Callable[..., Cable], tmp_path: Path) -> None:

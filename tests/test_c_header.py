@@ -31,6 +31,30 @@ from tb.structures import Structure
 
 WARNINGS = ("-Wall", "-Wextra", "-Werror", "-pedantic")
 ALL = COMMIT.mask()
+LOADER = ROOT / "tests" / "load_tables.c"
+EXAMPLE = ROOT / "examples" / "load_calibration.c"
+ACCESSES = {  # of the example, and what stands for them in the device of register_file.c
+    "*(volatile uint32_t *)((char *)context + address) = word;": "device_write(context, address, word);",
+    "return *(volatile uint32_t *)((char *)context + address);": "return device_read(context, address);",
+}
+DEVICE = """
+#include <stdio.h>
+#include <stdint.h>
+uint32_t device_read(void *context, uint32_t address);
+void device_write(void *context, uint32_t address, uint32_t word);
+void *device_begin(int count, char **words);
+void device_end(void *context);
+"""
+MAIN = """
+int main(int count, char **words)
+{
+  void *device = device_begin(count - 2, words + 2);
+
+  printf("result %d\\n", load_calibration(device));
+  device_end(device);
+  return 0;
+}
+"""
 RESULTS = ["LOADED", "NO_DEVICE", "OTHER_GRID", "OTHER_FORMAT", "OTHER_BUILD", "OTHER_UNIT", "OTHER_NUMBERS"]
 RESULTS += ["OTHER_SIZE", "STAYS_PENDING", "REFUSED"]
 GRADIENT_MODELS = ("cubic", "quadratic", "lut")
@@ -118,14 +142,14 @@ class Program:
         )
 
 
-def program_of(folder: Path, config: Configuration, pitch_mm: float) -> Program:
-    """Compile the program with the header in a folder; the header by the strictest rules of C99."""
+def program_of(folder: Path, config: Configuration, pitch_mm: float, source: Path = LOADER) -> Program:
+    """Compile a program with the header in a folder; both by the strictest rules of C99."""
     gcc, path = tool("gcc"), folder / "load_tables"
     registers.c_header(registers.PIPELINE, folder)
     common = (*WARNINGS, f"-I{folder}", "-c")
     compiled(gcc, "-std=gnu11", *common, ROOT / "tests" / "register_file.c", "-o", folder / "device.o")
     strict = ("-Wconversion", "-Wshadow")
-    compiled(gcc, "-std=c99", *strict, *common, ROOT / "tests" / "load_tables.c", "-o", folder / "main.o")
+    compiled(gcc, "-std=c99", *strict, *common, source, "-o", folder / "main.o")
     compiled(gcc, folder / "device.o", folder / "main.o", "-o", path)
     return Program(folder, config, pitch_mm, path)
 
@@ -290,18 +314,20 @@ def test_values_for_the_user(tmp_path: Path) -> None:
     pipeline = td.Pipeline(sensor, ball.reference, grid=(24, 32), threshold_mm=0.2)
     described = json.loads(pipeline.hardware(tmp_path).read_text())
     units = ("DEPTH_LSB_MM", "PIXEL_PITCH_MM", "PIXEL_ASPECT", "GRADIENT_LSB")
-    names = ("ROWS", "COLUMNS", *units, "THRESHOLD", "AREA_THRESHOLD")
+    names = ("ROWS", "COLUMNS", *units, *described["registers"])
     text = (tmp_path / FILE).read_text()
     values = dict(re.findall(r"^#define TACTILE_DEPTH_(\w+) (\S+?)u?$", text, re.MULTILINE))
-    rows, columns, depth, pitch, aspect, gradient, threshold, area = (
+    rows, columns, depth, pitch, aspect, gradient, *words = (
         float(values[name]) if "." in values[name] else int(values[name], 0) for name in names
     )
     assert (rows, columns) == pipeline.grid
     assert (depth, pitch) == (pipeline.depth_lsb_mm, pipeline.pixel_pitch_mm)
     assert (gradient, aspect) == (pipeline.config.gradient_lsb, 1.25)
     assert described["pixel_aspect"] == 1.25
-    assert threshold == round(0.2 / pipeline.depth_lsb_mm)
-    assert area == round(pipeline.area_threshold_mm / pipeline.depth_lsb_mm)
+    assert words == [*described["registers"].values()]
+    assert described["registers"]["THRESHOLD"] == round(0.2 / pipeline.depth_lsb_mm)
+    assert described["registers"]["OFF_THRESHOLD"] == described["registers"]["THRESHOLD"]
+    assert described["registers"]["AREA_THRESHOLD"] == round(pipeline.area_threshold_mm / pipeline.depth_lsb_mm)
     addresses = {name.removesuffix("_ADDRESS"): value for name, value in values.items() if name.endswith("_ADDRESS")}
     assert {name: int(value, 16) for name, value in addresses.items()} == {
         name: register.offset for name, register in REGISTERS.items()
@@ -320,11 +346,28 @@ def test_the_header_is_cpp_too(program: Program, tmp_path: Path, standard: str) 
 
 def test_the_example_and_the_results_on_the_page(tmp_path: Path) -> None:
     page = (ROOT / "docs" / "integrate.md").read_text()
-    source = ROOT / "examples" / "load_calibration.c"
     ball = td.sample("ball")
     td.Pipeline(ball.sensor, ball.reference, grid=(24, 32)).hardware(tmp_path)
-    compiled(tool("gcc"), "-std=c99", *WARNINGS, f"-I{tmp_path}", "-c", source, "-o", tmp_path / "program.o")
+    compiled(tool("gcc"), "-std=c99", *WARNINGS, f"-I{tmp_path}", "-c", EXAMPLE, "-o", tmp_path / "program.o")
     assert re.findall(r"^\| `TACTILE_DEPTH_(\w+)`", page, re.MULTILINE) == RESULTS
+
+
+def test_the_example_writes_every_register_that_contacts_depend_on(tmp_path: Path) -> None:
+    """Run it on another bus, as its comment says: what is left as after a reset makes `touching` alternate."""
+    ball = td.sample("ball")
+    pipeline = td.Pipeline(ball.sensor, ball.reference, grid=(24, 32))
+    wanted = json.loads(pipeline.hardware(tmp_path).read_text())["registers"]
+    assert wanted.keys() == {"THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "SLOPE_LIMIT"}
+    text = EXAMPLE.read_text()
+    for own, other in ACCESSES.items():
+        assert text.count(own) == 1
+        text = text.replace(own, other)
+    source = tmp_path / "example.c"
+    source.write_text(DEVICE + text + MAIN)
+    loaded = program_of(tmp_path, pipeline.config, pipeline.pixel_pitch_mm, source).run()
+    assert loaded.result == "LOADED"
+    written = dict(loaded.writes)
+    assert {name: written.get(REGISTERS[name].offset) for name in wanted} == wanted
 
 
 def test_a_name_that_ends_a_string_or_a_comment(tmp_path: Path) -> None:
