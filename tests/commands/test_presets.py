@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Presets: what a command begins with, and what the variables that are given make of it."""
+"""Presets: what a command begins with, what variables make of it, and what equals it in Python, as pages say."""
 
 import json
+import re
+import shlex
 from pathlib import Path
 from typing import Any
 
 import pytest
 from PIL import Image
 
+import tactile_depth as td
 from commands.common import run_request, variables
-from commands.hardware import fpga, synth, synthesis
+from commands.common.repository import ROOT
+from commands.hardware import fpga, synth, synthesis, wrapped
 from commands.run import sim
 from commands.study import tune
 from commands.study.tune_search import Widths
@@ -22,6 +26,7 @@ from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.presets import PRESETS, SENSOR
 from tests.drawn_light import no_contact
 
+ON_THE_BOARD = ("TARGET=", "CAMERA=")  # words of `make fpga` beside those of a configuration
 SIZES: dict[str, tuple[int, int]] = {
     "": (96, 128),
     "N=64": (64, 64),
@@ -64,6 +69,39 @@ def test_published_is_the_default_of_the_package_of_the_rtl() -> None:
 def test_sensor_is_the_default_of_the_python_package(tmp_path: Path) -> None:
     _, _, config = synthesis.design(parsed(""))
     assert config == Pipeline(load(SENSOR.calibration), reference=background(tmp_path)).config
+
+
+def pipelines(page: str) -> list[tuple[str, str]]:
+    """Return the calls of td.Pipeline without a grid in a page, in order, and what a comment says of each."""
+    calls = re.findall(r"^ *pipeline = (td\.Pipeline\((?:.|\n)*?\))(?: *# (.*))?$", page, re.MULTILINE)
+    return [(re.sub(r"\s+", " ", call), comment) for call, comment in calls if "grid=" not in call]
+
+
+def test_the_page_of_a_board_has_the_pipeline_of_each_preset(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    background(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    *of_presets, (other, comment) = pipelines((ROOT / "docs" / "cable.md").read_text())
+    assert [words for _, words in of_presets] == ["PRESET=sensor", "PRESET=chip"]
+    for call, words in of_presets:
+        assert eval(call, {"td": td}).config == synthesis.design(parsed(words))[2]
+    text = (ROOT / "docs" / "hardware.md").read_text().replace("\\\n", " ")
+    (words,) = re.findall(r"^    make fpga (.*)# without light gains$", text, re.MULTILINE)
+    chosen = " ".join(word for word in words.split() if not word.startswith(ON_THE_BOARD))
+    assert comment == ""
+    assert eval(other, {"td": td}).config == synthesis.design(parsed(f"{chosen} CALIBRATION=gelsight-mini"))[2]
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/integrate.md"])
+def test_a_module_takes_the_tables_of_the_pipeline_above_it(
+    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    background(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    before, _, after = (ROOT / page).read_text().partition('pipeline.hardware("hardware")')
+    call, _ = pipelines(before)[-1]
+    (words,) = re.findall(r"^    make wrap (.*?)(?: *#.*)?$", after, re.MULTILINE)[:1]
+    chosen = " ".join(word for word in shlex.split(words) if not word.startswith(("NAME=", "OUT=", "TABLES=")))
+    assert eval(call, {"td": td}).config == synthesis.design(parsed(chosen, wrapped.PRESET))[2]
 
 
 @pytest.mark.parametrize(("words", "size"), SIZES.items())
