@@ -403,7 +403,7 @@ class Pipeline:
     def hardware(self, folder: str | Path, *, quiet: bool = False) -> Path:
         """Write the parameters of the top module and the tables, with which the RTL computes the same depth.
 
-        It prints the words of make that give the same, unless it is `quiet`.
+        It prints the variables with which `make wrap NAME=..` writes the same, unless it is `quiet`.
 
         Parameters
         ----------

@@ -20,7 +20,8 @@ class Arrived(NamedTuple):
     Attributes
     ----------
     rows, columns : int
-        Size of the last one, 0 as long as none, or no mark of its end, has come since the reset.
+        Rows of the one before the one that began last, columns of the last row; 0 as long as none, or no mark of its
+        end, has come since the reset.
     hunting, stalled : bool
         Pixels are dropped up to a start of frame; the sink of depth stalls.
     problem, remedy : str

@@ -44,7 +44,7 @@ class DeviceStatus(NamedTuple):
     hunting, stalled : bool
         Pixels are dropped up to a start of frame; what takes the depth stalls.
     arrived : tuple of int
-        Rows and columns of the last picture that came, malformed or not.
+        Rows of the picture before the one that began last, malformed or not; columns of the last row.
     input : str
         What is wrong with the pictures that come, and what to set; empty if nothing is.
     """
