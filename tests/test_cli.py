@@ -212,12 +212,26 @@ def test_a_folder_with_the_name_of_an_earlier_result_stays(tmp_path: Path, input
     assert not (tmp_path / "depth_1.ply").exists()
 
 
+@pytest.mark.parametrize(
+    ("picture", "out"),
+    [
+        ("press.png", "press-depth"),
+        ("press.5.1mm.PNG", "press.5.1mm-depth"),
+        ("shot.5", "shot.5-depth"),  # a PNG without a suffix of its own
+        ("5.1mm/press.png", "press-depth"),
+        ("5.1mm", "5.1mm-depth"),
+        ("5.2.png", "5.2.png-depth"),  # a folder
+    ],
+)
 def test_the_results_lie_in_the_current_folder_by_default(
-    tmp_path: Path, inputs: Any, arguments: Any, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, inputs: Any, arguments: Any, monkeypatch: pytest.MonkeyPatch, picture: str, out: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert main(["depth", f"{inputs}/press.png", *arguments]) == 0
-    assert (tmp_path / "press-depth" / "depth_mm.npy").is_file()
+    file = Path(picture, "0.png") if picture in ("5.1mm", "5.2.png") else Path(picture)
+    file.parent.mkdir(exist_ok=True)
+    file.write_bytes((inputs / "press.png").read_bytes())
+    assert main(["depth", picture, *arguments]) == 0
+    assert (tmp_path / out / "depth_mm.npy").is_file()
 
 
 def test_nothing_is_written_when_one_picture_is_bad(tmp_path: Path, inputs: Any, depth: Any) -> None:

@@ -29,6 +29,8 @@ NAME = "depth"
 HELP = "Write the height maps of pictures: arrays, pictures, meshes and a report."
 REPORT = "report.json"
 HEIGHTS = "depth_mm.npy"
+DEFAULT_OUT = "<name of the first picture or folder>-depth"
+SUFFIXES = (*PICTURE_SUFFIXES, ".npy")
 MICROMETRES = 1000  # of a millimetre
 LARGEST_UM = 2**16 - 1
 UNITS = {
@@ -66,14 +68,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the subcommand."""
     parser.add_argument("pictures", nargs="+", metavar="PICTURE", help="PNG, JPEG, a .npy of frames, or a folder")
     parser.add_argument("--reference", required=True, metavar="BACKGROUND", help="the sensor without contact")
-    parser.add_argument("--out", type=Path, metavar="FOLDER", help="default: <name of the first picture>-depth")
+    parser.add_argument("--out", type=Path, metavar="FOLDER", help=f"default: {DEFAULT_OUT}")
     add_pipeline_arguments(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     """Write all files of all pictures, or none."""
-    out: Path = options.out or Path(f"{Path(options.pictures[0]).resolve().stem}-depth")
+    out: Path = options.out or default_out(options.pictures[0])
     reference = read_reference(options.reference, options.rotate)
     sensor = choose_sensor(options, reference)
     pipeline = make_pipeline(options, sensor, reference)
@@ -98,6 +100,13 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     for label, _, result in frames:
         print(f"{label}: {summary(result)}")
     print(f"results: {out}; overview.png is for looking: viewers show depth_um.png, which is in micrometres, black")
+
+
+def default_out(first: str) -> Path:
+    """Return the folder of the results of a first picture; the dots of a folder's name are no suffix."""
+    path = Path(first).resolve()
+    suffix = path.suffix.lower()
+    return Path(f"{path.stem if path.is_file() and suffix in SUFFIXES else path.name}-depth")
 
 
 def _pictures(sources: Sequence[str], rotate: int) -> Iterator[tuple[str, np.ndarray, float | None]]:
