@@ -3,6 +3,7 @@
 
 import struct
 import tracemalloc
+import warnings
 import zlib
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from PIL import Image
 from skimage import io  # type: ignore[attr-defined]
 
 from tactile_depth.base.errors import InputError, InputWarning
+from tactile_depth.base.files import RECORD
 from tactile_depth.chip.resampling import resampling
 from tactile_depth.pictures.frames import EXIF_ORIENTATION, LARGEST_CAMERA, load_frames, read_picture
 from tactile_depth.sensor.scenes import SCENES, render, scene_pixel_pitch_mm
@@ -244,6 +246,29 @@ def test_pictures_of_a_folder_that_are_not_read_are_named(tmp_path: Path) -> Non
         Image.new("RGB", (20, 20)).save(tmp_path / name)
     (tmp_path / "notes.txt").touch()
     with pytest.warns(InputWarning, match=r"no PNG or JPEG: 2\.webp, 2 in all: save them as PNG"):
+        assert load_frames(str(tmp_path), (16, 16)).labels == ("1.png",)
+
+
+def test_subfolders_that_hold_pictures_are_named(tmp_path: Path) -> None:
+    for name in ("ball6/0.png", "ball10/set.1/0.JPG", "empty/notes.txt", ".hidden/0.png", "run/0.png", "run/" + RECORD):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    with pytest.raises(
+        InputError, match=r"without any PNG or JPEG, but with subfolders that hold some \(ball6, 2 in all"
+    ):
+        load_frames(str(tmp_path), (16, 16))
+    Image.new("RGB", (20, 20)).save(tmp_path / "background.png")
+    with pytest.warns(InputWarning, match="subfolders that hold pictures: ball6, 2 in all: name a subfolder") as caught:
+        assert load_frames(str(tmp_path), (16, 16)).labels == ("background.png",)
+    assert len(caught) == 1
+
+
+def test_a_folder_of_pictures_beside_folders_of_others_is_certain(tmp_path: Path) -> None:
+    for name in ("1.png", ".hidden/0.png", "run/0.png", "run/" + RECORD, "._mac/._0.png"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        Image.new("RGB", (20, 20)).save(tmp_path / name, "PNG")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
         assert load_frames(str(tmp_path), (16, 16)).labels == ("1.png",)
 
 

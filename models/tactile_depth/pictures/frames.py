@@ -17,6 +17,7 @@ from PIL import Image
 
 from tactile_depth.base.by_value import ByValue
 from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
+from tactile_depth.base.files import RECORD
 from tactile_depth.base.npy import is_file, read_header
 from tactile_depth.chip.camera_configuration import CameraChoice, CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
@@ -255,7 +256,8 @@ def read_pictures(
 ) -> tuple[tuple[str, ...], Iterable[np.ndarray]]:
     """Return labels and pictures, uint8 (rows, cols, 3) each, of a picture, a folder of pictures or a `.npy`.
 
-    The pictures of a folder are read one by one when the iterable reaches them.
+    The pictures of a folder are read one by one when the iterable reaches them. Those of its subfolders are left out,
+    with a warning.
 
     Parameters
     ----------
@@ -272,9 +274,14 @@ def read_pictures(
         raise InputError(f"{name or source}: {error.strerror}: give a file or a folder") from error
     if folder:
         pictures = sorted((each for each in listed if not each.name.startswith(APPLE_DOUBLE)), key=_natural)
-        files = [each for each in pictures if each.suffix.lower() in PICTURE_SUFFIXES]
+        files = [each for each in pictures if _is_picture(each.name)]
+        inside = [each.name for each in pictures if not _is_picture(each.name) and _holds_pictures(each)]
         if not files:
-            raise InputError(f"{name or source}: a folder without any PNG or JPEG: accepted is {accepted}")
+            beside = f", but with subfolders that hold some ({inside[0]}, {len(inside)} in all)" if inside else ""
+            raise InputError(f"{name or source}: a folder without any PNG or JPEG{beside}: accepted is {accepted}")
+        if inside:
+            problem = f"{name or source}: left out are subfolders that hold pictures: {inside[0]}, {len(inside)} in all"
+            warn(InputWarning(problem, remedy="name a subfolder to use it"))
         if others := [each.name for each in pictures if each.suffix.lower() in OTHER_SUFFIXES]:
             problem = f"{name or source}: left out is what is no PNG or JPEG: {others[0]}, {len(others)} in all"
             warn(InputWarning(problem, remedy="save them as PNG"))
@@ -287,6 +294,17 @@ def read_pictures(
     if is_file(path):
         return (path.name,), [read_picture(path)]
     raise InputError(f"{name or source}: no such file or folder: accepted is {accepted}")
+
+
+def _is_picture(name: str) -> bool:
+    return os.path.splitext(name)[1].lower() in PICTURE_SUFFIXES and not name.startswith(APPLE_DOUBLE)
+
+
+def _holds_pictures(path: Path) -> bool:
+    """Return True for a folder with pictures in it or below, unless it is hidden or they are results of a command."""
+    if path.name.startswith(".") or not os.path.isdir(path):
+        return False
+    return any(RECORD not in names and any(map(_is_picture, names)) for _, _, names in os.walk(path))
 
 
 def read_stack(source: str | Path, name: str = "") -> np.ndarray:
