@@ -343,7 +343,7 @@ def test_a_missing_library_is_one_line(
     if module == "cv2":
         monkeypatch.setattr(command, "load_rerun", lambda: None)
     assert main(["live", source]) == 3
-    how = 'which is not installed: run pip install "tactile-depth[live]"'
+    how = 'which is not installed: run pip install "tactile-depth[live]", in a clone ".[live]"'
     assert capsys.readouterr().err == f"tactile-depth: {message}, {how}\n"
 
 

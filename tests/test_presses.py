@@ -136,7 +136,7 @@ def test_only_circles_that_are_searched_for_need_scikit_image(monkeypatch: pytes
     without_scikit_image(monkeypatch)
     assert len(read(folder).views) == 24
     for action in (lambda: read(folder, find_circles=True), circles.require_circle_finder):
-        assert refused(action).endswith('run pip install "tactile-depth[fit]"')
+        assert refused(action).endswith('or run pip install "tactile-depth[fit]", in a clone ".[fit]"')
 
 
 # Presses in memory.

@@ -287,7 +287,9 @@ def test_pyserial_is_missing(steady: td.Pipeline, monkeypatch: pytest.MonkeyPatc
         return load(name, *more)
 
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(td.DeviceError, match=r'needs pyserial: run pip install "tactile-depth\[serial\]"$'):
+    with pytest.raises(
+        td.DeviceError, match=r'pyserial: run pip install "tactile-depth\[serial\]", in a clone "\.\[serial\]"$'
+    ):
         td.Device("/dev/ttyUSB0", steady)
 
 

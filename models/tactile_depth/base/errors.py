@@ -84,6 +84,11 @@ class InputWarning(_Message, UserWarning):
     """Input is used but may be wrong; the message says how to make it certain."""
 
 
+def install(extra: str) -> str:
+    """Return how to install the libraries of an extra, with a package index and in a clone."""
+    return f'run pip install "tactile-depth[{extra}]", in a clone ".[{extra}]"'
+
+
 def warn(warning: InputWarning) -> None:
     """Warn at the line outside of this package that called it."""
     inside = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "")

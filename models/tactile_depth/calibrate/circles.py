@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import gaussian_filter, gaussian_filter1d, map_coordinates
 
-from tactile_depth.base.errors import InputError
+from tactile_depth.base.errors import InputError, install
 from tactile_depth.calibrate.ball_press import Circle
 from tactile_depth.chip.resampling import resampling
 
@@ -46,7 +46,7 @@ def require_circle_finder() -> None:
     if importlib.util.find_spec("skimage") is None:
         raise InputError(
             "a press has no circle, and scikit-image, which finds circles in pictures, is not installed: give the "
-            'circles, or run pip install "tactile-depth[fit]"'
+            f"circles, or {install('fit')}"
         )
 
 

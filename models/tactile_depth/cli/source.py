@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tactile_depth.base.errors import InputError
+from tactile_depth.base.errors import InputError, install
 from tactile_depth.base.npy import is_file
 from tactile_depth.cli.failure import Failure
 from tactile_depth.pictures.frames import PICTURE_SUFFIXES, read_pictures
@@ -32,7 +32,7 @@ HINTS = {
     "win32": "try 0, 1, 2, and --backend dshow or msmf; close other programs that use it",
     "darwin": "try 0, 1, 2; allow the terminal the camera in System Settings, Privacy & Security",
 }
-INSTALL = 'run pip install "tactile-depth[live]"'
+INSTALL = install("live")
 
 Item = np.ndarray | InputError  # a frame, or why one could not be read
 

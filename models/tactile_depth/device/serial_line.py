@@ -8,13 +8,12 @@ import errno
 import sys
 from typing import Any
 
-from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
+from tactile_depth.base.errors import Argument, InputError, InputWarning, install, warn
 from tactile_depth.chip.link.framing import LONGEST_ON_LINE
 from tactile_depth.chip.link.rates import BITS_A_BYTE
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.transport import Pace
 
-INSTALL = 'run pip install "tactile-depth[serial]"'
 REPEAT_S, LIMIT_S, LOOK_S = 0.05, 1.0, 0.1
 STUCK_S = 5.0  # a port that takes no bytes for so long does not take any
 
@@ -25,7 +24,7 @@ def load_pyserial() -> Any:
         import serial
         import serial.tools.list_ports
     except ImportError as error:
-        raise DeviceError("a device on a serial line needs pyserial", remedy=INSTALL) from error
+        raise DeviceError("a device on a serial line needs pyserial", remedy=install("serial")) from error
     return serial
 
 
