@@ -281,6 +281,30 @@ def test_a_reference_with_contact_is_warned_of(mini: td.Sensor, reference: np.nd
     assert pipeline(press).height_error is None
 
 
+def test_a_wrong_crop_is_told_without_what_it_causes(mini: td.Sensor) -> None:
+    """The remedies of the picture's own doubts, as another reference, would not mend it."""
+    levels = [np.asarray(Image.fromarray(each).resize((320, 240))) for each in np.moveaxis(mini.untouched, -1, 0)]
+    reference = as_picture(np.stack(levels, axis=-1))
+    uneven = in_light(1 + 0.02 * X)(reference)
+    doubted(td.Pipeline(mini, reference), uneven, "changes across it by")
+    with pytest.warns(td.InputWarning, match="by its light it shows 0.71 of .* give crop=gs_sdk"):
+        pipeline = td.Pipeline(mini, reference, crop="none")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        (text,) = pipeline(uneven).warnings
+    assert "give crop=gs_sdk" in text
+    assert len(doubted(pipeline, in_light(0.25)(reference), "differs from that of the reference").warnings) == 2
+
+
+def test_a_real_press_with_a_wrong_crop_has_one_warning(real: Any) -> None:
+    _, background, presses = real
+    with pytest.warns(td.InputWarning, match="give crop=gs_sdk"):
+        pipeline = td.Pipeline(td.load("gelsight-mini"), background, crop="none")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert {text for press in presses for text in pipeline(press).warnings} == set(map(str, pipeline.doubts))
+
+
 def test_a_reference_of_another_sensor_is_warned_of(mini: td.Sensor, reference: np.ndarray) -> None:
     with pytest.warns(td.InputWarning, match="does not look like the sensor of gelsight-mini"):
         td.Pipeline(mini, in_light((1, 1, 0.3))(reference))

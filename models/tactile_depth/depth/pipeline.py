@@ -29,7 +29,7 @@ from tactile_depth.depth.result import Recorder, Result, settings_of, thresholds
 from tactile_depth.depth.stream import Stream, timed, times
 from tactile_depth.depth.twin import PICTURES, Twin, require_flat_field, require_zero_offset
 from tactile_depth.pictures.blocks import Rest
-from tactile_depth.pictures.doubts import Doubt, UnusablePicture, Warned, tell
+from tactile_depth.pictures.doubts import Doubt, UnusablePicture, Warned, tell, unexplained
 from tactile_depth.pictures.frames import camera_scale
 from tactile_depth.pictures.light_check import clipped_depth, doubts_of, least_clipped
 from tactile_depth.pictures.picture_check import Checked, check_picture
@@ -503,6 +503,7 @@ class Pipeline:
             doubts = doubts_of(each, gain, depth, self.threshold_mm, steps)
             if clipped and not doubts:
                 doubts = (clipped_depth(clipped, each.name),)
+            doubts = unexplained(doubts, self._doubts)
             tell(doubts if warned is None else warned.new(doubts))
             texts.append(tuple(map(str, (*self.doubts, *doubts))))
         return tuple(texts)

@@ -12,7 +12,7 @@ from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.link.depth_formats import FORMATS, received
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.device.frame import DeviceFrame, errors_of
-from tactile_depth.pictures.doubts import LIGHT, TAKE_ANOTHER, Doubt, Warned, doubt, percents, tell
+from tactile_depth.pictures.doubts import LIGHT, TAKE_ANOTHER, Doubt, Warned, doubt, percents, tell, unexplained
 from tactile_depth.pictures.light_check import clipped_depth, least_clipped, pressed_out
 
 LEAST_GAIN, LARGEST_GAIN = 1 << LIGHT_GAIN.width - 2, (1 << LIGHT_GAIN.width) - 1
@@ -28,7 +28,7 @@ def of_camera(frame: DeviceFrame, shift: int, twin: Pipeline, warned: Warned) ->
     twin : Pipeline
         With what the device holds.
     """
-    doubts = _doubts_of(frame, shift, twin)
+    doubts = unexplained(_doubts_of(frame, shift, twin), twin.doubts)
     tell(warned.new(doubts))
     gains = frame.flags.light_gains
     light_gains = np.array(gains) * LIGHT_GAIN.lsb if any(gains) else None

@@ -20,6 +20,8 @@ CLIPPED = 250  # grey levels from which a pixel counts as clipped
 CLIPPED_DOUBTFUL, CLIPPED_REFUSED = 0.005, 0.1
 
 LIGHT = "light"  # kind of the doubt that light gains may end
+VIEW = "view"  # kind of the doubt of a reference that shows more or less of the gel than it should
+BY_VIEW = ("uneven light", "no surface", "pressed out")  # kinds that come of slopes and contacts of a wrong size
 SETTLING = 8  # pictures in a row after which the light gains of a stream have followed a change of the light
 
 
@@ -66,6 +68,12 @@ class Warned:
         new = [doubt for kind, doubt in by_kind.items() if kind not in self.kinds]
         self.kinds |= by_kind.keys()
         return new
+
+
+def unexplained(doubts: Iterable[Doubt], of_reference: Iterable[Doubt]) -> tuple[Doubt, ...]:
+    """Return the doubts of a picture that are not due to the view of its reference, which has been told."""
+    is_told = any(each.kind == VIEW for each in of_reference)
+    return tuple(each for each in doubts if not (is_told and each.kind in BY_VIEW))
 
 
 def tell(doubts: Iterable[Doubt]) -> None:

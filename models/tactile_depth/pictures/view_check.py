@@ -10,7 +10,7 @@ import numpy as np
 from tactile_depth.base.errors import Argument, Part
 from tactile_depth.chip.resampling import Share
 from tactile_depth.pictures.blocks import RIDGE
-from tactile_depth.pictures.doubts import Doubt, doubt
+from tactile_depth.pictures.doubts import VIEW, Doubt, doubt
 from tactile_depth.sensor.sensor import UNTOUCHED_AREAS, Sensor, equal_areas, overlaps
 from tactile_depth.sensor.view import CONVENTIONS, VIEWS_AGREE
 
@@ -86,7 +86,7 @@ def other_view(sensor: Sensor, reference: np.ndarray, name: Part, share: Share) 
     if sensor.view is not None:
         width, height = (scale * view / float(part) for view, part in zip(sensor.view, share[::-1], strict=True))
         remedy = ("give ", Argument("crop", _named(width, height)), ", what the pictures show")
-    return [doubt("view", name, text, remedy=remedy)]
+    return [doubt(VIEW, name, text, remedy=remedy)]
 
 
 def _named(width: float, height: float) -> str | float:
