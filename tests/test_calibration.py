@@ -193,7 +193,7 @@ def test_a_file_that_is_no_calibration_is_named(tmp_path: Path, case: str) -> No
         ({"gradient": np.zeros((1, 1, 1, 2))}, "(1, 1, 1, 2)"),
         ({"gradient": np.zeros((4, 4, 4, 2), int)}, "int64"),
         ({"gradient": np.array([{}])}, "not a readable .npz (Object arrays cannot be loaded"),
-        ({"gradient": np.full((4, 4, 4, 2), np.nan)}, "128 values that are NaN or infinite"),
+        ({"gradient": np.full((4, 4, 4, 2), np.nan)}, "128 values of NaN or infinity"),
         ({"gradient": np.where(np.arange(2), np.zeros((4, 4, 4, 2)), np.inf)}, "64 values"),
         ({"pixel_pitch_mm": 0.0}, "is 0:"),
         ({"pixel_pitch_mm": -0.1}, "is -0.1:"),

@@ -20,6 +20,7 @@ from PIL import Image
 import tactile_depth as td
 from tactile_depth.base.files import RECORD
 from tactile_depth.base.interruption import SIGNALS
+from tactile_depth.cli.depth import summary
 from tactile_depth.cli.drawing import DARK, OUTSIDE, Scale, round_number
 from tactile_depth.cli.main import main
 from tactile_depth.cli.overview import draw_overview
@@ -346,7 +347,8 @@ def test_a_real_press_beside_the_middle_square_says_that_its_error_was_not_measu
     (described,) = json.loads((tmp_path / "report.json").read_text())["pictures"]
     is_central = press == "12.png"
     assert described["contact"]["is_central"] is is_central
-    assert ("the contact leaves the middle square, where the error was measured" not in printed) == is_central
+    leaves = "the contact leaves the middle square, where the error was measured; outside it the error is larger"
+    assert (leaves not in printed) == is_central
     assert height in printed
 
 
@@ -457,6 +459,14 @@ def test_colours_run_from_dark_blue_to_yellow() -> None:
     np.testing.assert_array_equal(Scale(0, 2).colours(np.array([-1.0, 0.0, 2.0, 3.0]))[:, 0], [68, 68, 253, 253])
     for limit, step in ((0.99, 0.5), (1.0, 1.0), (4.9, 2.0), (70, 50), (0.021, 0.02)):
         assert round_number(limit) == pytest.approx(step)
+
+
+@pytest.mark.parametrize(("count", "pixels"), [(1, "1 pixel"), (2, "2 pixels")])
+def test_the_line_on_a_picture_counts_doubtful_pixels(inputs: Any, count: int, pixels: str) -> None:
+    result = replace(expected(inputs), fitted_slope=np.inf, saturations={"depth": count})
+    dark = np.arange(result.dark.size).reshape(result.dark.shape) < count
+    line = summary(replace(result, dark=dark))
+    assert line.endswith(f"; {pixels} without light; {pixels.replace('pixel', 'value')} clipped")
 
 
 def test_doubtful_pixels_are_marked_in_the_overview(inputs: Any) -> None:

@@ -15,7 +15,7 @@ from commands.common.repository import ROOT
 from commands.common.run_request import ACCEPTED, CAMERA
 from commands.common.variables import _parameters, variables_of_arguments
 from commands.run import calibrate
-from tactile_depth.base.errors import LONGEST, Argument, InputError
+from tactile_depth.base.errors import LONGEST, Argument, InputError, counted
 from tactile_depth.cli.main import OPTIONS, _parser, named
 from tests.drawn_light import no_contact
 
@@ -54,6 +54,14 @@ def test_a_message_has_arguments_what_is_accepted_and_a_remedy(accepted: Any, te
     assert (error.argument, error.value, error.remedy) == ("grid", (24, 32), "omit grid")
     outer = pickle.loads(pickle.dumps(InputError("a.png: ", *error.parts)))
     assert outer.text(named) == f"a.png: --grid 32x24 is odd{text}: omit --grid"
+
+
+@pytest.mark.parametrize(
+    ("number", "noun", "text"),
+    [(0, "pixel", "0 pixels"), (1, "pixel", "1 pixel"), (2000, "press", "2,000 presses"), (1, "press", "1 press")],
+)
+def test_a_number_of_things_is_singular_or_plural(number: int, noun: str, text: str) -> None:
+    assert counted(number, noun) == text
 
 
 def test_a_message_is_one_line_of_bounded_length() -> None:

@@ -334,7 +334,7 @@ def test_presses_that_the_picture_cuts_are_left_out_with_a_note(sensor: Any, fol
     assert "cuts the contact: left out" in evaluation.notes[0]
     assert all(note in str(evaluation) for note in evaluation.notes)
     assert [Path(warning.filename) for warning in caught] == [Path(__file__)]
-    assert str(caught[0].message).startswith(f"{len(cut)} of 24 presses are left out: the edge of the picture cuts ")
+    assert str(caught[0].message).startswith(f"{len(cut)} of 24 presses left out: the edge of the picture cuts ")
     assert all(name in str(caught[0].message) for name in cut)
 
 

@@ -313,11 +313,11 @@ def test_an_interruption_still_says_where_the_frames_went(
         (["presses", "--web", "--headless", "--save", "run.rrd"], "--headless opens no viewer, and --web serves one"),
         (["presses", "--web-address", "robot"], "--web-address robot is no address: accepted is an IP address"),
         (["presses", "--web-address", "127.0.0.1:65535"], "accepted are ports from 1 to 65534"),
-        (["presses", "presses", "--reference", "capture"], "--reference is given 1 times for 2 SOURCEs"),
+        (["presses", "presses", "--reference", "capture"], "--reference is given 1 time for 2 SOURCEs"),
         (["presses", "device:sim"], "device:sim with other sources: a device is watched alone"),
         (["presses", "none.mp4", "--web"], "none.mp4: no such source"),
         (["presses"], "reference looks like no sensor"),
-        (["few"], "few: 1 frames, the reference takes 8: give --reference BACKGROUND"),
+        (["few"], "few: 1 frame, the reference takes 8: give --reference BACKGROUND"),
     ],
 )
 def test_bad_input_is_one_line(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactile_depth.base.errors import counted
 from tactile_depth.chip.configuration import COEFFICIENT, STORED, WIDTHS, WORDS, Configuration
 
 WARNED_RMS_PERCENT = 1.0  # mean RMS error to double precision, of the peak; the default widths stay below 0.001
@@ -38,7 +39,7 @@ class Difference:
         """Return the verdict: the number of differing codes and the first of them."""
         frames, total = len(self.differing), self.differing.size
         if not self.count:
-            return f"RTL equals the model on every code: {total:,} codes in {frames:,} frames"
+            return f"RTL equals the model on every code: {total:,} codes in {counted(frames, 'frame')}"
         frame, row, column = np.argwhere(self.differing)[0]
         return (
             f"RTL differs from the model in {self.count:,} of {total:,} codes; first at frame {frame}, row {row}, "

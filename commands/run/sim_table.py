@@ -8,6 +8,7 @@ import numpy as np
 
 from commands.common.tabular import counts
 from commands.run import bench
+from tactile_depth.base.errors import counted
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.poisson.spectral_divide import reciprocal_rom
 from tactile_depth.chip.poisson.tridiagonal_solver import tables
@@ -87,7 +88,7 @@ def table(report: dict, labels: tuple[str, ...]) -> str:
         cells = "".join(f"{cell(report[column][i]):>17}" for column in columns)
         lines.append(f"{labels[i][:19]:<20}{cells}")
     if report["frames"] > shown:
-        lines.append(f"and {report['frames'] - shown:,} frames more: report.json")
+        lines.append(f"and {counted(report['frames'] - shown, 'frame')} more: report.json")
     if rms := known("rms_percent_of_peak"):
         lines.append(f"mean RMS {np.mean(rms):.5f} % of peak, worst {max(rms):.5f} %")
     if camera := report.get("camera"):

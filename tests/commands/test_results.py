@@ -88,7 +88,7 @@ def test_differing_codes_are_counted_and_the_first_is_named(
 def test_equal_codes_are_counted(tmp_path: Path, run: Any) -> None:
     status, output, _ = run(f"OUT={tmp_path / 'out'}")
     assert status == 0
-    assert "RTL equals the model on every code: 256 codes in 1 frames\n" in output
+    assert "RTL equals the model on every code: 256 codes in 1 frame\n" in output
     report = json.loads((tmp_path / "out" / "report.json").read_text())
     assert report["differing_codes"] == 0
     assert report["warnings"] == []

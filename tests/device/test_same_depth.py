@@ -185,7 +185,7 @@ def test_a_camera_in_right_light_has_no_doubt(
         (
             "deep",
             {"depth_range_mm": 0.5},
-            r"\d+ of its depths are clipped, heights there are too small: give a larger depth_range",
+            r"\d+ of its depths clipped, heights there are too small: give a larger depth_range",
         ),
         ("exchanged", {}, "its gel stands out by .* mm, as if something touched it in the reference: take a reference"),
     ],

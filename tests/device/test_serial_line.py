@@ -143,7 +143,7 @@ def test_garbage_in_place_of_an_answer(
     with td.Device(cable.address, steady) as device:
         send = cable.serving._send
         monkeypatch.setattr(cable.serving, "_send", lambda data: send(b"\0\1\2garbage\0"))
-        with pytest.raises(td.DeviceError, match=r"no answer to a request of its status .* with \d+ broken packets"):
+        with pytest.raises(td.DeviceError, match=r"no answer to a request of its status .* with \d+ broken packets?"):
             device.status()
         monkeypatch.undo()
         assert device.status().bad_packets > 0
@@ -255,7 +255,7 @@ def test_nothing_at_the_other_end(steady: td.Pipeline, plug: Plug, quick: None) 
 def test_another_baud_rate(steady: td.Pipeline, plug: Plug, quick: None) -> None:
     cable, generator = plug(None), np.random.default_rng(5)
     cable.answer(lambda data: generator.bytes(40))
-    message = r"\d+ bytes came, with \d+ broken packets: give serial:.*@BAUD if the device has another baud rate"
+    message = r"\d+ bytes? came, with \d+ broken packets?: give serial:.*@BAUD if the device has another baud rate"
     with pytest.raises(td.DeviceError, match=message):
         td.Device(cable.address, steady)
 

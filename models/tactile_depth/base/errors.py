@@ -84,6 +84,12 @@ class InputWarning(_Message, UserWarning):
     """Input is used but may be wrong; the message says how to make it certain."""
 
 
+def counted(number: int, noun: str) -> str:
+    """Return a number of things in words: 1 pixel, 2,000 presses."""
+    plural = f"{noun}es" if noun.endswith("s") else f"{noun}s"
+    return f"{number:,} {noun if number == 1 else plural}"
+
+
 def install(extra: str) -> str:
     """Return how to install the libraries of an extra, with a package index and in a clone."""
     return f'run pip install "tactile-depth[{extra}]", in a clone ".[{extra}]"'

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from tactile_depth.base.by_value import ByValue
-from tactile_depth.base.errors import Argument, InputError, InputWarning, require_flag, warn
+from tactile_depth.base.errors import Argument, InputError, InputWarning, counted, require_flag, warn
 from tactile_depth.calibrate.presses import (
     BACKGROUND,
     NOTHING_TOUCHES,
@@ -90,7 +90,7 @@ class Evaluation(ByValue):
 
     def __repr__(self) -> str:
         left_out = f", {len(self.notes)} left out" if self.notes else ""
-        return f"Evaluation({len(self.presses)} presses{left_out}: {', '.join(self.scores)})"
+        return f"Evaluation({counted(len(self.presses), 'press')}{left_out}: {', '.join(self.scores)})"
 
     def values(self, model: str, name: str) -> np.ndarray:
         """Return one number of the scores of each press, float64 (presses,)."""
@@ -153,7 +153,7 @@ class Evaluation(ByValue):
                     flat = among & ~np.isnan(rest[0] + rest[1])
                     slope, depth = (each[flat].mean() for each in rest) if flat.any() else (math.nan, math.nan)
                     lines.append(
-                        f"{model}, {among.sum()} presses {where}: height RMS in the contact "
+                        f"{model}, {counted(among.sum(), 'press')} {where}: height RMS in the contact "
                         f"{1000 * rms[among].mean():.1f} um; caps {cap[among].mean():.3f} of their height, RMS error "
                         f"{np.sqrt(((cap[among] - 1) ** 2).mean()):.3f}; RMS where nothing touches: slope {slope:.3f}, "
                         f"depth {1000 * depth:.1f} um"
@@ -248,7 +248,7 @@ def evaluate(
     for note in on_grid.notes:
         warn(InputWarning(note))
     if cut:
-        count = f"{len(cut)} of {len(pictures.presses)} presses are left out: the edge of the picture cuts the contact"
+        count = f"{len(cut)} of {len(pictures.presses)} presses left out: the edge of the picture cuts the contact"
         warn(InputWarning(f"{count}: {', '.join(cut)}", remedy="press nearer to the middle"))
     scores = {model: scores_of(sensor, on_grid, measured, model) for model in sensor.models}
     return evaluation_of(on_grid, measured, scores, notes)

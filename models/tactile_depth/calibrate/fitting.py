@@ -33,7 +33,7 @@ from warnings import warn
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError, InputWarning, require_flag
+from tactile_depth.base.errors import Argument, InputError, InputWarning, counted, require_flag
 from tactile_depth.calibrate.evaluation import Evaluation, Score, evaluation_of, scores_of
 from tactile_depth.calibrate.judgement import judge
 from tactile_depth.calibrate.presses import (
@@ -223,8 +223,8 @@ def fit_presses(
     if len(presses.views) < FEWEST or central < FEWEST_MEASURED:
         why = f"; {presses.notes[0]}" if presses.notes else ""
         raise InputError(
-            f"{presses.name}: {len(presses.views)} presses, {central} of them wholly in the picture's middle square: "
-            f"at least {FEWEST} and {FEWEST_MEASURED} are needed{why}"
+            f"{presses.name}: {counted(len(presses.views), 'press')}, {central} of them wholly in the picture's middle "
+            f"square: at least {FEWEST} and {FEWEST_MEASURED} are needed{why}"
         )
     parts = {view.press.name: _parts(view, presses.grid_pitch_mm, models, bits) for view in presses.views}
     sensor = _fit_models(presses, presses.views, name, parts)

@@ -12,7 +12,7 @@ import csv
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from tactile_depth.base.errors import InputError
+from tactile_depth.base.errors import InputError, counted
 from tactile_depth.base.npy import is_file
 from tactile_depth.calibrate.ball_press import BallPress, Circle
 from tactile_depth.pictures.frames import PICTURE_SUFFIXES
@@ -64,7 +64,7 @@ def read_presses(folder: Path, table: Path | None = None) -> tuple[list[BallPres
             continue
         try:
             if len(cells) != len(head):
-                raise ValueError(f"{len(cells)} cells under {len(head)} columns")
+                raise ValueError(f"{counted(len(cells), 'cell')} under {counted(len(head), 'column')}")
             press = _press(folder, {name: cell.strip() for name, cell in zip(head, cells, strict=True)}, diameter)
             if press.name in presses:
                 raise ValueError(f"{press.name} a second time")

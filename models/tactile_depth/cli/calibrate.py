@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from tactile_depth.base import files
-from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
+from tactile_depth.base.errors import Argument, InputError, InputWarning, counted, warn
 from tactile_depth.calibrate.fitting import DEFAULT_BITS, Fit, check_arguments, fit_presses, pixel_size
 from tactile_depth.calibrate.press_folder import BACKGROUND, HEAD, TABLE, background_path, table_rows
 from tactile_depth.calibrate.presses import (
@@ -214,12 +214,17 @@ def chosen(options: argparse.Namespace) -> tuple[str, ...]:
 def fitted(options: argparse.Namespace, presses: GridPresses, name: str) -> Fit:
     """Fit to the presses, and print the error on each whole press by a fit to the others."""
     rows, columns = presses.grid
-    print(f"{len(presses.views)} presses, grid of {columns} x {rows}", presses.field_of_view, sep="\n", flush=True)
+    print(
+        f"{counted(len(presses.views), 'press')}, grid of {columns} x {rows}",
+        presses.field_of_view,
+        sep="\n",
+        flush=True,
+    )
     if len(presses.agreement):
         middle = np.median(presses.agreement, axis=0)
         spread = np.median(np.abs(presses.agreement - middle), axis=0)
         off = (f"{name} {value:+.1f} ({by:.1f})" for name, value, by in zip(CIRCLE, middle, spread, strict=True))
-        what = f"circles found in {len(presses.agreement)} pictures minus those of {TABLE}"
+        what = f"circles found in {counted(len(presses.agreement), 'picture')} minus those of {TABLE}"
         print(f"{what}: {', '.join(off)} pixels, median (and median deviation)")
     fit = fit_presses(presses, chosen(options), options.bits, name, options.exposure_us, _progress)
     evaluation = replace(fit.evaluation, notes=())  # they are warnings

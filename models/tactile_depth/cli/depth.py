@@ -15,6 +15,7 @@ import numpy as np
 from PIL import ExifTags, Image
 from PIL.PngImagePlugin import PngInfo
 
+from tactile_depth.base.errors import counted
 from tactile_depth.base.files import new_files
 from tactile_depth.cli.options import add_pipeline_arguments, choose_sensor, make_pipeline, read_reference
 from tactile_depth.cli.overview import draw_overview
@@ -145,16 +146,18 @@ def summary(result: Result) -> str:
         elif error is None:
             parts.append("error of the calibration not measured")
         elif not contact.is_central:
-            parts.append("the contact leaves the middle square, where the error was measured; beside it it is larger")
+            parts.append(
+                "the contact leaves the middle square, where the error was measured; outside it the error is larger"
+            )
     else:
         parts = [f"no contact above {result.threshold_mm:.3g} mm"]
-    for count, what in (
-        (int(result.outside.sum()), "pixels steeper than the calibration has seen"),
-        (int(result.dark.sum()), "pixels without light"),
-        (sum(result.saturations.values()), "values clipped"),
+    for count, noun, what in (
+        (int(result.outside.sum()), "pixel", "steeper than the calibration has seen"),
+        (int(result.dark.sum()), "pixel", "without light"),
+        (sum(result.saturations.values()), "value", "clipped"),
     ):
         if count:
-            parts.append(f"{count:,} {what}")
+            parts.append(f"{counted(count, noun)} {what}")
     return "; ".join(parts)
 
 

@@ -17,7 +17,7 @@ from typing import TextIO
 import numpy as np
 from PIL import Image
 
-from tactile_depth.base.errors import InputError, InputWarning
+from tactile_depth.base.errors import InputError, InputWarning, counted
 from tactile_depth.chip.link.depth_formats import FORMATS, NAMES, DepthFormat
 from tactile_depth.cli.display import NUMBER, TIME, Display
 from tactile_depth.cli.feed import CameraFeed, Feed, PackageFeed, SentFeed, Shot, capture_of_camera
@@ -216,7 +216,7 @@ def options_of_each(options: argparse.Namespace) -> list[argparse.Namespace]:
         calibrations *= count
     for name, values in (("--reference", references), ("--calibration", calibrations)):
         if len(values) != count:
-            problem = f"{name} is given {len(values)} times for {count} SOURCE{'s'[: count > 1]}"
+            problem = f"{name} is given {counted(len(values), 'time')} for {counted(count, 'SOURCE')}"
             raise InputError(f"{problem}: give it once for each, in their order")
     each = zip(options.source, references, calibrations, strict=True)
     return [
@@ -344,8 +344,8 @@ def first_frames(frames: Iterator[Frame | None], source: Source) -> np.ndarray:
         if len(images) == CAPTURED:
             return np.stack(images)
     raise InputError(
-        f"{source.name}: {len(images)} frames, the reference takes {CAPTURED}: give --reference BACKGROUND, a picture "
-        "of the sensor without contact"
+        f"{source.name}: {counted(len(images), 'frame')}, the reference takes {CAPTURED}: give --reference BACKGROUND, "
+        "a picture of the sensor without contact"
     )
 
 
@@ -449,7 +449,7 @@ def progress(sensors: Sequence[Watched], seconds: float) -> str:
     shown = sum(sensor.feed.counts.shown for sensor in sensors)
     dropped = sum(sensor.feed.counts.dropped for sensor in sensors)
     states = "; ".join(sensor.state for sensor in sensors)
-    return f"{shown} frames, {shown / max(seconds, 1e-9):.1f} frames/s, {dropped} dropped; {states}".ljust(
+    return f"{counted(shown, 'frame')}, {shown / max(seconds, 1e-9):.1f} frames/s, {dropped} dropped; {states}".ljust(
         PROGRESS_WIDTH
     )
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tactile_depth.base.errors import InputError, InputWarning
+from tactile_depth.base.errors import InputError, InputWarning, counted
 from tactile_depth.calibrate.presses import GridPresses, PressPictures, View
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.device.addresses import SIM, open_channel
@@ -107,7 +107,7 @@ def summary(views: Sequence[View], results: dict[str, Measured]) -> str:
     if not whole:
         return "the device gave depth of no whole press"
     device, package = 1000 * np.mean([(read.device_mm, read.package_mm) for read in whole], axis=0)
-    return f"height RMS of {len(whole)} whole presses: device {device:.1f} um, package {package:.1f} um"
+    return f"height RMS of {counted(len(whole), 'whole press')}: device {device:.1f} um, package {package:.1f} um"
 
 
 def _read(device: Device, pipeline: Pipeline, view: View, picture: np.ndarray) -> Measured | None:

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tactile_depth.base.errors import InputError, install
+from tactile_depth.base.errors import InputError, counted, install
 from tactile_depth.base.npy import is_file
 from tactile_depth.cli.failure import Failure
 from tactile_depth.pictures.frames import PICTURE_SUFFIXES, read_pictures
@@ -264,7 +264,7 @@ def _video_frames(cv2: Any, video: Any, name: str) -> Iterator[Item]:
     finally:
         video.release()
     for _ in range(claimed - count):
-        yield InputError(f"{name}: it claims {claimed} frames, {count} could be read: give an intact video")
+        yield InputError(f"{name}: it claims {counted(claimed, 'frame')}, {count} could be read: give an intact video")
 
 
 def _camera(name: str, choice: CameraChoice) -> Iterator[Item]:

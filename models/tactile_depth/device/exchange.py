@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 
+from tactile_depth.base.errors import counted
 from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.link.depth_frames import NUMBERS
 from tactile_depth.device.arrived import arrived
@@ -63,10 +64,9 @@ class Exchange(AbstractContextManager["Exchange"]):
             if self._is_missing(lost):
                 self._missed += 1
                 if self._missed == MISSED:
-                    counts = (
-                        f"{line.bad_packets} broken packets came to this host, {line.status.bad_packets} to the device"
-                    )
-                    problem = f"{MISSED} pictures in a row gave no depth: {counts}"
+                    here = f"{counted(line.bad_packets, 'broken packet')} came to this host"
+                    there = f"{line.status.bad_packets} to the device"
+                    problem = f"{MISSED} pictures in a row gave no depth: {here}, {there}"
                     is_noisy = line.bad_packets or line.status.bad_packets
                     camera = "call depth() without pictures if the device has a camera; else check the cable"
                     raise DeviceError(problem, remedy="check cable and baud rate" if is_noisy else camera)
@@ -114,9 +114,8 @@ def camera_frames(line: Channel) -> Iterator[Arrival]:
             elif time.monotonic() - last > patience_s:
                 line.ask()
                 if line.bad_packets != bad:
-                    problem = (
-                        f"no depth frame came whole in {patience_s:.1f} s: {line.bad_packets - bad} packets are broken"
-                    )
+                    broken = counted(line.bad_packets - bad, "broken packet")
+                    problem = f"no depth frame came whole in {patience_s:.1f} s: {broken}"
                     raise DeviceError(problem, remedy="check cable and baud rate")
                 came = arrived(line, is_awaited=True)
                 reason = f", {came.problem}" if came.problem else ""

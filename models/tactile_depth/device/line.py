@@ -12,7 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from tactile_depth.base.errors import InputError
+from tactile_depth.base.errors import InputError, counted
 from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.link.depth_formats import DepthFormat, exact_shift
 from tactile_depth.chip.link.depth_frames import DepthFrames
@@ -183,7 +183,8 @@ class Line:
         """Return the error of an answer that did not come, although `count` bytes came with `bad` broken packets."""
         came = "nothing came"
         if count:
-            came = f"{count} bytes came, with {bad} broken packets" if bad else f"{count} bytes came that are no answer"
+            what_came = f"with {counted(bad, 'broken packet')}" if bad else "but no answer"
+            came = f"{counted(count, 'byte')} came, {what_came}"
         problem = f"{self._transport.name}: no answer to {what} in {self._pace.limit_s:.1f} s: {came}"
         return DeviceError(problem, remedy=self._transport.silence)
 

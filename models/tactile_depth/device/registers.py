@@ -7,7 +7,7 @@ import difflib
 from collections.abc import Callable, Iterator, MutableMapping, Sequence
 from contextlib import AbstractContextManager
 
-from tactile_depth.base.errors import Argument, InputError
+from tactile_depth.base.errors import Argument, InputError, counted
 from tactile_depth.chip.registers.register_map import REGISTERS, WORD, Field, Register
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
@@ -31,7 +31,7 @@ def write_words(line: Channel, pairs: Sequence[tuple[str, int]]) -> None:
     """Write words to registers, in order. Raises DeviceError if the device refuses one, or does not answer."""
     done = line.write([(REGISTERS[name].offset, word & WORD) for name, word in pairs])
     if done < len(pairs):
-        problem = f"the device refuses to write {pairs[done][0]} ({done} of {len(pairs)} accesses are done)"
+        problem = f"the device refuses to write {pairs[done][0]} ({done} of {counted(len(pairs), 'access')} done)"
         raise DeviceError(problem, remedy=REMEDY)
 
 

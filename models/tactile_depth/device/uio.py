@@ -9,7 +9,7 @@ from contextlib import ExitStack
 
 import numpy as np
 
-from tactile_depth.base.errors import InputError
+from tactile_depth.base.errors import InputError, counted
 from tactile_depth.base.npy import Bytes, Codes
 from tactile_depth.chip.contact.contact_events import Record, record
 from tactile_depth.chip.link.depth_formats import DepthFormat
@@ -282,7 +282,7 @@ class Uio:
             passed = (self._word(NUMBER) - self._begun) % NUMBERS
             trouble = self._vdma.trouble
             if trouble.endswith("halted") or passed > STORES:
-                problem = f"{passed} frames passed, and none reached the buffer: {trouble or 'no error'}"
+                problem = f"{counted(passed, 'frame')} passed, and none reached the buffer: {trouble or 'no error'}"
                 self._restart(problem, "connect m_axis to the VDMA, and map the buffer without cache: docs/cable.md")
             return
         _settle()

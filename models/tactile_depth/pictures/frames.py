@@ -16,7 +16,7 @@ import numpy as np
 from PIL import Image
 
 from tactile_depth.base.by_value import ByValue
-from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
+from tactile_depth.base.errors import Argument, InputError, InputWarning, counted, warn
 from tactile_depth.base.files import RECORD
 from tactile_depth.base.npy import is_file, read_header
 from tactile_depth.chip.camera_configuration import CameraChoice, CameraConfiguration
@@ -185,7 +185,8 @@ def _warn_of_window(sensor: Sensor, frames: Frames) -> None:
         margin = float(whole * (1 - share) / 2)
         beyond = max(beyond, margin - first, first + length - (whole - margin))
     if beyond > 1:
-        problem = f" shows gel up to {beyond:.0f} pixels beyond the calibration's pictures, which is not calibrated"
+        far = counted(round(beyond), "pixel")
+        problem = f" shows gel up to {far} beyond the calibration's pictures, which is not calibrated"
         remedy = "omit it for the view of the calibration"
         warn(InputWarning(Argument("window", frames.camera.crop), problem, remedy=remedy))
 
@@ -392,7 +393,7 @@ def _read_array(path: Path) -> np.ndarray:
             _check_camera(str(path), shape[-3], shape[-2])
             present = path.stat().st_size - file.tell()
             if math.prod(shape) > present:  # checked before memory is allocated
-                raise ValueError(f"{present:,} bytes of data for {shape}")
+                raise ValueError(f"{counted(present, 'byte')} of data for {shape}")
             file.seek(0)
             return np.lib.format.read_array(file, allow_pickle=False)
     except InputError:

@@ -121,7 +121,7 @@ def least_clipped(width: int, zero: np.ndarray) -> int:
 
 def clipped_depth(count: int, name: Part) -> Doubt:
     """Return the doubt of a picture with clipped depths."""
-    text, larger = f": {count} of its depths are clipped", ("give a larger ", Argument("depth_range_mm"))
+    text, larger = f": {count} of its depths clipped", ("give a larger ", Argument("depth_range_mm"))
     return doubt("clipped depth", name, f"{text}, heights there are too small", remedy=larger)
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, warn
+from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, counted, warn
 from tactile_depth.base.npy import is_file, read_header
 from tactile_depth.chip.limits import COEFFICIENTS, CUBIC, GRADIENT_LIMITS, MODELS
 from tactile_depth.sensor.sensor import (
@@ -265,7 +265,7 @@ def _gradient(path: Path, gradient: np.ndarray) -> np.ndarray:
             f"(2^b, 2^b, 2^b, 2), b from {low} to {high}"
         )
     if bad := np.count_nonzero(~np.isfinite(gradient)):
-        raise InputError(f"{path}: `gradient` holds {bad} values that are NaN or infinite: fill empty bins")
+        raise InputError(f"{path}: `gradient` holds {counted(bad, 'value')} of NaN or infinity: fill empty bins")
     largest = float(np.abs(gradient).max())
     if largest:
         _within_limits(path, "the largest slope in `gradient`", largest)
