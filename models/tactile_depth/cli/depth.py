@@ -54,8 +54,8 @@ UNITS = {
     "area_mm2": "area above area_threshold_mm",
     "centroid": "weighted by what depth is above area_threshold_mm",
     "is_mostly_empty": "the area fills less than half of its bounding box: it is long, hollow, or of several contacts",
-    "is_central": "the area lies wholly in the middle square, where calibration_error was measured; null without "
-    "contact",
+    "is_central": "the area lies wholly in the middle square, as high and wide as the grid's shorter side, where "
+    "calibration_error was measured; null without contact",
     "volume_mm3": "sum of the depths in the area times the area of a pixel",
 }
 CONTACT = (
