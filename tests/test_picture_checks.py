@@ -283,6 +283,7 @@ def test_a_reference_with_contact_is_warned_of(mini: td.Sensor, reference: np.nd
 
 def test_a_wrong_crop_is_told_without_what_it_causes(mini: td.Sensor) -> None:
     """The remedies of the picture's own doubts, as another reference, would not mend it."""
+    assert mini.untouched is not None
     levels = [np.asarray(Image.fromarray(each).resize((320, 240))) for each in np.moveaxis(mini.untouched, -1, 0)]
     reference = as_picture(np.stack(levels, axis=-1))
     uneven = in_light(1 + 0.02 * X)(reference)

@@ -265,7 +265,7 @@ def _gradient(path: Path, gradient: np.ndarray) -> np.ndarray:
             f"(2^b, 2^b, 2^b, 2), b from {low} to {high}"
         )
     if bad := np.count_nonzero(~np.isfinite(gradient)):
-        raise InputError(f"{path}: `gradient` holds {counted(bad, 'value')} of NaN or infinity: fill empty bins")
+        raise InputError(f"{path}: `gradient` holds {counted(int(bad), 'value')} of NaN or infinity: fill empty bins")
     largest = float(np.abs(gradient).max())
     if largest:
         _within_limits(path, "the largest slope in `gradient`", largest)
