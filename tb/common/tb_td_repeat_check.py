@@ -29,7 +29,7 @@ async def frames(dut: Any) -> None:
     tables = [[chance.getrandbits(width) for _ in range(WORDS)] for _ in range(2)]
 
     def legal(core: RepeatCheck, pins: Pins) -> None:
-        """Send frames from one of two tables, now and then from the other one, with a flip, or without an end."""
+        """Send frames of two tables that change at times; some have a flip, are short, or do not end."""
         if core.words is None and not pins["in_first"]:
             pins["in_valid"] = 0
         if pins["in_valid"]:
@@ -39,10 +39,10 @@ async def frames(dut: Any) -> None:
                 bank = core.bank ^ (chance.random() < 0.1)
                 pins["in_bank"] = bank
                 if chance.random() < 0.05:
-                    tables[bank] = [chance.getrandbits(width) for _ in range(WORDS)]
+                    tables[bank] = [chance.getrandbits(width) * chance.randrange(2)] * WORDS
             place = 0 if pins["in_first"] or core.words is None else len(core.words)
             bank = pins["in_bank"] if pins["in_first"] else core.bank
-            pins["in_last"] = place == WORDS - 1
+            pins["in_last"] = place == WORDS - 1 or (place > 0 and chance.random() < 0.1)
             pins["in_data"] = tables[bank][place] ^ (chance.random() < 0.05) << chance.randrange(width)
 
     choices: dict[str, Any] = {"en": 1.0, "in_valid": 1.0, "in_first": 1.0, "in_last": 0.0, "in_bank": (0, 1)}
