@@ -13,10 +13,9 @@
 // BottomFirst, bottom row first; they are never held back, and gaps change nothing. A frame that begins inside another
 // begins afresh. Settings and in_time are taken with a frame's first beat, in_flags with its last. From the last beat
 // of a frame to that of the next lie at least Latency cycles. in_flipped and in_residual are taken as a
-// record enters its register.
-// Stream out: the record of each frame, docs/generated/registers.md, as a packet. Latency: the record is in its
-// register, until the next, Latency = 2 log2(larger side) + 2 log2(Lanes) + 22 cycles after the last beat, touching 3
-// cycles after it. Bit-accurate model: models/tactile_depth/chip/contact/contact_events.py.
+// record enters its register. Stream out: the record of each frame, docs/generated/registers.md, as a packet. Latency:
+// the record is in its register, until the next, Latency = 2 log2(larger side) + 2 log2(Lanes) + 22 cycles after the
+// last beat, touching 3 cycles after it. Bit-accurate model: models/tactile_depth/chip/contact/contact_events.py.
 
 `default_nettype none
 

@@ -7,7 +7,7 @@
 //                 |              v above
 //                 \-------> contact_events --> m_event, record
 //                                ^
-//    flipped bits of memories -> flip_marks
+//    flipped bits -> flip_marks
 //
 // Stream in: depth codes of whole frames, Lanes neighbours in a beat, under the enable, which this unit makes: low
 // while the output is full. Streams out: AXI4-Stream, each depth sign-extended to whole bytes, the first in the lowest
@@ -54,7 +54,7 @@ module contact_unit
   input  wire  [Lanes*DataWidth-1:0]  depth_data,  // depth codes, signed
   input  wire  [31:0]                 depth_time,
   input  wire frame_flags_t           depth_flags,  // counts with the last beat of a frame
-  input  wire  [2:0]                  flipped,      // a word that was read from a memory has a flipped bit
+  input  wire  [2:0]                  flipped,      // a flipped bit is seen
   input  wire                         beyond,       // the residual of the last frame is beyond its bound
 
   output logic [Lanes*DepthBits-1:0]  m_axis_tdata,  // the same, each sign-extended to whole bytes

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // flip_marks: which records are of frames that a flipped bit may have damaged.
 //
-// `flipped` is high while a word that was read from a memory has a flipped bit. It counts from the first record on:
+// `flipped` is high while a flipped bit is seen. It counts from the first record on:
 // before, words are read that nobody has written. It marks the next Records records, those of the frames that were in
 // flight. `marked` counts in the cycle in which a record is made, one before its record_valid. `found` is high for the
 // first cycle of each flip that counts, a cycle later. Bit-accurate model:

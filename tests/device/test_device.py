@@ -161,7 +161,7 @@ def test_a_stream_leaves_out_and_counts_a_picture_that_gives_no_depth_and_a_list
     require_equal(list(device.depth(iter(pictures[:1]))), list(pipeline.stream(pictures[:1])))
 
 
-HARMS = {"flipped": "a bit of the device's memory had flipped", "residual": "does not fit its slopes"}
+HARMS = {"flipped": "a bit of the device had flipped", "residual": "does not fit its slopes"}
 
 
 @pytest.mark.parametrize("harm", HARMS)

@@ -193,7 +193,7 @@ def errors_of(frame: DeviceFrame) -> list[Doubt]:
     """Doubt a frame whose flags say that the device computed it wrongly."""
     flags, name, found = frame.flags, f"frame {frame.number}", []
     if flags.flipped:
-        text = ": a bit of the device's memory had flipped while it was computed"
+        text = ": a bit of the device had flipped while it was computed"
         remedy = "take another; if all are so, write the tables of the device again, or reset it"
         found.append(doubt("flipped", name, text, remedy=remedy))
     if flags.residual and not flags.depth_clipped:  # clipped depth solves no equation

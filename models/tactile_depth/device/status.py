@@ -36,7 +36,7 @@ class DeviceStatus(NamedTuple):
     depth_dropped, records_lost : int
         Depth frames and records that their sink did not take.
     flips : int
-        Times that a word with a flipped bit was read from a memory with parity.
+        Times that a device with parity saw a flipped bit.
     residuals : int
         Frames whose depth did not fit their slopes.
     touching, busy : bool

@@ -29,7 +29,7 @@ class FrameFlags(NamedTuple):
     resumed : bool
         Pixels were dropped before this frame began.
     flipped : bool
-        A word that was read from a memory while the frame was in flight had a flipped bit.
+        A flipped bit was seen while the frame was in flight.
     residual : bool
         The depth of the frame does not fit its slopes.
     light_gains : tuple of int
