@@ -17,7 +17,13 @@ from commands.study.drawn_light import DrawnLight
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.contact_events import WORD_BITS, ContactEvents, Settings
 from tactile_depth.chip.gradient.light_gains import Light, LightFilter
-from tactile_depth.chip.registers.event_registers import COUNTERS, EVENT_COUNTERS, SATURATIONS, EventRegisters
+from tactile_depth.chip.registers.event_registers import (
+    COUNTERS,
+    EVENT_COUNTERS,
+    LARGEST_COUNT,
+    SATURATIONS,
+    EventRegisters,
+)
 from tactile_depth.chip.tactile_depth import slope_tables
 from tactile_depth.sensor.sensor import Sensor
 
@@ -116,7 +122,7 @@ def counts(config: Configuration, clipped_per_frame: int, clocks_per_frame: int)
     """Return what becomes of every counter, number and time in FRAMES frames that each clip so many values."""
     largest = (1 << WORD_BITS) - 1
     model = EventRegisters()
-    model.values.update(dict.fromkeys(COUNTERS, largest))
+    model.values.update(LARGEST_COUNT)
     model.clock(tuple(EVENT_COUNTERS), 1, 0, None, 0)
     each: Mapping[str, int] = {
         SATURATIONS: clipped_per_frame,
@@ -130,4 +136,5 @@ def counts(config: Configuration, clipped_per_frame: int, clocks_per_frame: int)
     record = contact.whole_frame(codes, Settings(1, 1, 1, 1, 1), time=largest)
     after = (largest + clocks_per_frame) % (largest + 1)
     rows += [("RECORD_FRAME", 1, record.frame), ("RECORD_TIME", clocks_per_frame, after)]
-    return [LongCount(name, 100 * FRAMES * per_frame / 2.0**WORD_BITS, end) for name, per_frame, end in rows]
+    ranges = {name: LARGEST_COUNT.get(name, largest) + 1 for name, _, _ in rows}
+    return [LongCount(name, 100 * FRAMES * per_frame / ranges[name], end) for name, per_frame, end in rows]

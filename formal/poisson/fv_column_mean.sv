@@ -51,6 +51,7 @@ module protocol_column_mean;
   assign holds = rst | (in_next ? left == '0 & (in_frame_start | rows_left != '0) : ~in_frame_start);
   assign counts_mean = known & ~reset & en;
   assign counts_clipped = live & ~reset;
+  assign counts_flipped = live & ~reset;
   always_ff @(posedge clk) begin
     if (en) begin
       left <= in_next ? 3'(Apart - 1) : left - 3'(left != '0);

@@ -53,7 +53,7 @@ module gradient_unit
   input  wire light_command_t             light_command,
   output logic [2:0][LightGainWidth-1:0]  light_gains,  // of red, green, blue from the lowest; 0 without LightGains
   output logic [3:0]                      saturations,  // clip count, delayed
-  output logic                            flipped,      // a word that was read has a flipped bit
+  output logic                            flipped,      // a word that was read, or a gain, has a flipped bit
 
   input  wire                             pixel_valid,
   input  wire  [23:0]                     pixel_data,  // R in 23:16, B in 15:8, G in 7:0
@@ -83,9 +83,9 @@ module gradient_unit
   localparam int ColourWidth = Polynomial != 0 ? DeviationWidth : CodeWidth;
   logic [ColourWidth-1:0] red, green, blue;
   logic [1:0] ratio_saturations, light_saturations, slope_saturations;
-  logic gains_flipped, correction_flipped, slope_flipped;
+  logic gains_flipped, light_flipped, correction_flipped, slope_flipped;
   always_ff @(posedge clk) begin
-    flipped <= gains_flipped | correction_flipped | slope_flipped;
+    flipped <= gains_flipped | light_flipped | correction_flipped | slope_flipped;
     saturations <= rst ? '0 : 4'(ratio_saturations) + 4'(light_saturations) + 4'(slope_saturations);
   end
   if (FlatField != 0) begin : g_flat_field
@@ -113,19 +113,19 @@ module gradient_unit
     if (LightGains != 0) begin : g_light
       light_gains #(
         .Rows(Rows), .Columns(Columns), .RatioWidth(RatioWidth), .RatioFraction(RatioFraction),
-        .GainWidth(LightGainWidth), .OutWidth(DeviationWidth), .OutFraction(DeviationFraction)
+        .GainWidth(LightGainWidth), .OutWidth(DeviationWidth), .OutFraction(DeviationFraction), .Parity(Parity)
       ) u_light (
         .clk, .rst, .en, .follow(light_command.follow), .rate(light_command.rate), .write(light_command.write),
         .write_gain(light_command.gain), .gains(light_gains), .used(light_used), .moves(light_moves),
         .in_bad(pixel_valid & pixel_position.last_row & pixel_position.last_column & pixel_bad),
         .in_valid(relative_valid), .in_position(relative_position), .in_red(relative[0]), .in_green(relative[1]),
         .in_blue(relative[2]), .out_valid(colour_valid), .out_position(colour_position), .out_red(red),
-        .out_green(green), .out_blue(blue), .saturations(light_saturations)
+        .out_green(green), .out_blue(blue), .saturations(light_saturations), .flipped(light_flipped)
       );
     end else begin : g_no_light
       assign {blue, green, red} = relative;
       assign {colour_valid, colour_position} = {relative_valid, relative_position};
-      assign {light_gains, light_used, light_moves, light_saturations} = '0;
+      assign {light_gains, light_used, light_moves, light_saturations, light_flipped} = '0;
     end
     assign relative_ends = relative_valid & relative_position.last_row & relative_position.last_column;
     reference_capture #(
@@ -144,7 +144,7 @@ module gradient_unit
     assign colour_position = pixel_position;
     assign relative_ends = pixel_valid & pixel_position.last_row & pixel_position.last_column;
     assign {dark, ratio_saturations, light_saturations, light_gains, light_used, light_moves} = '0;
-    assign {capture_status, reference_in_use, reference_answer, gains_flipped} = '0;
+    assign {capture_status, reference_in_use, reference_answer, gains_flipped, light_flipped} = '0;
   end
 
   // Their slopes.

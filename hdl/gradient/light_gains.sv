@@ -28,7 +28,8 @@ module light_gains
   parameter int RatioFraction = 15,
   parameter int GainWidth     = 16,  // one bit less of them is fraction
   parameter int OutWidth      = 17,
-  parameter int OutFraction   = 15
+  parameter int OutFraction   = 15,
+  parameter int Parity        = 0    // 1: the gains have a parity
 ) (
   input  wire                         clk,
   input  wire                         rst,         // the gains become 1
@@ -53,7 +54,8 @@ module light_gains
   output logic signed [OutWidth-1:0]  out_red,     // deviation, OutFraction bits
   output logic signed [OutWidth-1:0]  out_green,
   output logic signed [OutWidth-1:0]  out_blue,
-  output logic [1:0]                  saturations  // clip count, delayed
+  output logic [1:0]                  saturations, // clip count, delayed
+  output logic                        flipped      // a gain has a flipped bit
 );
 
   localparam int GainFraction = GainWidth - 1;
@@ -174,6 +176,20 @@ module light_gains
       down_q <= 8 * (CountWidth + 4)'($signed(nets[0])) >= (CountWidth + 4)'(3 * Pixels);
       {rest_qq, up_qq, down_qq} <= {rest_q, up_q, down_q};
     end
+  end
+
+  // A gain that is wrong would stay so: a frame moves it by a fraction of what it is off.
+  if (Parity == 0) begin : g_plain
+    assign flipped = 1'b0;
+  end else begin : g_parity
+    logic gains_flipped, used_flipped;
+    assign flipped = gains_flipped | used_flipped;
+    td_hold_check #(.Width(Colours * GainWidth)) u_gains (
+      .clk, .rst, .comes(rst | commits | write != '0), .word(gains), .flipped(gains_flipped)
+    );
+    td_hold_check #(.Width(Colours * GainWidth)) u_used (
+      .clk, .rst, .comes(free), .word(used), .flipped(used_flipped)
+    );
   end
 
   logic [GainWidth-1:0] least_write;

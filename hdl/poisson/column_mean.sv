@@ -4,7 +4,8 @@
 //   mean = -sum over the rows i but the last of (i + 1) d[i] / Rows
 //
 // Stream in: d of position 0, Rows of them a frame. The mean is there 4 cycles after d of the row before the last, and
-// the last row must not come before. Two multipliers. Bit-accurate model: zero_mean in
+// the last row must not come before. Two multipliers. An error of the mean moves all depths alike, so that they solve
+// their equation too: Parity 1 checks the sum. Bit-accurate model: zero_mean in
 // models/tactile_depth/chip/poisson/elimination.py.
 
 `default_nettype none
@@ -15,7 +16,8 @@ module column_mean #(
   parameter int Rows           = 128,
   parameter int MomentDrop     = 7,
   parameter int MeanReciprocal = 65536,
-  parameter int MeanDrop       = 16
+  parameter int MeanDrop       = 16,
+  parameter int Parity         = 0   // 1: the sum has a parity while it waits for the next row
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -24,7 +26,8 @@ module column_mean #(
   input  wire                     in_frame_start,  // with in_next: of the first row of a frame
   input  wire  signed [Width-1:0] in_data,         // d, F fraction bits
   output logic signed [Width-1:0] mean,            // F fraction bits
-  output logic [1:0]              clipped          // each: a value of the mean was clipped, delayed
+  output logic [1:0]              clipped,         // each: a value of the mean was clipped, delayed
+  output logic                    flipped          // the sum has a flipped bit
 );
 
   localparam int RowWidth = $clog2(Rows);
@@ -62,6 +65,12 @@ module column_mean #(
     clipped[0] <= en & after[2] & clipped_now[0] & ends;
     clipped[1] <= en & after[4] & clipped_now[1] & ends;
     if (rst) {after, clipped} <= '0;
+  end
+
+  if (Parity == 0) begin : g_plain
+    assign flipped = 1'b0;
+  end else begin : g_parity
+    td_hold_check #(.Width(MomentWidth)) u_hold (.clk, .rst, .comes(en & after[1]), .word(moment), .flipped);
   end
 
 endmodule

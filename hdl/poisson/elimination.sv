@@ -43,7 +43,7 @@ module elimination #(
   output logic [Words*OutWidth-1:0] out_last,         // d, F - StoreDrop fraction bits
   output logic [Words*OutWidth-1:0] out_ahead,        // e of the row above
   output logic [ClippedWidth-1:0]   saturations,      // clip count, delayed
-  output logic                      flipped           // a word that was read has a flipped bit
+  output logic                      flipped           // a word that was read, or the mean, has a flipped bit
 );
 
   localparam int Clocks = Columns / Words;
@@ -61,8 +61,8 @@ module elimination #(
   assign row = in_frame_start ? '0 : row_q;
   assign active = in_start | (position != '0);  // the counter rests at 0: no path leads from in_start to the table
 
-  logic table_flipped, d_flipped, c_flipped;
-  assign flipped = table_flipped | d_flipped | c_flipped;
+  logic table_flipped, d_flipped, c_flipped, mean_flipped;
+  assign flipped = table_flipped | d_flipped | c_flipped | mean_flipped;
   logic [Words*CoeffWidth-1:0] coefficients;
   logic [Words*LastShiftWidth-1:0] shifts, shifts_q;
   thomas_table #(
@@ -124,14 +124,15 @@ module elimination #(
   if (Neumann != 0) begin : g_mean
     column_mean #(
       .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .MomentDrop(MomentDrop), .MeanReciprocal(MeanReciprocal),
-      .MeanDrop(MeanDrop)
+      .MeanDrop(MeanDrop), .Parity(Parity)
     ) u_mean (
       .clk, .rst, .en, .in_next(start_q[ToState-2]), .in_frame_start(frame_start_q[ToState-2]), .in_data(d[Width-1:0]),
-      .mean, .clipped(clipped_mean)
+      .mean, .clipped(clipped_mean), .flipped(mean_flipped)
     );
   end else begin : g_no_mean
     assign mean = '0;
     assign clipped_mean = '0;
+    assign mean_flipped = 1'b0;
   end
 
   logic [4*Words-1:0] clipped;

@@ -7,10 +7,11 @@
 // It is only rounding if every bit of the solver was right. Three patterns b are in td_check_pkg: the signs of Rudin
 // and Shapiro, each of them 1, 2 or 4 times, and 0 in the last column. Sums of all other columns and of the minus signs
 // alone are taken; the first minus twice the second is that of the signs. An error in a transform is often the same, or
-// opposite, in two columns as far from the middle: so the signs of one pattern are opposite there, and a quarter of the
-// residual of all columns but the last counts too. f loses InDropped low bits, z loses Dropped; a sum begins with half
-// of what that takes from it. Beyond an edge z and R are those of the outer column or row (Neumann), or their
-// complements. Sums wrap at SumWidth bits. There are adders only.
+// opposite, in two columns as far from the middle: so the signs of the last pattern are opposite there, and a quarter
+// of the residual of all columns but the last counts too. Of that of the last pattern half counts, as the rounding of
+// coefficients adds up there. f loses InDropped low bits, z loses Dropped; a sum begins with half of what that takes
+// from it. Beyond an edge z and R are those of the outer column or row (Neumann), or their complements. Sums wrap at
+// SumWidth bits. There are adders only.
 //
 // Streams in: divergence f in raster order, gaps anywhere; depths z, a row in successive cycles with en, rows in raster
 // order or the bottom row first. A row's F waits in a memory; FrameLatency says for how long. Out: for each frame the
@@ -174,7 +175,7 @@ module self_check
   // The equation, one sum in a cycle. What a row leaves to the next one waits while the other sums pass.
 
   logic first, last, slot_q, outside, read, read_q;
-  logic [4:1] totals_q;
+  logic [7:1] totals_q;
   logic [4:1] checks_q;
   logic [5:1] ends_frame_q;
   logic [SumWidth-1:0] r, s, s_before, change, bend, scaled_sum, known, rest, total, of_signs, checked;
@@ -186,7 +187,8 @@ module self_check
   assign read = (ends_q[Ahead] & ~row_first) | (slots[Sums-2:0] != '0 & ~first) | (slots[Sums-1] & last)
       | slots[2*Sums-2:Sums] != '0;
   assign s = row_s[0] | row_s[1] | row_s[2] | row_s[3];
-  assign checked = totals_q[4] ? SumWidth'($signed(total) >>> 2) : of_signs;
+  assign checked = totals_q[4] ? SumWidth'($signed(total) >>> 2)
+      : totals_q[7] ? SumWidth'($signed(of_signs) >>> 1) : of_signs;
   assign size = checked[SumWidth-2:0] ^ {(SumWidth - 1){checked[SumWidth-1]}};
   assign excess = {1'b0, largest} - {1'b0, size};
   if (Neumann != 0) begin : g_neumann
@@ -221,7 +223,7 @@ module self_check
     rest <= bend + known;
     if (totals_q[3]) total <= rest;
     of_signs <= total - (rest << 1);
-    totals_q <= {totals_q[3:1], slots[0] | slots[Sums]};
+    totals_q <= {totals_q[6:1], slots[0] | slots[Sums]};
     checks_q <= {checks_q[3:1], read_q};
     read_q <= read;
     ends_frame_q <= {ends_frame_q[4:1], slots[2*Sums-1]};

@@ -31,7 +31,7 @@ PROTOCOL = {
     "counts": "live & ~reset & en",
     "gains used": "live",
     "moves": "live & in_valid & in_position[3] & in_position[2]",
-    "saturations": "live & ~reset",
+    "saturations flipped": "live & ~reset",
     "out_position out_red out_green out_blue": "counts & out_valid",
 }
 PROOFS = (

@@ -10,6 +10,7 @@ from tactile_depth.chip.registers.event_registers import (
     ARRIVED,
     COUNTERS,
     LARGEST,
+    LARGEST_COUNT,
     LATENCY,
     LEVELS,
     SELF_TEST,
@@ -23,12 +24,11 @@ from tb.structures import BOTH, ICARUS, Mutants, Structure
 
 STRUCTURES = (Structure(on=BOTH, mutants=ICARUS),)
 PROTOCOL = {"counts": "live"}
-MUTANTS = Mutants(outside=("counts",))
+MUTANTS = Mutants(outside=("counts", "flips", "residuals"))
 NO_PROOF = "every register and output of it is proven through the port: axil_registers"
 
 COUNTER_ORDER = (  # names of the words of `counts`, from the lowest
     *("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "DARK_PIXELS", "DEPTH_DROPPED", "RECORDS_LOST", "SATURATIONS"),
-    *("FLIPS", "RESIDUALS"),
 )
 
 
@@ -81,5 +81,8 @@ async def registers(dut: Any) -> None:
             words[chance.randrange(len(words))] = (1 << chance.randrange(33)) - 1
             core.model.values.update(zip(COUNTER_ORDER, words, strict=True))
             dut.counts.value = sum(word << 32 * n for n, word in enumerate(words))
+            for name, count in (("FLIPS", dut.flips), ("RESIDUALS", dut.residuals)):
+                core.model.values[name] = LARGEST_COUNT[name] - chance.randrange(2)
+                count.value = core.model.values[name]
 
     await lockstep.play(dut, Registers(), pins, counts)

@@ -247,7 +247,6 @@ def test_the_gains_that_are_skipped_to_are_those_of_every_frame(monkeypatch: pyt
 
 
 def test_counters_stay_and_numbers_begin_again() -> None:
-    largest = 2**32 - 1
     counts = {each.register: each for each in long_state.counts(Configuration(columns=16), 3, 256)}
-    assert {counts.pop(name).after_the_end for name in long_state.COUNTERS} == {largest}
+    assert {name: counts.pop(name).after_the_end for name in long_state.COUNTERS} == long_state.LARGEST_COUNT
     assert {name: each.after_the_end for name, each in counts.items()} == {"RECORD_FRAME": 0, "RECORD_TIME": 255}

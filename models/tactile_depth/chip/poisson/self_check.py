@@ -28,7 +28,7 @@ SIGMAS = 6.0  # bound over the RMS of the residuals of noise, at least: 2e-9 of 
 NOISE_FRAMES = 4  # the last ones of `extreme_slopes`
 KEPT_LOG2 = 7  # bits of that residual which stay when low bits of a depth are dropped
 EXACT_WIDTH = 62  # of sums that do not wrap
-TOTAL_LOG2 = 2  # the sum of all columns counts for 1 / 2**TOTAL_LOG2 of it, so that it does not set the bound
+LESS_LOG2 = np.array([2, 0, 0, 1])  # of each pattern 1 / 2**LESS_LOG2 counts, so that it does not set the bound alone
 WRAP_LOG2 = 3  # a sum wraps at this many bits above the bound
 
 
@@ -61,8 +61,9 @@ class Check:
 def residuals(f: np.ndarray, z: np.ndarray, check: Check) -> np.ndarray:
     """Return what divergence codes and depth codes, int64 (..., rows, columns), leave of each row's equation.
 
-    The first pattern is all ones, and counts for less. Rows in raster order. Rows and columns beyond the edges
-    are equal to the outer ones (Neumann) or minus them; minus x is here its complement, -x - 1, which costs no adder.
+    The first pattern is all ones; it and the last one count for less. Rows in raster order. Rows and columns beyond
+    the edges are equal to the outer ones (Neumann) or minus them; minus x is here its complement, -x - 1, which costs
+    no adder.
 
     Returns
     -------
@@ -78,7 +79,7 @@ def residuals(f: np.ndarray, z: np.ndarray, check: Check) -> np.ndarray:
     rest = bend + s - divergence_sums(f, check.in_dropped, check.scale, check.scale_fraction)
     total = rest[..., :1]
     of_signs = wrapped(total - 2 * rest[..., 1:], check.sum_width)
-    return np.concatenate((wrapped(total, check.sum_width) >> TOTAL_LOG2, of_signs), axis=-1)
+    return np.concatenate((wrapped(total, check.sum_width), of_signs), axis=-1) >> LESS_LOG2
 
 
 def wrapped(words: np.ndarray, width: int) -> np.ndarray:

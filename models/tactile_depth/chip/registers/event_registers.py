@@ -43,6 +43,7 @@ INTERRUPT_BITS = {event: INTERRUPT_STATUS.field(bit).mask for event, bit in INTE
 EVENTS = tuple(dict.fromkeys((*STICKY_EVENTS, *INTERRUPT_EVENTS, *EVENT_COUNTERS)))
 SATURATIONS, LARGEST = "SATURATIONS", "LARGEST_RESIDUAL"
 COUNTERS = (*dict.fromkeys(EVENT_COUNTERS.values()), SATURATIONS)
+LARGEST_COUNT = {name: REGISTERS[name].mask() for name in COUNTERS}
 LATENCY = "FIRST_DEPTH_LATENCY"
 ARRIVED = REGISTERS["ARRIVED"]
 SELF_TEST = "SELF_TEST"
@@ -113,7 +114,7 @@ class EventRegisters:
         if saturations:
             values["STATUS"] |= STATUS.field("saturation").mask
         for name in {EVENT_COUNTERS[event] for event in events if event in EVENT_COUNTERS}:
-            values[name] = min(values[name] + 1, WORD)
+            values[name] = min(values[name] + 1, LARGEST_COUNT[name])
         values[SATURATIONS] = min(values[SATURATIONS] + saturations, WORD)
         clears, late = self._late
         left = 0 if clears else values[LARGEST]
