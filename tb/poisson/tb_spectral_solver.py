@@ -3,6 +3,7 @@
 
 from tactile_depth.chip.rom_files import write_solver
 from tactile_depth.chip.tactile_depth import hdl_parameters
+from tb.flips import no_flips as no_flips
 from tb.poisson.solver_bench import a_frame_begins_afresh, frames, full_scale_saturates, many_frames, reset_in_mid_frame
 from tb.stream import of_configuration
 from tb.structures import ICARUS, VERILATOR, Mutants

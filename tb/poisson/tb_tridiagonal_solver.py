@@ -7,6 +7,7 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.resources import ULTRA
 from tactile_depth.chip.rom_files import write_solver
 from tactile_depth.chip.tactile_depth import config_value, top_parameters
+from tb.flips import no_flips as no_flips
 from tb.poisson.solver_bench import (
     a_frame_begins_afresh,
     frames,

@@ -11,6 +11,7 @@ from tactile_depth.chip.poisson.transform.dst_forward import dst_forward
 from tactile_depth.chip.poisson.transform.dst_forward import latency as dst_forward_latency
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.rom_files import write_direction
+from tb.flips import no_flips as no_flips
 from tb.poisson.burst_core import BurstCore
 from tb.stream import parameters
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure

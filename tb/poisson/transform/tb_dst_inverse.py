@@ -17,6 +17,7 @@ from tactile_depth.chip.poisson.transform.dst_inverse import latency as dst_inve
 from tactile_depth.chip.poisson.transform.transform import Transform
 from tactile_depth.chip.rom_files import write_direction
 from tb.beats import AloneDriver, BeatsMonitor, all_stages_clip, alone
+from tb.flips import no_flips as no_flips
 from tb.pairs import AloneMonitor
 from tb.pins import Read
 from tb.poisson.burst_core import BurstCore

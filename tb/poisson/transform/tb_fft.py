@@ -15,6 +15,7 @@ from tactile_depth.chip.poisson.transform.fft import fft
 from tactile_depth.chip.poisson.transform.fft import latency as fft_latency
 from tactile_depth.chip.rom_files import write_direction
 from tb.beats import all_stages_clip
+from tb.flips import no_flips as no_flips
 from tb.poisson.burst_core import BurstCore
 from tb.stream import MANY, parameters
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
