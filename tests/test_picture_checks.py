@@ -363,6 +363,35 @@ def test_a_stream_leaves_out_what_gives_no_depth(pipeline: td.Pipeline, press: n
         np.testing.assert_array_equal(result.codes, same.codes)
 
 
+def test_a_stream_that_gave_depth_leaves_out_pictures_of_any_wrong_kind(
+    pipeline: td.Pipeline, press: np.ndarray
+) -> None:
+    others = [press[:, : press.shape[1] // 2], press.astype(float) / 2, None]
+    stream = pipeline.new_stream()
+    with pytest.warns(td.InputWarning, match="left out and counted: picture 1: "):
+        results = list(pipeline.stream([press, *others, press], stream))  # type: ignore[list-item]
+    assert (len(results), stream.taken, stream.failed) == (2, 5, 3)
+    for other in others:
+        with pytest.raises(td.InputError):
+            list(pipeline.stream([other, press]))  # type: ignore[list-item]
+
+
+def test_a_stream_begins_afresh_at_a_capture(pipeline: td.Pipeline, press: np.ndarray) -> None:
+    """Gains that followed the light before it would shade the first pictures after it."""
+    captured, dim = pipeline.copy(), np.rint(0.8 * press).astype(np.uint8)
+    stream = captured.new_stream()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for _ in captured.stream([dim] * 8, stream):
+            pass
+        captured.capture_reference(dim)
+        captured.capture_zero(dim)
+        (after,) = captured.stream([dim], stream)
+        (new,) = captured.stream([dim])
+    np.testing.assert_array_equal(after.codes, new.codes)
+    assert after.records == new.records
+
+
 def test_a_stream_warns_once_of_each_kind(pipeline: td.Pipeline, press: np.ndarray) -> None:
     uneven = in_light(1 + 0.03 * X)(press)
     with pytest.warns(td.InputWarning) as warned:
@@ -467,6 +496,6 @@ def test_exchanges_are_warned_of_where_the_light_is_the_same_everywhere(
     drawn: tuple[td.Pipeline, np.ndarray], kind: str
 ) -> None:
     pipeline, picture = drawn
-    with pytest.warns(td.InputWarning, match="as if colours were exchanged or sides mirrored|stands out|across it"):
+    with pytest.warns(td.InputWarning, match="colours exchanged, sides mirrored, or new light|stands out|across it"):
         result = pipeline(REFUSED[kind][0](picture))
     assert result.height_error is None

@@ -29,7 +29,7 @@ from tactile_depth.depth.result import Recorder, Result, settings_of, thresholds
 from tactile_depth.depth.stream import Stream, timed, times
 from tactile_depth.depth.twin import PICTURES, Twin, require_flat_field, require_zero_offset
 from tactile_depth.pictures.blocks import Rest
-from tactile_depth.pictures.doubts import Doubt, UnusablePicture, Warned, tell, unexplained
+from tactile_depth.pictures.doubts import Doubt, Warned, tell, unexplained
 from tactile_depth.pictures.frames import camera_scale
 from tactile_depth.pictures.light_check import clipped_depth, doubts_of, least_clipped
 from tactile_depth.pictures.picture_check import Checked, check_picture
@@ -217,6 +217,8 @@ class Pipeline:
 
     def result_of(self, frames: np.ndarray, checked: Sequence[Checked], stream: Stream | None) -> Result:
         """Return the depth of frames on the grid, uint8 (frames, rows, columns, 3), and warn, as a call does."""
+        if stream is not None and stream.recorder is not self._recorder:
+            stream.begin_as(self.new_stream())
         monitor = Monitor()
         slopes, depth, gains = self._solved(frames, monitor, None if stream is None else stream.light)
         codes, depth_mm = np.rint(depth).astype(np.int32), depth * self.depth_lsb_mm
@@ -246,7 +248,7 @@ class Pipeline:
         """Give the depth of the pictures of a stream, as the hardware does.
 
         Light gains act on the next picture, and half the peak of a contact bounds the area of the next. A picture that
-        gives no right depth is left out and counted.
+        gives no right depth is left out and counted. With a capture in between both begin afresh.
 
         Parameters
         ----------
@@ -257,7 +259,7 @@ class Pipeline:
         Raises
         ------
         InputError
-            A picture is not accepted.
+            A picture is not accepted, and none before it gave depth.
 
         Warns
         -----
@@ -272,7 +274,7 @@ class Pipeline:
             stream.taken += 1
             try:
                 result = self(picture, stream, f"picture {stream.taken - 1}", captured_at)
-            except UnusablePicture as error:
+            except InputError as error:
                 stream.leave_out(error)
                 continue
             yield result
@@ -280,7 +282,7 @@ class Pipeline:
     def new_stream(self) -> Stream:
         """Return the state of a stream before its first picture: light gains of 1, untouched gel."""
         light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
-        return Stream(light, self._recorder.events(self._at_rest))
+        return Stream(self._recorder, light, self._recorder.events(self._at_rest))
 
     def copy(self) -> Pipeline:
         """Return a copy, with captures of its own."""

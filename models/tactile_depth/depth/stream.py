@@ -11,6 +11,7 @@ import numpy as np
 from tactile_depth.base.errors import Argument, InputError, InputWarning, is_number, warn
 from tactile_depth.chip.contact.contact_events import ContactEvents
 from tactile_depth.chip.gradient.light_gains import LightFilter
+from tactile_depth.depth.result import Recorder
 from tactile_depth.pictures.doubts import UnusablePicture, Warned
 from tactile_depth.pictures.pictures import Picture
 
@@ -21,6 +22,8 @@ class Stream:
 
     Attributes
     ----------
+    recorder : Recorder
+        That of the pipeline when the stream began; a capture gives it another one.
     light : LightFilter or None
         Light gains; None for a pipeline without them.
     events : ContactEvents
@@ -31,14 +34,27 @@ class Stream:
         Warnings that were given.
     """
 
+    recorder: Recorder
     light: LightFilter | None
     events: ContactEvents
     taken: int = 0
     failed: int = 0
     warned: Warned = field(default_factory=Warned)
 
-    def leave_out(self, error: UnusablePicture) -> None:
-        """Count a picture that gives no right depth, and warn of the first."""
+    def begin_as(self, new: Stream) -> None:
+        """Begin afresh, after a capture: the light that the gains followed, and what is no contact, are others."""
+        self.recorder, self.light, self.events = new.recorder, new.light, new.events
+
+    def leave_out(self, error: InputError) -> None:
+        """Count a picture that gives no right depth, and warn of the first.
+
+        Raises
+        ------
+        InputError
+            None before it gave depth, and it is the kind of picture that is wrong: so will all that follow be.
+        """
+        if self.failed == self.taken - 1 and not isinstance(error, UnusablePicture):
+            raise error
         self.failed += 1
         if self.failed == 1:
             warn(InputWarning("left out and counted: ", *error.parts))

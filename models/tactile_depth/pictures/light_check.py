@@ -90,7 +90,7 @@ def _no_surface(depth_mm: np.ndarray, slopes_mm: np.ndarray, name: Part) -> list
     share = float((left**2).sum() / (slopes**2).sum())
     if share <= OF_NO_SURFACE:
         return []
-    text = f": {100 * share:.0f} % of its slopes belong to no surface, as if colours were exchanged or sides mirrored"
+    text = f": {100 * share:.0f} % of its slopes belong to no surface: colours exchanged, sides mirrored, or new light"
     return [doubt("no surface", name, text, remedy=CORRECT_IT)]
 
 
