@@ -72,21 +72,13 @@ module td_node_map
   // Data wait with their parity, which is taken as they come.
   logic late_flipped;
   logic [Side*Channels-1:0][Tables-1:0] flips;
-  logic [DataWidth+Parity-1:0] late;
+  logic [DataWidth+Parity-1:0] late, checked;
   assign flipped = late_flipped | (flips != '0);
   assign out_data = late[DataWidth-1:0];
   td_delay_line #(.Width(DataWidth + Parity), .Delay(Latency)) u_delay (
     .clk, .rst, .en, .in((DataWidth + Parity)'({^in_data, in_data})), .out(late), .flipped()
   );
-  if (Parity == 0) begin : g_plain
-    assign late_flipped = 1'b0;
-  end else begin : g_parity
-    logic [DataWidth:0] checked;
-    always_ff @(posedge clk) begin
-      checked <= late;
-      late_flipped <= ^checked;
-    end
-  end
+  always_ff @(posedge clk) {late_flipped, checked} <= {Parity != 0 && ^checked, late};
 
   // Beat of the row, and the rows of the nodes above and below the pixels with the phase between them: both are the
   // same row above the first node's centre and below the last node's.
