@@ -97,10 +97,18 @@ def chosen(names: str) -> list[str]:
 
 
 def tested(names: Sequence[str]) -> list[str]:
-    """Return the cores whose testbenches test the cores with these names: a unit without one through its top."""
+    """Return the cores whose testbenches test the cores with these names: a unit without one through its top.
+
+    Raises InputError: a core has no testbench.
+    """
     without = [name for name in names if name in units() and stated(name, "STRUCTURES") is None]
     tops = dict.fromkeys(without, "tactile_depth") | {"camera_unit": "tactile_sensor"}
-    return list(dict.fromkeys(tops.get(name, name) for name in names))
+    found = list(dict.fromkeys(tops.get(name, name) for name in names))
+    for core in (cores()[name] for name in found):
+        if not core.benches:
+            file = Path("tb", core.block, f"tb_{core.name}.py")
+            raise InputError(f"{core.name} has no testbench {file}: see 'Add a core' in CONTRIBUTING.md")
+    return found
 
 
 def sources(top: str | None = None, without: Iterable[str] = ()) -> list[Path]:

@@ -218,6 +218,8 @@ def selected(names: str) -> list[Proof | Cone]:
     for name in wanted:
         if name in missing:
             raise InputError(f"CORE={name} has no proof: {missing[name]}")
+        if names and not stated(name, "PROOFS"):
+            raise InputError(f"CORE={name}: its testbench states neither PROOFS nor NO_PROOF")
     return [replace(proof, core=name) for name in dict.fromkeys(wanted) for proof in stated(name, "PROOFS") or ()]
 
 
@@ -285,12 +287,19 @@ def main(
     return variables.EQUAL
 
 
-def first_error(folder: Path) -> str:
-    """Return the first error of Yosys on a bench that it does not read, with file and line; empty if it reads it."""
+def why(folder: Path) -> list[str]:
+    """Return why a proof does not hold, with file and line.
+
+    That is the first error of Yosys on a bench that it does not read, else assertions that fail and covers not reached.
+    """
     for log in sorted(folder.glob("*/model/design.log")):
         if error := re.search(r"^\S+:\d+: ERROR: .+", log.read_text(), re.MULTILINE):
-            return error[0]
-    return ""
+            return [error[0]]
+    prove, cover = (
+        re.findall(rf"summary: +{before}(fv_\w+\..+)", log.read_text()) if log.exists() else []
+        for log, before in ((folder / "prove.log", "failed assertion "), (folder / "cover.log", ""))
+    )
+    return [*(f"fails: {each}" for each in prove), *(f"is not reached: {each}" for each in cover)]
 
 
 def prove(proofs: Sequence[Proof | Cone], jobs: int = JOBS) -> int:
@@ -310,6 +319,6 @@ def prove(proofs: Sequence[Proof | Cone], jobs: int = JOBS) -> int:
     print(f"\nformal: {len(proofs) - len(failed)} of {len(proofs)} proven in {time.monotonic() - begun:.0f} s")
     for name in failed:
         print(f"not proven: {name}, see {(BUILD / name).relative_to(ROOT)}")
-        if error := first_error(BUILD / name):
-            print(f"  {error}")
+        for reason in why(BUILD / name):
+            print(f"  {reason}")
     return variables.MISMATCH if failed else variables.EQUAL

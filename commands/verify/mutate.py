@@ -26,6 +26,7 @@ from commands.common.results import save
 from commands.verify import equivalence, mutants, sign_off
 from commands.verify.equivalence import EQUIVALENT, settle
 from commands.verify.fingerprint import fingerprint
+from tactile_depth.base.errors import InputError
 
 OUT = repository.ROOT / "build" / "mutate"
 CORE_BAR, TOTAL_BAR = 95.0, 97.0  # per cent of the mutants that are not equivalent: each core, all cores together
@@ -144,6 +145,8 @@ def main(
     outcomes, used = [], 0.0  # processor time, the start of this command included
     print(HEAD)
     for name in repository.tested(cores() if chosen is None else chosen):
+        if not repository.structures(name):
+            raise InputError(f"CORE={name}: no structure of its testbench has mutants=, so none is made")
         sources = fingerprint(name, "mutants")
         outcomes.append(mutate(name, mutants, seed, jobs, seconds))
         print(row(outcomes[-1]), flush=True)

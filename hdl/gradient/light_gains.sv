@@ -136,7 +136,7 @@ module light_gains
   logic [Colours-1:0][CountWidth:0] nets;
   always_ff @(posedge clk) begin
     if (en) begin
-      turn <= {turn[1:0], turn[2]};
+      turn <= {turn[1:0], turn[1:0] == '0};  // one is high again if a flip made it none or two
       clears <= {clears[1:0], begins};
       sum_in_turn <= $signed(turn[0] ? few_sum[0] : turn[1] ? few_sum[1] : few_sum[2]);
       net_in_turn <= $signed(turn[0] ? few_net[0] : turn[1] ? few_net[1] : few_net[2]);

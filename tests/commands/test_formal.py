@@ -2,15 +2,18 @@
 """make formal: every core has a proof or a reason, two quick proofs hold, and the proof of a wrong core fails."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from commands.common import repository
 from commands.common.repository import cores, packages, sources
-from commands.verify import formal, protocol
+from commands.verify import formal, mutate, protocol
 from commands.verify.mutants import yosys
 from formal.entries import Proof
+from tactile_depth.base.errors import InputError
 
 QUICK = ("td_axis_skid", "td_burst_counter")
 CORES = list(cores())
@@ -78,3 +81,33 @@ def test_a_wrong_core_is_found_out(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
     monkeypatch.setattr(formal, "BUILD", tmp_path / "build")
     assert formal.run(proof("td_axis_skid"), "prove").status == "FAIL"
     assert formal.combined({"prove": formal.Outcome("FAIL", 0.0)}) != "PASS"
+    (reason,) = formal.why(formal.BUILD / proof("td_axis_skid").name)
+    assert re.match(r"fails: fv_td_axis_skid\.\w+ at formal/common/fv_td_axis_skid\.sv:\d+", reason)
+
+
+def without(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """Let no testbench state this."""
+    stated = repository.stated
+    for module in (repository, formal):
+        monkeypatch.setattr(module, "stated", lambda core, wanted: None if wanted == name else stated(core, wanted))
+
+
+def test_a_core_without_a_proof_or_a_reason_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    without(monkeypatch, "PROOFS")
+    with pytest.raises(InputError, match="td_axis_skid: its testbench states neither PROOFS nor NO_PROOF"):
+        formal.selected("td_axis_skid")
+
+
+def test_a_core_without_mutants_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    without(monkeypatch, "STRUCTURES")
+    with pytest.raises(InputError, match="td_axis_skid: no structure of its testbench has mutants="):
+        mutate.main(chosen=["td_axis_skid"])
+
+
+def test_a_core_without_a_testbench_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    bare = replace(cores()["td_axis_skid"], benches=())
+    monkeypatch.setattr(repository, "cores", lambda: {bare.name: bare})
+    with pytest.raises(
+        InputError, match="td_axis_skid has no testbench tb/common/tb_td_axis_skid"
+    ):
+        repository.tested([bare.name])
