@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of pictures and references: each wrong kind is refused or warned of, right ones are not."""
 
+import pickle
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -390,6 +391,28 @@ def test_a_stream_begins_afresh_at_a_capture(pipeline: td.Pipeline, press: np.nd
         (new,) = captured.stream([dim])
     np.testing.assert_array_equal(after.codes, new.codes)
     assert after.records == new.records
+
+
+def test_a_stream_leaves_out_a_file_of_a_folder_that_cannot_be_read(
+    pipeline: td.Pipeline, press: np.ndarray, tmp_path: Path
+) -> None:
+    for number in range(3):
+        Image.fromarray(press).save(tmp_path / f"{number}.png")
+    whole = (tmp_path / "1.png").read_bytes()
+    (tmp_path / "1.png").write_bytes(whole[: len(whole) // 2])
+    stream = pipeline.new_stream()
+    with pytest.warns(td.InputWarning, match="left out and counted: .*1.png"):
+        assert len(list(pipeline.stream(tmp_path, stream))) == 2
+    assert (stream.taken, stream.failed) == (3, 1)
+
+
+def test_a_copy_of_a_stream_goes_on(pipeline: td.Pipeline, press: np.ndarray) -> None:
+    stream = pipeline.new_stream()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        list(pipeline.stream([np.rint(0.8 * press).astype(np.uint8)] * 4, stream))
+        results = [list(pipeline.stream([press], copied)) for copied in (pickle.loads(pickle.dumps(stream)), stream)]
+    assert results[0][0].records == results[1][0].records
 
 
 def test_a_stream_warns_once_of_each_kind(pipeline: td.Pipeline, press: np.ndarray) -> None:

@@ -43,7 +43,7 @@ module elimination #(
   output logic [Words*OutWidth-1:0] out_last,         // d, F - StoreDrop fraction bits
   output logic [Words*OutWidth-1:0] out_ahead,        // e of the row above
   output logic [ClippedWidth-1:0]   saturations,      // clip count, delayed
-  output logic                      flipped           // a word that was read, or the mean, has a flipped bit
+  output logic                      flipped           // a word that was read, or the mean's sum, has one
 );
 
   localparam int Clocks = Columns / Words;

@@ -107,7 +107,5 @@ def test_a_core_without_mutants_is_refused(monkeypatch: pytest.MonkeyPatch) -> N
 def test_a_core_without_a_testbench_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     bare = replace(cores()["td_axis_skid"], benches=())
     monkeypatch.setattr(repository, "cores", lambda: {bare.name: bare})
-    with pytest.raises(
-        InputError, match="td_axis_skid has no testbench tb/common/tb_td_axis_skid"
-    ):
+    with pytest.raises(InputError, match="td_axis_skid has no testbench tb/common/tb_td_axis_skid"):
         repository.tested([bare.name])

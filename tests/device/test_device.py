@@ -159,6 +159,12 @@ def test_a_stream_leaves_out_and_counts_a_picture_that_gives_no_depth_and_a_list
     with pytest.raises(td.InputError, match=r"^pictures\[1\]: it is black"):
         next(frames_of_each)
     require_equal(list(device.depth(iter(pictures[:1]))), list(pipeline.stream(pictures[:1])))
+    others = [sample.image[:, : sample.image.shape[1] // 2], None]
+    with pytest.warns(td.InputWarning, match="left out and counted: picture 1: "):
+        frames = list(device.depth(iter([sample.image, *others, sample.image])))  # type: ignore[arg-type]
+    assert [frame.picture for frame in frames] == [0, 3]
+    with pytest.raises(td.InputError):
+        list(device.depth(iter(others)))  # type: ignore[arg-type]
 
 
 HARMS = {"flipped": "a bit of the device had flipped", "residual": "does not fit its slopes"}

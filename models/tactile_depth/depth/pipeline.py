@@ -33,7 +33,7 @@ from tactile_depth.pictures.doubts import Doubt, Warned, tell, unexplained
 from tactile_depth.pictures.frames import camera_scale
 from tactile_depth.pictures.light_check import clipped_depth, doubts_of, least_clipped
 from tactile_depth.pictures.picture_check import Checked, check_picture
-from tactile_depth.pictures.pictures import Picture, Pictures, pictures_of
+from tactile_depth.pictures.pictures import Picture, Pictures, each_of
 from tactile_depth.pictures.reader import Reader, default_grid, power_of_two_of
 from tactile_depth.pictures.reference_check import check_reference, check_zero
 from tactile_depth.sensor.presets import SENSOR
@@ -169,6 +169,7 @@ class Pipeline:
             raise InputError(Argument("area_threshold_mm", area_threshold_mm), accepted="a depth, 0 or more")
         self._threshold_mm, self._area_threshold_mm = threshold_mm, area_threshold_mm
         self._zero, self._exact_zero = no_zero(self.config), np.zeros(self.grid)
+        self._captures = 0
         self._use_reference(rest)
         if reference is not None and rest is not None:
             self._sources.take_reference(reference)
@@ -217,8 +218,10 @@ class Pipeline:
 
     def result_of(self, frames: np.ndarray, checked: Sequence[Checked], stream: Stream | None) -> Result:
         """Return the depth of frames on the grid, uint8 (frames, rows, columns, 3), and warn, as a call does."""
-        if stream is not None and stream.recorder is not self._recorder:
-            stream.begin_as(self.new_stream())
+        if stream is not None:
+            if stream.captures != self._captures:
+                stream.begin_as(self.new_stream())
+            stream.accepted = True
         monitor = Monitor()
         slopes, depth, gains = self._solved(frames, monitor, None if stream is None else stream.light)
         codes, depth_mm = np.rint(depth).astype(np.int32), depth * self.depth_lsb_mm
@@ -248,7 +251,7 @@ class Pipeline:
         """Give the depth of the pictures of a stream, as the hardware does.
 
         Light gains act on the next picture, and half the peak of a contact bounds the area of the next. A picture that
-        gives no right depth is left out and counted. With a capture in between both begin afresh.
+        gives no right depth is left out and counted. At a capture the stream begins afresh, its records too.
 
         Parameters
         ----------
@@ -259,7 +262,7 @@ class Pipeline:
         Raises
         ------
         InputError
-            A picture is not accepted, and none before it gave depth.
+            A picture is not accepted, and none was before it.
 
         Warns
         -----
@@ -267,12 +270,10 @@ class Pipeline:
             Once for each kind of doubt, and for the first picture that is left out.
         """
         stream = self.new_stream() if stream is None else stream
-        if isinstance(pictures, str | Path):
-            pictures = (picture for _, picture in pictures_of(pictures, PICTURES)[0])
-        for item in pictures:
-            picture, captured_at = timed(item)
+        for item in each_of(pictures):
             stream.taken += 1
             try:
+                picture, captured_at = timed(item)
                 result = self(picture, stream, f"picture {stream.taken - 1}", captured_at)
             except InputError as error:
                 stream.leave_out(error)
@@ -282,7 +283,7 @@ class Pipeline:
     def new_stream(self) -> Stream:
         """Return the state of a stream before its first picture: light gains of 1, untouched gel."""
         light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
-        return Stream(self._recorder, light, self._recorder.events(self._at_rest))
+        return Stream(self._captures, light, self._recorder.events(self._at_rest))
 
     def copy(self) -> Pipeline:
         """Return a copy, with captures of its own."""
@@ -450,6 +451,7 @@ class Pipeline:
 
     def _settle(self, frames: np.ndarray | None) -> None:
         """Measure what the last of some frames without contact reads; the least area of a contact follows from it."""
+        self._captures += 1
         self._at_rest = np.zeros(self.grid, np.int32)
         if frames is not None:
             self._at_rest = np.rint(self._solved(frames[-1:], Monitor(), None)[1][0]).astype(np.int32)

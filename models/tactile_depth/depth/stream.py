@@ -11,7 +11,6 @@ import numpy as np
 from tactile_depth.base.errors import Argument, InputError, InputWarning, is_number, warn
 from tactile_depth.chip.contact.contact_events import ContactEvents
 from tactile_depth.chip.gradient.light_gains import LightFilter
-from tactile_depth.depth.result import Recorder
 from tactile_depth.pictures.doubts import UnusablePicture, Warned
 from tactile_depth.pictures.pictures import Picture
 
@@ -22,8 +21,8 @@ class Stream:
 
     Attributes
     ----------
-    recorder : Recorder
-        That of the pipeline when the stream began; a capture gives it another one.
+    captures : int
+        Captures of the pipeline before the stream began.
     light : LightFilter or None
         Light gains; None for a pipeline without them.
     events : ContactEvents
@@ -32,28 +31,31 @@ class Stream:
         Pictures that `Pipeline.stream` took, and those of them that it refused and left out.
     warned : Warned
         Warnings that were given.
+    accepted : bool
+        A picture was accepted.
     """
 
-    recorder: Recorder
+    captures: int
     light: LightFilter | None
     events: ContactEvents
     taken: int = 0
     failed: int = 0
     warned: Warned = field(default_factory=Warned)
+    accepted: bool = False
 
     def begin_as(self, new: Stream) -> None:
         """Begin afresh, after a capture: the light that the gains followed, and what is no contact, are others."""
-        self.recorder, self.light, self.events = new.recorder, new.light, new.events
+        self.captures, self.light, self.events, self.warned = new.captures, new.light, new.events, new.warned
 
     def leave_out(self, error: InputError) -> None:
-        """Count a picture that gives no right depth, and warn of the first.
+        """Count a picture that is refused, and warn of the first.
 
         Raises
         ------
         InputError
-            None before it gave depth, and it is the kind of picture that is wrong: so will all that follow be.
+            No picture was accepted, and this is no picture of the sensor: those that follow will not be either.
         """
-        if self.failed == self.taken - 1 and not isinstance(error, UnusablePicture):
+        if not self.accepted and not isinstance(error, UnusablePicture):
             raise error
         self.failed += 1
         if self.failed == 1:

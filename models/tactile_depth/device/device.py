@@ -271,7 +271,7 @@ class Device(AbstractContextManager["Device"]):
         ------
         InputError
             A picture is not accepted, or another `depth` has not ended. A stream leaves out and counts a picture that
-            gives no right depth.
+            is refused once one was accepted.
         DeviceError
             The device has other tables or settings than the pipeline, or computes another depth: it needs `load`; or it
         does not answer.

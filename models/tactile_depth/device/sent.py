@@ -10,7 +10,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from tactile_depth.base.errors import Part
+from tactile_depth.base.errors import InputError, Part
 from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.link.depth_formats import received
@@ -23,9 +23,8 @@ from tactile_depth.device.channel import Arrival, Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import Exchange
 from tactile_depth.device.registers import read_words, write_words
-from tactile_depth.pictures.doubts import UnusablePicture
 from tactile_depth.pictures.picture_check import check_picture
-from tactile_depth.pictures.pictures import Picture, Pictures, is_array
+from tactile_depth.pictures.pictures import Picture, Pictures, each_of, is_array
 from tactile_depth.pictures.reader import Reader
 
 REMEDY = "call load() first; if that was done, build the device for this calibration"
@@ -94,14 +93,16 @@ def streamed(
             stream.light.rate = captures.LIGHT.unpack(light)["rate"]
             write_words(line, [(captures.LIGHT.name, captures.LIGHT.pack(follow=1, rate=stream.light.rate))])
             captures.write_gains(line, stream.light.gains.tolist())
-        for index, (_, frame) in enumerate(_on_grid(pictures, twin.reader)):
+        for index, picture in enumerate(each_of(pictures)):
             name = f"picture {index}"
             try:
+                ((_, frame),) = twin.reader.pictures(picture, name)[0]
                 checked = check_picture(frame, twin.rest, name)
-            except UnusablePicture as error:
+            except InputError as error:
                 stream.leave_out(error)
                 line.count_lost()
                 continue
+            stream.accepted = True
             arrival = exchange.depth_of(frame)
             if arrival is not None:
                 result = twin.result_of(frame[None], [checked], stream)[0]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class DeviceStatus(NamedTuple):
-    """State of a device and of the link to it. Counters of the pipeline stay at 4,294,967,295 rather than wrap.
+    """State of a device and of the link to it. Counters of the pipeline stay at all ones rather than wrap.
 
     Attributes
     ----------

@@ -73,6 +73,14 @@ def pictures_of(given: Pictures, name: Part) -> tuple[Iterator[tuple[Part, np.nd
     return _of_sequence(given, name), False
 
 
+def each_of(given: Pictures | Iterable[Any]) -> Iterator[Any]:
+    """Give the pictures of a stream one by one, those of a folder by their paths: each is read in its turn."""
+    if isinstance(given, str | Path):
+        labels, pictures = read_pictures(given)
+        return (Path(given, label) for label in labels) if Path(given).is_dir() else iter(pictures)
+    return iter([given]) if is_array(given) and np.ndim(np.asarray(given)) == 3 else iter(given)  # type: ignore[arg-type]
+
+
 def _item(name: Part, index: int) -> Part:
     return Argument(f"{name.name}[{index}]") if isinstance(name, Argument) else f"{name}[{index}]"
 
