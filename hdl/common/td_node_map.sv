@@ -29,6 +29,7 @@ module td_node_map
   parameter int Select    = 0,   // number of the table in TABLE_SELECT
   parameter     Name      = "nodes",
   parameter int Parity    = 0,   // 1: a parity bit in each word of a memory
+  parameter int Checked   = DataWidth,  // bits of the data, from the lowest, that have one while they wait
   localparam int Side = side(Lanes, BlockLog2),  // nodes side by side
   localparam int Depth = nodes(Rows, Columns, BlockLog2) / Side,
   localparam int NodeWidth = $clog2(Depth)
@@ -69,16 +70,18 @@ module td_node_map
   localparam int WeightBits = BlockLog2 + 1;      // 2b is 2^WeightBits
   localparam int SumWidth = Width + WeightBits, ScaledWidth = SumWidth + WeightBits;
 
-  // Data wait with their parity, which is taken as they come.
+  // Data wait with their parity, which is taken as they come, but for the bits that come late.
+  localparam int Stored = DataWidth + Parity;
   logic late_flipped;
   logic [Side*Channels-1:0][Tables-1:0] flips;
-  logic [DataWidth+Parity-1:0] late, checked;
+  logic [Stored-1:0] late;
+  logic [Checked:0] checked;
   assign flipped = late_flipped | (flips != '0);
   assign out_data = late[DataWidth-1:0];
-  td_delay_line #(.Width(DataWidth + Parity), .Delay(Latency)) u_delay (
-    .clk, .rst, .en, .in((DataWidth + Parity)'({^in_data, in_data})), .out(late), .flipped()
+  td_delay_line #(.Width(Stored), .Delay(Latency)) u_delay (
+    .clk, .rst, .en, .in(Stored'({^in_data[Checked-1:0], in_data})), .out(late), .flipped()
   );
-  always_ff @(posedge clk) {late_flipped, checked} <= {Parity != 0 && ^checked, late};
+  always_ff @(posedge clk) {late_flipped, checked} <= {Parity != 0 && ^checked, late[Stored-1], late[Checked-1:0]};
 
   // Beat of the row, and the rows of the nodes above and below the pixels with the phase between them: both are the
   // same row above the first node's centre and below the last node's.

@@ -60,6 +60,8 @@ module flat_field
   output logic                   flipped      // a word that was read, or a gain, has a flipped bit
 );
 
+  localparam int DataWidth = 1 + $bits(position_t) + 24;  // of what waits for the gains
+  localparam int Stored = DataWidth + Parity;             // with `dim` twice: it comes too late for a parity
   localparam int ToOut = 2;  // stages between the gain and the output
   localparam int ProductWidth = 8 + GainWidth + 2;  // of two signs more
   localparam int RoundedWidth = OutWidth + (Offset == 0 ? 1 : 0);  // td_round_saturate is signed
@@ -70,27 +72,30 @@ module flat_field
   logic [7:0] red, green, blue, level, level_q;
   logic [2:0][7:0] colours;
   position_t gain_position;
+  logic [Stored-1:0] late;
   logic [2:0][GainWidth-1:0] gains;
   assign {red, blue, green} = in_pixel;
   assign frame_start = in_position.first_row & in_position.first_column;
   assign level = frame_start ? dark_level : level_q;
   assign dim_in = red < level & green < level & blue < level;
+  assign {dim, gain_position, colours} = late[DataWidth-1:0];
   td_node_map #(
     .Name({TableFolder, "gain"}), .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth),
-    .Channels(3), .DataWidth(29), .Select(TableSelectReference), .Parity(Parity)
+    .Channels(3), .DataWidth(Stored), .Select(TableSelectReference), .Parity(Parity), .Checked(DataWidth - 1)
   ) u_map (
     .clk, .rst, .en, .table_command, .table_answer, .table_bank, .table_in_use,
     .capture_write, .capture_write_node, .capture_words(capture_gains),
     .capture_read, .capture_read_node, .capture_read_words(capture_read_gains),
-    .in_valid, .in_frame_start(frame_start), .in_data({in_position, dim_in, blue, green, red}),
-    .out_valid(gain_valid), .out_data({gain_position, dim, colours}), .out_words(gains), .active(),
+    .in_valid, .in_frame_start(frame_start), .in_data(Stored'({dim_in, dim_in, in_position, blue, green, red})),
+    .out_valid(gain_valid), .out_data(late), .out_words(gains), .active(),
     .flipped(map_flipped)
   );
   if (Parity == 0) begin : g_plain
     assign flipped = map_flipped;
   end else begin : g_check  // gains come from the table alone
-    logic differs;
-    assign flipped = map_flipped | differs;
+    logic differs, dim_flipped;
+    assign flipped = map_flipped | differs | dim_flipped;
+    always_ff @(posedge clk) dim_flipped <= late[DataWidth] ^ dim;
     td_repeat_check #(.Width(3 * GainWidth)) u_repeat (
       .clk, .rst, .en, .in_valid(gain_valid), .in_first(gain_position.first_row & gain_position.first_column),
       .in_last(gain_position.last_row & gain_position.last_column), .in_bank(table_in_use), .in_data(gains), .differs
