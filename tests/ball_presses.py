@@ -16,7 +16,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tactile_depth.calibrate.presses import GridPresses, camera_pitch_mm, gather, to_grid
+from tactile_depth.calibrate.press_pictures import camera_pitch_mm, gather
+from tactile_depth.calibrate.presses import GridPresses, to_grid
 from tactile_depth.sensor.scenes import LIGHTS
 from tests import real_data
 

@@ -18,7 +18,8 @@ from PIL import Image
 import tactile_depth as td
 from tactile_depth.calibrate.ball_press import Circle
 from tactile_depth.calibrate.circles import find_circle
-from tactile_depth.calibrate.presses import gather, to_grid
+from tactile_depth.calibrate.press_pictures import gather
+from tactile_depth.calibrate.presses import to_grid
 from tests.ball_presses import PITCH, drawn
 from tests.real_data import FOLDER, needs_real_data
 

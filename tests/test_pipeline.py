@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Python interface: from pictures to millimetres, equal to the models bit for bit, and near the drawn height."""
 
-import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -309,14 +308,6 @@ def test_a_light_touch_has_a_record(ball: Any, pipeline: Any, depth: float) -> N
 # Captures.
 
 
-def drifted(picture: np.ndarray, seed: int) -> Any:
-    """Return the picture under lights that differ by up to 10 % across the gel, with noise."""
-    rng = np.random.default_rng(seed)
-    y, x = np.mgrid[-1:1:240j, -1:1:320j]
-    light = 1 + 0.05 * np.stack([x, y, x * y], axis=-1)
-    return np.clip(np.rint(picture * light + rng.normal(size=picture.shape)), 0, 255).astype(np.uint8)
-
-
 @pytest.mark.parametrize(
     ("least", "greatest", "is_central"),
     [
@@ -336,32 +327,6 @@ def test_a_central_contact_lies_within_the_middle_square(
     assert replace(contact, record=record).is_central is is_central
 
 
-@pytest.mark.parametrize("arithmetic", ["chip", "float"])
-def test_captures_take_drift_away(ball: Any, arithmetic: Any) -> None:
-    pipeline = td.Pipeline(ball.sensor, ball.reference, arithmetic=arithmetic)
-    fresh = pipeline(ball.image).height_mm
-    untouched = np.stack([drifted(ball.reference, seed) for seed in range(4)])
-    press = drifted(ball.image, 9)
-    assert np.abs(pipeline(untouched[0]).depth_mm).max() > 0.1
-    pipeline.capture_reference(untouched)
-    pipeline.capture_zero(untouched)
-    assert np.abs(pipeline(untouched[0]).depth_mm).max() < 0.01
-    assert np.abs(pipeline(press).height_mm - fresh).max() < 0.02 * fresh.max()
-
-
-def test_a_zero_offset_with_a_contact_is_warned_of(ball: Any) -> None:
-    pipeline = td.Pipeline(ball.sensor, ball.reference)
-    with pytest.warns(td.InputWarning, match="from the reference, as if something touched the gel: capture the zero"):
-        pipeline.capture_zero(ball.image)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", td.InputWarning)
-        touched = pipeline(ball.image)
-    assert "capture the zero offset with the gel untouched" in touched.warnings[0]
-    assert touched.height_error is None
-    pipeline.capture_zero(ball.reference)
-    assert pipeline(ball.image).warnings == ()
-
-
 def test_depths_that_are_clipped_are_warned_of(ball: Any) -> None:
     right = td.Pipeline(ball.sensor, ball.reference, depth_range_mm=2)(ball.image)
     assert right.warnings == ()
@@ -378,22 +343,6 @@ def test_a_stream_takes_a_path(ball: Any, tmp_path: Path) -> None:
     for path in (tmp_path, str(tmp_path / "press.png")):
         (result,) = pipeline.stream(path)
         assert (result.codes == next(pipeline.stream([ball.image])).codes).all()
-
-
-def test_a_capture_takes_a_power_of_two_of_pictures(small: Any, ball: Any) -> None:
-    three = np.stack([ball.reference] * 3)
-    for capture in (small.capture_reference, small.capture_zero):
-        with pytest.raises(td.InputError, match="3 pictures: the hardware averages 1, 2, 4,"):
-            capture(three)
-
-
-def test_a_capture_that_the_pipeline_has_not_is_refused(ball: Any) -> None:
-    as_sent = td.Pipeline(td.load("synthetic"), grid=(16, 16), zero_offset=False)
-    no_contact = np.full((16, 16, 3), 128, np.uint8)
-    with pytest.raises(td.InputError, match="takes colours as sent"):
-        as_sent.capture_reference(no_contact)
-    with pytest.raises(td.InputError, match="has no zero offset"):
-        as_sent.capture_zero(no_contact)
 
 
 # Flags.

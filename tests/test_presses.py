@@ -19,7 +19,8 @@ from tactile_depth.calibrate import circles
 from tactile_depth.calibrate.circles import find_circle
 from tactile_depth.calibrate.fitting import fit_presses
 from tactile_depth.calibrate.press_folder import read_presses
-from tactile_depth.calibrate.presses import GridPress, camera_pitch_mm, gather, to_grid
+from tactile_depth.calibrate.press_pictures import camera_pitch_mm, gather
+from tactile_depth.calibrate.presses import GridPress, to_grid
 from tests.ball_presses import (
     CAMERA,
     COLUMNS,

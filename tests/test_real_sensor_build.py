@@ -12,7 +12,8 @@ import pytest
 from commands.run import bench
 from tactile_depth.calibrate.evaluation import scores_of
 from tactile_depth.calibrate.fitting import fit_presses
-from tactile_depth.calibrate.presses import GridPresses, View, gather
+from tactile_depth.calibrate.press_pictures import gather
+from tactile_depth.calibrate.presses import GridPresses, View
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.depth.zero_capture import captured_zero

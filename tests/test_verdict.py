@@ -18,7 +18,8 @@ import tactile_depth as td
 from tactile_depth.base.errors import InputError, InputWarning
 from tactile_depth.calibrate.fitting import fit_presses
 from tactile_depth.calibrate.press_folder import HEAD
-from tactile_depth.calibrate.presses import GridPresses, gather, to_grid
+from tactile_depth.calibrate.press_pictures import gather
+from tactile_depth.calibrate.presses import GridPresses, to_grid
 from tactile_depth.cli.circle_page import circle_page
 from tactile_depth.cli.main import main
 from tactile_depth.sensor.verdict import Verdict

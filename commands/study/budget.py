@@ -52,7 +52,8 @@ from commands.study.drawn_sensor import PLACES, DrawnSensor, heights
 from commands.study.study import VERSION
 from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate.fitting import Fit, fit_presses
-from tactile_depth.calibrate.presses import AT_REST, GridPresses, PressPictures, camera_pitch_mm, gather, to_grid
+from tactile_depth.calibrate.press_pictures import PressPictures, camera_pitch_mm, gather
+from tactile_depth.calibrate.presses import AT_REST, GridPresses, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.configuration import COEFFICIENT, DEFAULTS, SOLVER_NUMBERS, STORED
 from tactile_depth.chip.limits import BOUNDARIES

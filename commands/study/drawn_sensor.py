@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactile_depth.calibrate.ball_press import BallPress
-from tactile_depth.calibrate.presses import PressPictures
+from tactile_depth.calibrate.press_pictures import PressPictures
 from tactile_depth.sensor.scenes import BENCH, LIGHTS, NOISE, SENSOR_WIDTH_MM, SLOPE_LIMIT, Body, Places, taken
 
 LIGHTS_MM, LIGHTS_ABOVE_MM = 30.0, 43.0  # from the middle of the gel: 0.7 of I / ref per unit of slope there

@@ -26,7 +26,8 @@ from commands.run import bench
 from commands.study.study import VERSION
 from tactile_depth.base import files
 from tactile_depth.calibrate.fitting import DRAWN_OUT, errors_by_number, fit_presses
-from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
+from tactile_depth.calibrate.press_pictures import PressPictures, camera_pitch_mm, gather
+from tactile_depth.calibrate.presses import GridPress, to_grid
 from tactile_depth.chip.configuration import STORED
 from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.registers.axil_registers import GAINS

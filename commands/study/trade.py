@@ -42,7 +42,8 @@ from commands.study.trade_front import DEFAULT, LUT, Point, Row, draw, front_of,
 from tactile_depth.base import files
 from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate.fitting import fit_folds
-from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
+from tactile_depth.calibrate.press_pictures import PressPictures, camera_pitch_mm, gather
+from tactile_depth.calibrate.presses import GridPress, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import COEFFICIENT, GAIN, STORED, WIDTHS, Configuration

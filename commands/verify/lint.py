@@ -233,6 +233,22 @@ def core_checks(cores: Sequence[str]) -> list[Check]:
     ]
 
 
+def ruff(paths: Sequence[str | Path]) -> list[Check]:
+    """Return the checks of Python files, or of all files of a folder, by ruff."""
+    python = [sys.executable, "-m", "ruff"]
+    return [
+        Check("ruff", "check", partial(output_of, [*python, "check", "--quiet", *paths])),
+        Check("ruff", "format", partial(output_of, [*python, "format", "--quiet", "--diff", *paths])),
+    ]
+
+
+def checks_of(cores: Sequence[str]) -> list[Check]:
+    """Return the checks of cores alone, with those of the Python of their models and testbenches."""
+    files = [repository.cores()[name] for name in cores]
+    python = {path for core in files for path in (core.model, *core.benches, core.settings) if path}
+    return [*core_checks(cores), *ruff(sorted(python))]
+
+
 def board_sources() -> list[Path]:
     """Return the source files of all boards."""
     return [path for sources in repository.BOARDS.values() for path in sources]
@@ -270,8 +286,7 @@ def checks() -> list[Check]:
         *(Check("yosys", top.name, partial(yosys_structure, top)) for top in small),
         Check("verible", "rules", partial(verible, others)),
         Check("verible", "columns", partial(columns, others)),
-        Check("ruff", "check", partial(output_of, [*python, "ruff", "check", "--quiet", "."])),
-        Check("ruff", "format", partial(output_of, [*python, "ruff", "format", "--quiet", "--diff", "."])),
+        *ruff(["."]),
         Check("mypy", "oldest", partial(output_of, [*python, "mypy", "--no-error-summary", *oldest])),
         Check("mypy", "product", partial(output_of, [*python, "mypy", "--no-error-summary", *product])),
         Check("mypy", "tests", partial(output_of, [*python, "mypy", "--no-error-summary"])),

@@ -16,7 +16,8 @@ from commands.study.budget_steps import BACK, FRONT, MEASURES, Exact, framed
 from commands.study.drawn_sensor import PLACES
 from commands.study.presses import measured
 from tactile_depth.base.errors import InputError
-from tactile_depth.calibrate.presses import GridPresses, PressPictures, to_grid
+from tactile_depth.calibrate.press_pictures import PressPictures
+from tactile_depth.calibrate.presses import GridPresses, to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.configuration import COEFFICIENT, STORED
 from tactile_depth.chip.poisson.divergence import divergence

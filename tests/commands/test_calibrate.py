@@ -13,7 +13,8 @@ import pytest
 
 from tactile_depth.base.files import CACHE_TAG, RECORD
 from tactile_depth.calibrate.fitting import fit_presses
-from tactile_depth.calibrate.presses import gather, to_grid
+from tactile_depth.calibrate.press_pictures import gather
+from tactile_depth.calibrate.presses import to_grid
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.cli import calibrate
 from tactile_depth.pictures.frames import read_picture

@@ -8,7 +8,8 @@ import pytest
 
 import tactile_depth as td
 from commands.study.presses import in_light, measured, run, sentence
-from tactile_depth.calibrate.presses import GridPress, PressPictures, camera_pitch_mm, gather
+from tactile_depth.calibrate.press_pictures import PressPictures, camera_pitch_mm, gather
+from tactile_depth.calibrate.presses import GridPress
 from tests.ball_presses import write_folder
 
 

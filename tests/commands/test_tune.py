@@ -19,7 +19,7 @@ from commands.cost.cost import cost
 from commands.run import sim
 from commands.study import tune
 from commands.study.tune_search import COEFFICIENT_BITS, DATA_BITS, WORST_FRAME, Limits, Search, Widths
-from tactile_depth.calibrate.presses import gather
+from tactile_depth.calibrate.press_pictures import gather
 from tactile_depth.chip.configuration import WORDS, Configuration
 from tactile_depth.chip.latency import last_pixel_to_last_depth
 from tactile_depth.chip.limits import COLUMNS

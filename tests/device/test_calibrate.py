@@ -15,7 +15,8 @@ from PIL import Image
 import tactile_depth as td
 from tactile_depth.base.files import RECORD
 from tactile_depth.calibrate.fitting import fit_presses
-from tactile_depth.calibrate.presses import GridPresses, gather, to_grid
+from tactile_depth.calibrate.press_pictures import gather
+from tactile_depth.calibrate.presses import GridPresses, to_grid
 from tactile_depth.cli.main import main
 from tactile_depth.cli.measure import grid_of
 from tests import ball_presses

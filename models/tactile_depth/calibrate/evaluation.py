@@ -12,16 +12,9 @@ import numpy as np
 
 from tactile_depth.base.by_value import ByValue
 from tactile_depth.base.errors import Argument, InputError, InputWarning, counted, require_flag, warn
-from tactile_depth.calibrate.presses import (
-    BACKGROUND,
-    NOTHING_TOUCHES,
-    PITCHES_AGREE,
-    BallPress,
-    GridPresses,
-    View,
-    gather,
-    to_grid,
-)
+from tactile_depth.calibrate.ball_press import BallPress
+from tactile_depth.calibrate.press_pictures import BACKGROUND, PITCHES_AGREE, gather
+from tactile_depth.calibrate.presses import NOTHING_TOUCHES, GridPresses, View, to_grid
 from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.grid_sampler import middle

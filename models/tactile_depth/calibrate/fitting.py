@@ -34,18 +34,11 @@ from warnings import warn
 import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, InputWarning, counted, require_flag
+from tactile_depth.calibrate.ball_press import BallPress
 from tactile_depth.calibrate.evaluation import Evaluation, Score, evaluation_of, scores_of
 from tactile_depth.calibrate.judgement import judge
-from tactile_depth.calibrate.presses import (
-    FITTED_SHARE,
-    NOTHING_TOUCHES,
-    BallPress,
-    GridPresses,
-    View,
-    camera_pitch_mm,
-    gather,
-    to_grid,
-)
+from tactile_depth.calibrate.press_pictures import camera_pitch_mm, gather
+from tactile_depth.calibrate.presses import FITTED_SHARE, NOTHING_TOUCHES, GridPresses, View, to_grid
 from tactile_depth.chip.gradient.flat_field import FLAT_CODE
 from tactile_depth.chip.gradient.polynomial_gradient import correction_codes, correction_unit, correction_units
 from tactile_depth.chip.limits import COEFFICIENTS, CORRECTION_BITS, CUBIC, DEVIATION, GRADIENT_LIMITS, MODELS

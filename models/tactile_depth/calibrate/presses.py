@@ -7,32 +7,27 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.ndimage import map_coordinates
 
-from tactile_depth.base.errors import Argument, InputError, Part
+from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate.ball_press import BallPress, Circle
 from tactile_depth.calibrate.circles import find_circle, require_circle_finder, stretched
-from tactile_depth.calibrate.press_folder import background_path, read_presses
+from tactile_depth.calibrate.press_pictures import BACKGROUND, PressPictures
 from tactile_depth.chip.camera_configuration import FORMATS, CameraChoice
 from tactile_depth.chip.configuration import COLOURS, Configuration
 from tactile_depth.chip.gradient.flat_field import captured_gains, pixel_gains, require_light
 from tactile_depth.chip.gradient.light_gains import Light, settled
 from tactile_depth.chip.resampling import WHOLE, Share
-from tactile_depth.pictures.frames import read_picture
 from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler, picture_grid
-from tactile_depth.pictures.pictures import ROTATIONS, Picture, rotated
 
 SMALLEST_GRID = 16  # columns
-PITCHES_AGREE = 0.02  # largest relative difference between the given pitch and the pitch from the balls' radii
 FITTED_SHARE = 0.9  # fraction of the contact's radius: beyond it the gel leaves the ball
 NOTHING_TOUCHES = 2.0  # distance from the centre in contact radii: beyond it the gel is flat
 AT_REST = 2.5  # distance from the centre in contact radii: beyond it depth is that of untouched gel
 LARGEST_CONTACT = 0.999  # fraction of the ball's radius: slopes grow without bound towards 1
-BACKGROUND = Argument("background")
 TOP_PX = 2  # radius of the top of a cap, in grid pixels
 # Standard deviation of the colours in the contacts, second over first principal axis. Colour pictures of 45 real
 # presses: 0.58; the same pictures in grey: 0.
@@ -171,54 +166,6 @@ class View:
 
 
 @dataclass(frozen=True)
-class PressPictures:
-    """Presses before resampling, and the picture without contact.
-
-    Attributes
-    ----------
-    name : str
-    presses : tuple of BallPress
-        Presses with distinct names.
-    background : uint8 array (rows, columns, 3)
-    notes : tuple of str
-        One line for each column or line of presses.csv that was left out.
-    rotate : int
-        Degrees, counter-clockwise, by which pictures of presses are rotated; the background is rotated already.
-    """
-
-    name: str
-    presses: tuple[BallPress, ...]
-    background: np.ndarray
-    notes: tuple[str, ...] = ()
-    rotate: int = 0
-
-    def image(self, press: BallPress) -> np.ndarray:
-        """Return the picture of a press, rotated; raise InputError if it is none of the background's size."""
-        image = _picture(press.image, press.name, self.rotate)
-        if image.shape != self.background.shape:
-            raise InputError(
-                f"{press.name}: {image.shape[0]} x {image.shape[1]} pixels, but the background has "
-                f"{self.background.shape[0]} x {self.background.shape[1]}"
-            )
-        return image
-
-    @property
-    def pitches(self) -> list[float]:
-        """Millimetres per pixel, from each ball whose radius in pixels is known."""
-        return [press.diameter_mm / 2 / press.ball_radius_px for press in self.presses if press.ball_radius_px]
-
-    @property
-    def ball_pitches(self) -> dict[float, float]:
-        """Median of the pitches by the diameter of the ball."""
-        given = [press for press in self.presses if press.ball_radius_px]
-        balls = {press.diameter_mm for press in given}
-        return {
-            ball: ball / 2 / float(np.median([press.ball_radius_px for press in given if press.diameter_mm == ball]))
-            for ball in sorted(balls)
-        }
-
-
-@dataclass(frozen=True)
 class GridPresses:
     """Presses on the grid.
 
@@ -289,74 +236,6 @@ class GridPresses:
         return self.pitch_mm * self.scale
 
 
-def gather(
-    presses: str | Path | Sequence[BallPress],
-    background: Picture | None = None,
-    rotate: int = 0,
-    table: Path | None = None,
-) -> PressPictures:
-    """Return presses from a folder or from memory.
-
-    Parameters
-    ----------
-    presses : path of a folder, or sequence of BallPress
-        A folder holds pictures, presses.csv (press_folder.py) and background.png or .jpg.
-    background : uint8 array (rows, columns, 3), PIL image or path, optional
-        Picture without contact; by default that of the folder.
-    rotate : int
-        Degrees, counter-clockwise, by which the pictures are rotated: one of `ROTATIONS`. Circles count after that.
-    table : path, optional
-        Of the presses in the folder; by default its presses.csv.
-    """
-    if rotate not in ROTATIONS:
-        raise InputError(Argument("rotate", rotate), accepted=map(str, ROTATIONS))
-    notes: list[str] = []
-    if isinstance(presses, (str, Path)):
-        folder = Path(presses)
-        if background is None:
-            background = background_path(folder)
-        listed, notes = read_presses(folder, table)
-        name = folder.resolve().name
-    else:
-        is_sequence: bool = isinstance(presses, Sequence)
-        if not is_sequence or not all(isinstance(press, BallPress) for press in presses):
-            raise InputError(Argument("presses"), accepted=("the path of a folder", "or a sequence of BallPress"))
-        if background is None:
-            raise InputError(BACKGROUND, " is missing", remedy="give a picture of the sensor without contact")
-        name = "fitted"
-        numbered = [f"press {n}" if isinstance(p.image, np.ndarray) else str(p.image) for n, p in enumerate(presses, 1)]
-        listed = [replace(press, name=press.name or other) for press, other in zip(presses, numbered, strict=True)]
-    if not listed:
-        raise InputError(
-            f"{name}: no presses{''.join(f': {note}' for note in notes[:1])}: give pictures of ball presses"
-        )
-    names = [press.name for press in listed]
-    if repeated := next((one for one in names if names.count(one) > 1), None):
-        problem = f": the name {repeated} stands twice"
-        raise InputError(Argument("presses"), problem, remedy="give each press a name of its own")
-    return PressPictures(name, tuple(listed), _picture(background, BACKGROUND, rotate), tuple(notes), rotate)
-
-
-def camera_pitch_mm(pictures: PressPictures, pitch_mm: float | None) -> float:
-    """Return millimetres per camera pixel: `pitch_mm`, or the pitch from the balls' radii in pixels."""
-    if not pictures.pitches:
-        if pitch_mm is None:
-            raise InputError(
-                Argument("pitch_mm"),
-                " is needed: mm per camera pixel, which presses without ball_radius_px do not give",
-            )
-        return pitch_mm
-    by_balls = float(np.median(pictures.pitches))
-    if pitch_mm is None:
-        return float(f"{by_balls:.3g}")  # diameters and radii have no more digits
-    if abs(by_balls / pitch_mm - 1) > PITCHES_AGREE:
-        raise InputError(
-            *(Argument("pitch_mm", pitch_mm), f" contradicts {pictures.name}, whose ball radii give {by_balls:.4g} "),
-            *("mm/pixel. Omit ", Argument("pitch_mm"), " or correct ball_radius_px."),
-        )
-    return pitch_mm
-
-
 def to_grid(
     pictures: PressPictures,
     pitch_mm: float,
@@ -393,7 +272,8 @@ def to_grid(
     grid = grid or picture_grid((rows, columns), least_ratio=least)
     if min(grid) < SMALLEST_GRID:
         raise InputError(BACKGROUND, f": {camera[0]} x {camera[1]} pixels", accepted=f"{SMALLEST_GRID} x or more")
-    if find_circles or compare_circles or any(press.circle is None for press in pictures.presses):
+    is_seen = find_circles or compare_circles
+    if is_seen or any(press.circle is None for press in pictures.presses):
         require_circle_finder()
     shape: dict[str, Any] = {"columns": grid[1], "rows": grid[0], "solver": "tridiagonal"}
     config = Configuration(**shape, **COLOURS)
@@ -409,19 +289,11 @@ def to_grid(
         try:
             image = pictures.image(press)
             ball = press.diameter_mm / 2 / pitch_mm
-            seen = None
-            if find_circles or compare_circles or press.circle is None:
-                found = find_circle(image, background, ball, aspect)
-                seen = None if found is None else found.circle
-                stretches += [] if found is None or found.stretch is None else [found.stretch]
+            found = find_circle(image, background, ball, aspect) if is_seen or press.circle is None else None
+            seen = None if found is None else found.circle
+            stretches += [] if found is None or found.stretch is None else [found.stretch]
             given = None if press.circle is None else Circle(*press.circle)
-            circle = seen if find_circles else given or seen
-            if circle is None:
-                raise InputError(f"{press.name}: no circle to be seen")
-            if circle.radius >= LARGEST_CONTACT * ball:
-                contact = f"{press.name}: a contact of {circle.radius:.1f} pixels ({circle.radius * pitch_mm:.2f} mm)"
-                ball_px = f"radius {ball:.1f} pixels ({press.diameter_mm / 2:.2f} mm)"
-                raise InputError(f"{contact} does not lie on a ball of {ball_px}: diameter or pitch is wrong")
+            circle = _on_ball(press, seen if find_circles else given or seen, pitch_mm)
             at = _grid_press(press.name, circle, ball, sampler, grid, aspect)
             frame = _new_frame(press.name, sampler.frame(image), {"the background": rest} | frames)
         except InputError as error:
@@ -432,11 +304,7 @@ def to_grid(
         geometry.append((at, press.diameter_mm))
         circles[press.name] = circle
         frames[press.name] = frame
-    stack = np.array([*frames.values()], np.uint8).reshape(-1, *grid, 3)
-    field, light = pixel_gains(gains, config), Light.of(config)
-    codes, relative = field.codes(stack), field.ratios(stack)
-    colours = light.deviations(relative, settled(relative, light)[:, None, None])
-    views = tuple(View(*at, *parts) for at, *parts in zip(geometry, stack, codes, colours, strict=True))
+    views = _views(geometry, np.array([*frames.values()], np.uint8).reshape(-1, *grid, 3), gains, config)
     _require_colours(views, pictures.name)
     notes += stretched(stretches)
     differences = np.array(agreement).reshape(-1, 3)
@@ -451,6 +319,28 @@ def to_grid(
         left_out=left_out,
         ball_pitches=pictures.ball_pitches,
     )
+
+
+def _on_ball(press: BallPress, circle: Circle | None, pitch_mm: float) -> Circle:
+    """Return the circle of a press. Raises InputError: there is none, or it is too large for the ball."""
+    ball = press.diameter_mm / 2 / pitch_mm
+    if circle is None:
+        raise InputError(f"{press.name}: no circle to be seen")
+    if circle.radius >= LARGEST_CONTACT * ball:
+        contact = f"{press.name}: a contact of {circle.radius:.1f} pixels ({circle.radius * pitch_mm:.2f} mm)"
+        ball_px = f"radius {ball:.1f} pixels ({press.diameter_mm / 2:.2f} mm)"
+        raise InputError(f"{contact} does not lie on a ball of {ball_px}: diameter or pitch is wrong")
+    return circle
+
+
+def _views(
+    geometry: list[tuple[GridPress, float]], stack: np.ndarray, gains: np.ndarray, config: Configuration
+) -> tuple[View, ...]:
+    """Return presses with their frames, uint8 (presses, rows, columns, 3), and what the hardware makes of these."""
+    field, light = pixel_gains(gains, config), Light.of(config)
+    codes, relative = field.codes(stack), field.ratios(stack)
+    colours = light.deviations(relative, settled(relative, light)[:, None, None])
+    return tuple(View(*at, *parts) for at, *parts in zip(geometry, stack, codes, colours, strict=True))
 
 
 def _new_frame(name: str, frame: np.ndarray, seen: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -489,11 +379,3 @@ def _grid_press(
     if not (press.distance < FITTED_SHARE).any():
         raise InputError(f"{name}: the press is outside the picture")
     return press
-
-
-def _picture(image: Picture, name: Part, rotate: int) -> np.ndarray:
-    """Return the pixels of a picture, from an array, a PIL image or a path, rotated by so many degrees."""
-    image = read_picture(Path(image)) if isinstance(image, str | Path) else np.asarray(image)
-    if image.dtype != np.uint8 or image.ndim != 3 or image.shape[-1] != 3 or not image.size:
-        raise InputError(name, f": {image.dtype} {image.shape}", accepted="uint8 (rows, columns, 3), RGB")
-    return rotated(image, rotate)

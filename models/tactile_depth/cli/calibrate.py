@@ -14,18 +14,11 @@ import numpy as np
 
 from tactile_depth.base import files
 from tactile_depth.base.errors import Argument, InputError, InputWarning, counted, warn
+from tactile_depth.calibrate.ball_press import BallPress
 from tactile_depth.calibrate.fitting import DEFAULT_BITS, Fit, check_arguments, fit_presses, pixel_size
 from tactile_depth.calibrate.press_folder import BACKGROUND, HEAD, TABLE, background_path, table_rows
-from tactile_depth.calibrate.presses import (
-    SMALLEST_GRID,
-    BallPress,
-    GridPresses,
-    PressPictures,
-    View,
-    camera_pitch_mm,
-    gather,
-    to_grid,
-)
+from tactile_depth.calibrate.press_pictures import PressPictures, camera_pitch_mm, gather
+from tactile_depth.calibrate.presses import SMALLEST_GRID, GridPresses, View, to_grid
 from tactile_depth.chip.camera_configuration import FORMATS, PHASES, CameraChoice
 from tactile_depth.chip.limits import MODELS
 from tactile_depth.cli.circle_page import circle_page

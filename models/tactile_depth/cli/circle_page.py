@@ -11,7 +11,8 @@ import numpy as np
 from PIL import Image
 
 from tactile_depth.calibrate.press_folder import HEAD, table_rows
-from tactile_depth.calibrate.presses import GridPresses, PressPictures
+from tactile_depth.calibrate.press_pictures import PressPictures
+from tactile_depth.calibrate.presses import GridPresses
 from tactile_depth.cli.overview import change_of
 
 MOST_COLUMNS = 640  # of a picture in the page

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_depth.base.errors import InputError, InputWarning, counted
-from tactile_depth.calibrate.presses import GridPresses, PressPictures, View
+from tactile_depth.calibrate.press_pictures import PressPictures
+from tactile_depth.calibrate.presses import GridPresses, View
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.device.addresses import SIM, open_channel
 from tactile_depth.device.device import Device

@@ -11,7 +11,8 @@ from tactile_depth.calibrate.ball_press import BallPress
 from tactile_depth.calibrate.evaluation import slopes_and_depths
 from tactile_depth.calibrate.fitting import Fit
 from tactile_depth.calibrate.judgement import doubtful_circles
-from tactile_depth.calibrate.presses import GridPresses, PressPictures
+from tactile_depth.calibrate.press_pictures import PressPictures
+from tactile_depth.calibrate.presses import GridPresses
 from tactile_depth.cli.drawing import AROUND_ZERO, BACKGROUND, DARK, FADED, INK, OUTSIDE, Panel, Scale, sheet
 from tactile_depth.depth.result import Result
 

@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError, Part, is_number, is_whole, one_of, require_flag
+from tactile_depth.base.errors import Argument, InputError, Part, is_whole, one_of, require_flag
 from tactile_depth.chip.common.td_round_saturate import Monitor
 from tactile_depth.chip.configuration import Configuration, ExactConfiguration
 from tactile_depth.chip.contact.contact_events import Settings
@@ -25,13 +25,13 @@ from tactile_depth.chip.limits import BOUNDARIES, LIGHT_GAIN, Boundary, Model, S
 from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.chip.tactile_depth import zeroed
 from tactile_depth.depth.make_words import Sources, make_words
-from tactile_depth.depth.result import Recorder, Result, settings_of, thresholds_of
+from tactile_depth.depth.result import Recorder, Result, require_thresholds, settings_of, thresholds_of
 from tactile_depth.depth.stream import Stream, timed, times
 from tactile_depth.depth.twin import PICTURES, Twin, require_flat_field, require_zero_offset
 from tactile_depth.pictures.blocks import Rest
 from tactile_depth.pictures.doubts import Doubt, Warned, tell, unexplained
 from tactile_depth.pictures.frames import camera_scale
-from tactile_depth.pictures.light_check import clipped_depth, doubts_of, least_clipped
+from tactile_depth.pictures.light_check import doubts_of, least_clipped
 from tactile_depth.pictures.picture_check import Checked, check_picture
 from tactile_depth.pictures.pictures import Picture, Pictures, each_of
 from tactile_depth.pictures.reader import Reader, default_grid, power_of_two_of
@@ -129,11 +129,9 @@ class Pipeline:
         for name, number in numbers.items():
             if not is_whole(number):
                 raise InputError(Argument(name, number), accepted="a whole number, of type int")
-        require_flag(Argument("zero_offset", zero_offset))
-        require_flag(Argument("parity", parity))
-        require_flag(Argument("self_check", self_check))
-        if light_gains is not None:
-            require_flag(Argument("light_gains", light_gains))
+        flags = {"zero_offset": zero_offset, "parity": parity, "self_check": self_check}
+        for name, flag in (flags if light_gains is None else flags | {"light_gains": light_gains}).items():
+            require_flag(Argument(name, flag))
         one_of(Argument("arithmetic", arithmetic), ARITHMETICS)
         one_of(Argument("boundary", boundary), BOUNDARIES)
         self._sources = Sources(sensor, crop, zero_offset)
@@ -161,12 +159,7 @@ class Pipeline:
             parity=parity,
             self_check=self_check,
         )
-        if not is_number(threshold_mm) or not 0 < threshold_mm / self.depth_lsb_mm < 2 ** (data_width - 1):
-            limit = f"{self.config.depth_limit_px * self.pixel_pitch_mm:.3g} mm"
-            accepted = f"a depth above 0 and within the depth range of {limit}"
-            raise InputError(Argument("threshold_mm", threshold_mm), accepted=accepted)
-        if not is_number(area_threshold_mm) or not 0 <= area_threshold_mm / self.depth_lsb_mm < 2**31:
-            raise InputError(Argument("area_threshold_mm", area_threshold_mm), accepted="a depth, 0 or more")
+        require_thresholds(threshold_mm, area_threshold_mm, self.config, self.pixel_pitch_mm)
         self._threshold_mm, self._area_threshold_mm = threshold_mm, area_threshold_mm
         self._zero, self._exact_zero = no_zero(self.config), np.zeros(self.grid)
         self._captures = 0
@@ -225,9 +218,7 @@ class Pipeline:
         monitor = Monitor()
         slopes, depth, gains = self._solved(frames, monitor, None if stream is None else stream.light)
         codes, depth_mm = np.rint(depth).astype(np.int32), depth * self.depth_lsb_mm
-        streamed = None
-        if stream is not None:
-            streamed = tuple(self._recorder.next(frame, stream.events) for frame in codes)
+        streamed = None if stream is None else tuple(self._recorder.next(frame, stream.events) for frame in codes)
         return Result(
             codes,
             depth_mm,
@@ -425,9 +416,8 @@ class Pipeline:
             The folder cannot be written, or the hardware cannot have the grid.
         """
         if not self._is_of_hardware:
-            problem = " is for double precision alone"
             remedy = ("make the pipeline with ", Argument("arithmetic", "chip"), " and a grid that it takes")
-            raise InputError(Argument("grid", self.grid), problem, remedy=remedy)
+            raise InputError(Argument("grid", self.grid), " is for double precision alone", remedy=remedy)
         thresholds = thresholds_of(self._recorder.settings)
         index = write_hardware(Path(folder), self.sensor, self.config, self._zero, self._gains, thresholds)
         if not quiet:
@@ -500,14 +490,10 @@ class Pipeline:
         least = least_clipped(self.config.depth.width, self._zero) if monitor.saturations else np.inf
         texts = []
         for each, gain, depth, slope in zip(checked, light, depth_mm, slopes, strict=True):
-            # Clipped depths and a contact in the zero offset would be a part of the slopes that no surface has.
             clipped = int((np.abs(depth) >= least * self.depth_lsb_mm).sum())
-            has_steps = self.config.neumann and not (clipped or self._zero_doubts)
-            steps = slope * self.pixel_pitch_mm if has_steps else None
-            doubts = doubts_of(each, gain, depth, self.threshold_mm, steps)
-            if clipped and not doubts:
-                doubts = (clipped_depth(clipped, each.name),)
-            doubts = unexplained(doubts, self._doubts)
+            # A contact in the zero offset would be a part of the slopes that no surface has.
+            steps = slope * self.pixel_pitch_mm if self.config.neumann and not self._zero_doubts else None
+            doubts = unexplained(doubts_of(each, gain, depth, self.threshold_mm, steps, clipped), self._doubts)
             tell(doubts if warned is None else warned.new(doubts))
             texts.append(tuple(map(str, (*self.doubts, *doubts))))
         return tuple(texts)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from tactile_depth.base.by_value import ByValue
+from tactile_depth.base.errors import Argument, InputError, is_number
 from tactile_depth.base.npy import Codes, Flags, Floats
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.centroid import FRACTION
@@ -51,6 +52,16 @@ def settings_of(
     touch, release, area = (round(depth_mm / lsb_mm) for depth_mm in (touch_mm, release_mm, area_mm))
     least = max(1, round(least_area_mm2(touch_mm) / pixel_mm2), 2 * int(np.count_nonzero(at_rest > touch)))
     return Settings(touch, release, area, least, debounce=1)
+
+
+def require_thresholds(threshold_mm: float, area_threshold_mm: float, config: Configuration, pitch_mm: float) -> None:
+    """Raise InputError unless two thresholds of contacts are depths that the registers hold."""
+    lsb_mm, deepest_mm = config.depth_lsb_px * pitch_mm, config.depth_limit_px * pitch_mm
+    if not is_number(threshold_mm) or not 0 < threshold_mm / lsb_mm < 2 ** (config.data_width - 1):
+        accepted = f"a depth above 0 and within the depth range of {deepest_mm:.3g} mm"
+        raise InputError(Argument("threshold_mm", threshold_mm), accepted=accepted)
+    if not is_number(area_threshold_mm) or not 0 <= area_threshold_mm / lsb_mm < 2**31:
+        raise InputError(Argument("area_threshold_mm", area_threshold_mm), accepted="a depth, 0 or more")
 
 
 def thresholds_of(settings: Settings) -> dict[str, int]:

@@ -43,7 +43,8 @@ def doubts_of(
     gains: np.ndarray | None,
     depth_mm: np.ndarray,
     threshold_mm: float,
-    slopes_mm: np.ndarray | None = None,
+    slopes_mm: np.ndarray | None,
+    clipped: int,
 ) -> tuple[Doubt, ...]:
     """Return why the heights of a picture are uncertain.
 
@@ -56,6 +57,8 @@ def doubts_of(
         Depth above which a pixel touches.
     slopes_mm : float64 array (rows, columns, 2) or None
         Change of depth from a pixel to the next, in mm; None where the depth is held at the edges.
+    clipped : int
+        Clipped depths. Their slopes are those of no surface.
     """
     name, doubts = checked.name, list(checked.doubts)
     if checked.ratios is not None and not any(each.kind == "pattern" for each in doubts):
@@ -64,10 +67,12 @@ def doubts_of(
         return tuple(doubts)
     lowest, peak = _range(depth_mm)
     if peak - lowest > 2 * threshold_mm:
-        if slopes_mm is not None:
+        if slopes_mm is not None and not clipped:
             doubts += _no_surface(depth_mm, slopes_mm, name)
         if not doubts:
             doubts += pressed_out(depth_mm, _at_rest(depth_mm, checked.ratios), threshold_mm, name)
+    if clipped and not doubts:
+        doubts.append(clipped_depth(clipped, name))
     return tuple(doubts)
 
 
