@@ -42,6 +42,15 @@ def write_sensor(folder: Path) -> None:
     sample.sensor.save(folder / "sensor.npz")
 
 
+def write_inputs(folder: Path, frames: int) -> Path:
+    """Write background.png, sensor.npz and a folder of pictures, presses; return the folder."""
+    write_sensor(folder)
+    (folder / "presses").mkdir()
+    for index, image in enumerate(press_frames(frames)):
+        Image.fromarray(image).save(folder / "presses" / f"{index}.png")
+    return folder
+
+
 def write_video(path: Path, frames: Any, count: int) -> None:
     """Write `count` frames without loss; the motion repeats."""
     import cv2

@@ -9,18 +9,6 @@ import pytest
 
 import tactile_depth as td
 
-SMALL = (24, 32)
-
-
-@pytest.fixture(scope="module")
-def ball() -> Any:
-    return td.sample("ball")
-
-
-@pytest.fixture(scope="module")
-def small(ball: Any) -> Any:
-    return td.Pipeline(ball.sensor, ball.reference, grid=SMALL)
-
 
 def drifted(picture: np.ndarray, seed: int) -> Any:
     """Return the picture under lights that differ by up to 10 % across the gel, with noise."""

@@ -87,14 +87,14 @@ def test_depth_of_prepared_tables_is_that_of_the_calibration(choices: Any) -> No
 
 
 @pytest.mark.parametrize("choices", MODELS, ids=str)
-def test_depth_of_prepared_tables_is_that_of_the_calibration_in_double_precision(choices: Any) -> None:
+def test_slopes_of_prepared_tables_are_those_of_the_calibration_in_double_precision(choices: Any) -> None:
     config = Configuration(columns=32, **choices)
     frames = lit(config, 2, 3)
     calibration = polynomials(2) if choices == POLYNOMIALS else synthetic()
     calibration = calibration.scaled(4.0, frames[0] if choices else None)
     tables = reference.slope_tables(calibration, config)
-    want = reference.depth_of(frames, calibration, config)
-    np.testing.assert_array_equal(reference.depth_of(frames, calibration, config, tables), want)
+    want = reference.slopes_of(frames, calibration, config)
+    np.testing.assert_array_equal(reference.slopes_of(frames, calibration, config, tables), want)
 
 
 # Flat-fielding.

@@ -15,18 +15,6 @@ from tactile_depth.chip.rom_files import write_words
 from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters
 from tactile_depth.chip.tactile_depth import write_roms as write_tables
 
-SMALL = (24, 32)
-
-
-@pytest.fixture(scope="module")
-def ball() -> Any:
-    return td.sample("ball")
-
-
-@pytest.fixture(scope="module")
-def small(ball: Any) -> Any:
-    return td.Pipeline(ball.sensor, ball.reference, grid=SMALL)
-
 
 def test_hardware_writes_what_the_pipeline_computes_with(tmp_path: Path, small: Any) -> None:
     index = small.hardware(tmp_path / "hw")

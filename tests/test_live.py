@@ -10,8 +10,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +22,7 @@ from tactile_depth.base.errors import InputError
 from tactile_depth.cli import live as command
 from tactile_depth.cli.main import main
 from tactile_depth.cli.source import Source
-from tests.press_video import press_frames, write_sensor, write_video
+from tests.press_video import press_frames, write_inputs, write_video
 
 FRAMES = 10
 MISSING = [name for name in ("cv2", "rerun") if importlib.util.find_spec(name) is None]
@@ -34,12 +32,7 @@ needs_live = pytest.mark.skipif(bool(MISSING), reason=f"{', '.join(MISSING)} mis
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Return drawn presses as a folder of pictures, background and calibration."""
-    folder = tmp_path_factory.mktemp("inputs")
-    write_sensor(folder)
-    (folder / "presses").mkdir()
-    for index, image in enumerate(press_frames(FRAMES)):
-        Image.fromarray(image).save(folder / "presses" / f"{index}.png")
-    return folder
+    return write_inputs(tmp_path_factory.mktemp("inputs"), FRAMES)
 
 
 @pytest.fixture
@@ -97,21 +90,6 @@ def screen(monkeypatch: pytest.MonkeyPatch) -> None:
     """Replace the display and the check that it is installed."""
     monkeypatch.setattr(command, "Display", Screen)
     monkeypatch.setattr(command, "load_rerun", lambda: None)
-
-
-@pytest.fixture
-def press_keys(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Press keys: a word of letters, one before each frame, "." for none."""
-
-    def press(letters: Any) -> None:
-        @contextmanager
-        def keys() -> Iterator[Any]:
-            left = iter(letters)
-            yield lambda: next(left, "").replace(".", "")
-
-        monkeypatch.setattr(command, "pressed_keys", keys)
-
-    return press
 
 
 def counted(printed: Any) -> Any:

@@ -14,24 +14,8 @@ from tactile_depth.chip.contact.contact_events import ContactEvents, Settings
 from tactile_depth.chip.resampling import resampling
 from tactile_depth.chip.tactile_depth import light_of, slope_tables, tactile_depth
 from tactile_depth.pictures.reader import default_grid
+from tests.conftest import SMALL
 from tests.drawn_light import no_contact
-
-SMALL = (24, 32)
-
-
-@pytest.fixture(scope="module")
-def ball() -> Any:
-    return td.sample("ball")
-
-
-@pytest.fixture(scope="module")
-def pipeline(ball: Any) -> Any:
-    return td.Pipeline(ball.sensor, ball.reference)
-
-
-@pytest.fixture(scope="module")
-def small(ball: Any) -> Any:
-    return td.Pipeline(ball.sensor, ball.reference, grid=SMALL)
 
 
 def on_grid(height_mm: Any, grid: Any) -> Any:

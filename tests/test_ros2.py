@@ -23,16 +23,6 @@ def conversions(monkeypatch: pytest.MonkeyPatch) -> Any:
     return importlib.import_module("tactile_depth_ros.conversions")
 
 
-@pytest.fixture(scope="module")
-def ball() -> Any:
-    return td.sample("ball")
-
-
-@pytest.fixture(scope="module")
-def pipeline(ball: Any) -> Any:
-    return td.Pipeline(ball.sensor, ball.reference)
-
-
 @pytest.mark.parametrize("padding", [0, 5])
 def test_pictures_are_read_in_rgb_without_their_padding(conversions: Any, padding: Any) -> None:
     image = np.random.default_rng(1).integers(0, 256, (4, 6, 3)).astype(np.uint8)

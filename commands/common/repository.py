@@ -170,11 +170,6 @@ def mutants(core: str) -> Mutants:
     return stated(core, "MUTANTS") or Mutants()
 
 
-def formal(name: str) -> Path | None:
-    """Return the file of formal/ that holds the module with this name, None if there is none."""
-    return next((ROOT / "formal").rglob(f"{name}.sv"), None)
-
-
 def git(*words: str) -> bytes | None:
     """Return the output of a git command in the root of the repository, None if it fails."""
     ended = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, check=False)

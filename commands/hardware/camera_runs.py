@@ -2,7 +2,7 @@
 """`python -m commands.hardware.camera_runs raw8 yuyv ..`: measure the camera front end by pixel format, on each device.
 
 Maps camera_unit as `make synth` does, for a picture of 640 x 480 pixels on a grid of 96 x 128, and adds the counts to
-commands/cost/cameras.json, which `commands.cost.cost.camera_cost` reads.
+commands/cost/cameras.json, which the table in docs/hardware.md shows.
 """
 
 import json

@@ -29,7 +29,7 @@ from systemrdl.node import AddrmapNode, FieldNode, RegNode
 
 from commands.common import wrapper
 from commands.common.header import sentence
-from commands.common.repository import GENERATED, ROOT, sources, testbench
+from commands.common.repository import GENERATED, HDL, ROOT, sources, testbench
 from commands.common.tabular import Table, records
 from commands.hardware.ip_xact import Module, write
 from tactile_depth.base import files
@@ -65,7 +65,6 @@ class Map:
         return f"Written by `make registers` from {self.source.relative_to(ROOT)}: change it there."
 
 
-HDL = ROOT / "hdl"
 PIPELINE = Map(
     "tactile_depth",
     HDL / "registers" / "td_register_map_pkg.sv",

@@ -32,7 +32,6 @@ from tactile_depth.chip.tactile_depth import hdl_parameters, write_roms
 from tactile_depth.sensor.synthetic import synthetic_for
 from tb.settings import RunSettings
 
-BENCHES = ROOT / "formal"
 ITEMS = "formal/test_proofs.py::test_proof"
 BUILD = ROOT / "build" / "formal"
 RESULTS = ROOT / "build" / "formal.xml"

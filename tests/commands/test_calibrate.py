@@ -20,19 +20,14 @@ from tactile_depth.cli import calibrate
 from tactile_depth.pictures.frames import read_picture
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import FOLDER
-from tests.ball_presses import CAMERA, PITCH, real_folder, table_rows, write_folder, write_table
+from tests.ball_presses import CAMERA, PITCH, real_folder, table_rows, write_table
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    return write_folder(tmp_path_factory.mktemp("ball") / "presses")
-
-
-def test_the_variables_reach_the_fit(made: Any, tmp_path: Path, run_command: Any) -> None:
-    folder, out = shutil.copytree(made, tmp_path / "presses"), tmp_path / "new" / "mine.npz"
-    (folder / "03.png").unlink()
+def test_the_variables_reach_the_fit(folder: Path, tmp_path: Path, run_command: Any) -> None:
+    copied, out = shutil.copytree(folder, tmp_path / "presses"), tmp_path / "new" / "mine.npz"
+    (copied / "03.png").unlink()
     words = [
-        f"PRESSES={folder}",
+        f"PRESSES={copied}",
         f"OUT={out}",
         f"PITCH={PITCH}",
         "EXPOSURE_US=8000",
@@ -44,7 +39,7 @@ def test_the_variables_reach_the_fit(made: Any, tmp_path: Path, run_command: Any
     status, output, (line,) = run_command("calibrate", *words)
     assert status == 0
     assert re.fullmatch(r"make calibrate: warning: \S+03\.png: no such file.*: left out", line)
-    presses = to_grid(gather(folder), PITCH, choice=CameraChoice("raw8", "grbg"))
+    presses = to_grid(gather(copied), PITCH, choice=CameraChoice("raw8", "grbg"))
     sensor, fit = load(str(out)), fit_presses(presses, bits=3)
     for name in ("table", "coefficients", "gradient", "height_errors"):
         np.testing.assert_array_equal(getattr(sensor, name), getattr(fit.sensor, name))
@@ -67,12 +62,14 @@ def test_the_variables_reach_the_fit(made: Any, tmp_path: Path, run_command: Any
     ]
 
 
-def test_found_circles_replace_those_of_the_table(made: Any, tmp_path: Path, run_command: Any) -> None:
-    folder, words = shutil.copytree(made, tmp_path / "presses"), [f"PITCH={PITCH}", "GRADIENT=quadratic"]
-    assert run_command("calibrate", f"PRESSES={made}", *words, "CIRCLES=found", f"OUT={tmp_path / 'a.npz'}").status == 0
+def test_found_circles_replace_those_of_the_table(folder: Path, tmp_path: Path, run_command: Any) -> None:
+    copied, words = shutil.copytree(folder, tmp_path / "presses"), [f"PITCH={PITCH}", "GRADIENT=quadratic"]
+    assert (
+        run_command("calibrate", f"PRESSES={folder}", *words, "CIRCLES=found", f"OUT={tmp_path / 'a.npz'}").status == 0
+    )
     rows = [{**row, "ball_diameter_mm": row["diameter_mm"]} for row in table_rows()]
-    write_table(folder, rows, ["frame", "ball_diameter_mm"])
-    assert run_command("calibrate", f"PRESSES={folder}", *words, f"OUT={tmp_path / 'b.npz'}").status == 0
+    write_table(copied, rows, ["frame", "ball_diameter_mm"])
+    assert run_command("calibrate", f"PRESSES={copied}", *words, f"OUT={tmp_path / 'b.npz'}").status == 0
     found, without = load(str(tmp_path / "a.npz")), load(str(tmp_path / "b.npz"))
     assert found.models == ("quadratic",)
     np.testing.assert_array_equal(found.coefficients, without.coefficients)
@@ -113,7 +110,7 @@ def test_a_result_that_cannot_be_written_is_named_before_the_fit(
 
 
 def test_a_full_disk_leaves_earlier_results(
-    made: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, run_command: Any
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, run_command: Any
 ) -> None:
     (tmp_path / CACHE_TAG).touch()  # there all files may be replaced
     (tmp_path / "mine.npz").write_text("earlier")
@@ -122,7 +119,7 @@ def test_a_full_disk_leaves_earlier_results(
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "mine.png")
 
     monkeypatch.setattr(calibrate, "draw_presses", full)
-    words = [f"PRESSES={made}", "GRADIENT=quadratic", f"OUT={tmp_path / 'mine.npz'}"]
+    words = [f"PRESSES={folder}", "GRADIENT=quadratic", f"OUT={tmp_path / 'mine.npz'}"]
     status, _, (line,) = run_command("calibrate", *words)
     assert status == 3
     assert "mine.png: No space left on device: free disk space" in line

@@ -35,7 +35,7 @@ def test_every_core_is_proven_or_says_why_not() -> None:
 
 def test_names_are_those_of_cores_and_benches() -> None:
     assert {entry.core for entry in ENTRIES} | REASONS.keys() == set(CORES)
-    assert {path.stem for path in formal.BENCHES.rglob("fv_*.sv")} == {
+    assert {path.stem for path in protocol.FORMAL.rglob("fv_*.sv")} == {
         f"fv_{entry.core}" for entry in ENTRIES if isinstance(entry, Proof)
     }
     names = [entry.name for entry in ENTRIES]
@@ -46,7 +46,7 @@ def test_every_protocol_belongs_to_a_core() -> None:
     bodies = {name: protocol.body(name) for name in CORES}
     rows = {name: protocol.stated(name) for name in CORES}
     assert [name for name in CORES if rows[name] and bodies[name]] == []
-    texts = "".join(path.read_text() for path in formal.BENCHES.rglob("*.sv"))
+    texts = "".join(path.read_text() for path in protocol.FORMAL.rglob("*.sv"))
     assert dict(protocol.BODY.findall(texts)) == {name: text for name, text in bodies.items() if text}
     used = {part for row in rows.values() for part in row}
     assert {part for part in protocol.PARTS if not re.search(rf"^ +{part} ", texts, re.M)} <= used | {"offer_stays"}

@@ -17,7 +17,7 @@ from tactile_depth.chip.camera_configuration import FORMATS, CameraChoice, Camer
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.contact.threshold_comparator import LATENCY
 from tactile_depth.chip.latency import last_word_to_first_depth
-from tactile_depth.depth import reference
+from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import SCENE_PICTURE, load_frames, on_grid
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.scenes import render
@@ -107,7 +107,7 @@ def test_each_format_costs_little_depth() -> None:
     depth = {}
     for form in ("rgb888", "rgb565", "yuyv", "raw10"):
         frames = load_frames("bench", grid, camera=CameraChoice(form))
-        depth[form] = reference.depth_of(frames.pixels, on_grid(load("synthetic"), frames), config)
+        depth[form] = Twin(on_grid(load("synthetic"), frames), config).exact_px(frames.pixels)
     for form, ours in depth.items():
         lost = [value for value in errors(ours, depth["rgb888"])["rms_percent_of_peak"] if value is not None]
         assert np.mean(lost) <= BARS[form], form

@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +18,8 @@ from tests.device.cable import setup_of
 from tests.device.conftest import GRID, Plug
 from tests.device.model_device import Setup
 from tests.device.test_formats import require_sent
-from tests.press_video import press_frames, write_sensor
+from tests.press_video import press_frames, write_inputs
+from tests.test_live import counted
 
 FRAMES = 6
 MANY = 96  # pictures: that a bad line loses none of them has a probability below 0.001
@@ -30,12 +29,7 @@ WORDS = ["--grid", f"{GRID[1]}x{GRID[0]}"]
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return drawn presses as a folder of pictures, background and calibration."""
-    folder = tmp_path_factory.mktemp("inputs")
-    write_sensor(folder)
-    (folder / "presses").mkdir()
-    for index, image in enumerate(press_frames(FRAMES)):
-        Image.fromarray(image).save(folder / "presses" / f"{index}.png")
-    return folder
+    return write_inputs(tmp_path_factory.mktemp("inputs"), FRAMES)
 
 
 @pytest.fixture
@@ -58,7 +52,7 @@ def screen(monkeypatch: pytest.MonkeyPatch) -> Any:
         def __exit__(self, *_: Any) -> None:
             pass
 
-        def show(self, index: int, picture: np.ndarray | None, result: Any) -> None:
+        def show(self, index: int, picture: np.ndarray | None, result: Any, _: int) -> None:
             shown.append((index, picture, result))
 
     monkeypatch.setattr(command, "Display", Screen)
@@ -66,31 +60,8 @@ def screen(monkeypatch: pytest.MonkeyPatch) -> Any:
     return shown
 
 
-@pytest.fixture
-def press_keys(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
-    """Press keys: a word of letters, one before each frame, "." for none."""
-
-    def press(letters: str) -> None:
-        @contextmanager
-        def keys() -> Iterator[Callable[[], str]]:
-            left = iter(letters)
-            yield lambda: next(left, "").replace(".", "")
-
-        monkeypatch.setattr(command, "pressed_keys", keys)
-
-    return press
-
-
 def run(inputs: Path, *words: Any, status: int = 0) -> None:
     assert main(["live", *map(str, words), "--calibration", f"{inputs}/sensor.npz", *WORDS]) == status
-
-
-def counted(printed: str) -> dict[str, int]:
-    """Return the numbers of the last line, by name."""
-    (line,) = [line for line in printed.splitlines() if line.startswith("frames:")]
-    counts = {name: int(count) for name, count in re.findall(r"(\w+) (\d+)[,;]", line)}
-    assert counts["read"] == sum(count for name, count in counts.items() if name != "read")
-    return counts
 
 
 def background(inputs: Path) -> list[str]:

@@ -29,14 +29,13 @@ from dataclasses import dataclass, fields, replace
 from itertools import combinations_with_replacement
 from pathlib import Path
 from typing import Any
-from warnings import warn
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError, InputWarning, counted, require_flag
+from tactile_depth.base.errors import Argument, InputError, InputWarning, counted, require_flag, warn
 from tactile_depth.calibrate.ball_press import BallPress
 from tactile_depth.calibrate.evaluation import Evaluation, Score, evaluation_of, scores_of
-from tactile_depth.calibrate.judgement import judge
+from tactile_depth.calibrate.judgement import judge, least_squares
 from tactile_depth.calibrate.press_pictures import camera_pitch_mm, gather
 from tactile_depth.calibrate.presses import FITTED_SHARE, NOTHING_TOUCHES, GridPresses, View, to_grid
 from tactile_depth.chip.gradient.flat_field import FLAT_CODE
@@ -54,7 +53,6 @@ from tactile_depth.sensor.view import Crop, view_of
 FEWEST, FEWEST_MEASURED = 8, 2  # presses; those that lie completely in the middle square
 DRAWS, DRAWN_OUT = 12, 6  # choices of presses for each number of them, and presses that are measured in each
 DEPTH_WEIGHT = 0.5  # of the squared error of a depth in grid pixels; that of a slope has weight 1
-RIDGE = 1e-3  # added to the diagonal of equations scaled to 1: colours that hardly vary get small coefficients
 FLAT_WEIGHT = 0.01  # of the squared depth in grid pixels, far from the contact
 CAP_WEIGHT = 1000  # of the squared relative error of the height of a cap
 DEFAULT_BITS = 5
@@ -149,25 +147,23 @@ def fit(
     """
     require_flag(Argument("find_circles", find_circles))
     require_flag(Argument("quiet", quiet))
-    wanted = check_arguments(models, bits, pitch_mm, exposure_us)
-    pictures = gather(presses, background, rotate)
+    wanted = check_arguments(models, bits, exposure_us)
     height, aspect = pixel_size(pitch_mm)
+    pictures = gather(presses, background, rotate)
     view = None if crop is None else view_of(crop)
     on_grid = to_grid(pictures, camera_pitch_mm(pictures, height), find_circles, aspect=aspect)
     on_grid = replace(on_grid, view=view)
     for note in on_grid.notes:
-        warn(InputWarning(note), stacklevel=2)
+        warn(InputWarning(note))
     fitted = fit_presses(on_grid, wanted, bits, name or pictures.name, exposure_us)
     if fitted.verdict.grade == BAD:
-        warn(InputWarning(f"the verdict of the fit is {fitted.verdict}"), stacklevel=2)
+        warn(InputWarning(f"the verdict of the fit is {fitted.verdict}"))
     if not quiet:
         print(on_grid.field_of_view, fitted.evaluation.summary, f"verdict: {fitted.verdict.lines}", sep="\n")
     return fitted.sensor
 
 
-def check_arguments(
-    models: str | Sequence[str], bits: int, pitch_mm: float | tuple[float, float] | None, exposure_us: float | None
-) -> tuple[str, ...]:
+def check_arguments(models: str | Sequence[str], bits: int, exposure_us: float | None) -> tuple[str, ...]:
     """Return the models; raise InputError if an argument of `fit` is not accepted."""
     wanted = (models,) if isinstance(models, str) else tuple(models)
     if not wanted or not set(wanted) <= set(MODELS):
@@ -175,7 +171,6 @@ def check_arguments(
     low, high = TABLE_BITS
     if not isinstance(bits, int) or not low <= bits <= high:
         raise InputError(Argument("bits", bits), accepted=f"a whole number from {low} to {high}")
-    pixel_size(pitch_mm)
     if exposure_us is not None and not 0 < exposure_us <= LONGEST_EXPOSURE_US:
         raise InputError(Argument("exposure_us", exposure_us), accepted="a time above 0, in microseconds")
     return tuple(model for model in MODELS if model in wanted)
@@ -330,10 +325,7 @@ def _fit_models(
 def solved(equations: Sequence[Equations]) -> np.ndarray:
     """Return the coefficients (2, n) of least squares, of dz/dx and dz/dy."""
     squares, products = (np.sum(parts, axis=0) for parts in zip(*equations, strict=True))
-    scale = 1 / np.sqrt(squares.diagonal())  # of coefficients, whose units are powers of a millimetre
-    scaled = squares * np.outer(scale, scale) + RIDGE * np.eye(len(scale))
-    solution = np.linalg.solve(scaled, products * scale)
-    return (solution * scale).reshape(2, -1)
+    return least_squares(squares, products).reshape(2, -1)
 
 
 def _cubic(views: Sequence[View], equations: Sequence[Equations]) -> tuple[np.ndarray, np.ndarray]:

@@ -36,7 +36,7 @@ LARGE_CONTACT = 0.85  # median of contact over ball radius: real presses of a Mi
 # left. Drawn gels whose colours are 1 / (1 + 0.1 slope) of linear: 1.16; with 0.2, as if diameters were wrong: 1.45.
 LINEAR_AT, FAR_FROM_LINEAR, LEFT_OF_LINEAR = (0.88, 1.14), 1.25, 0.06
 FACTORS = np.exp(np.linspace(-0.6, 0.6, 49))  # of a diameter
-RIDGE = 1e-3  # added to the diagonal of equations scaled to 1
+RIDGE = 1e-3  # added to the diagonal of equations scaled to 1: colours that hardly vary get small coefficients
 # Change of colour in a circle over that in the circle of its size that holds most: 0.70 to 1 for right circles, below
 # 0.55 for others on untouched gel. Ring of most change, in radii: right circles of a Mini and drawn ones 0.75 to 1.05,
 # of a DIGIT 0.65 to 0.75; 0.25 to 0.55 for circles shifted by half a radius or more, 1.45 for circles of 0.65 times the
@@ -183,18 +183,17 @@ class _Samples:
     def factor(self, others: Sequence[_Samples]) -> float:
         """Return the factor of the diameter at which the slopes agree best with the response of other balls."""
         slopes = np.concatenate([other.slopes() for other in others])
-        response = _response(np.concatenate([other.features for other in others]), slopes)
-        by_others = self.features @ response
+        features = np.concatenate([other.features for other in others])
+        by_others = self.features @ least_squares(features.T @ features, features.T @ slopes)
         known = np.hypot(*by_others.T) < np.quantile(np.hypot(*slopes.T), 0.98)
         return _best(lambda factor: float(((by_others - self.slopes(factor))[known] ** 2).mean()))[0]
 
 
-def _response(features: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-    squares = features.T @ features
+def least_squares(squares: np.ndarray, products: np.ndarray) -> np.ndarray:
+    """Return the solution of squares (n, n) and products (n,) or (n, m), whose units are powers of a millimetre."""
     scale = 1 / np.sqrt(squares.diagonal())
     scaled = squares * np.outer(scale, scale) + RIDGE * np.eye(len(scale))
-    response: np.ndarray = scale[:, None] * np.linalg.solve(scaled, scale[:, None] * (features.T @ slopes))
-    return response
+    return (np.linalg.solve(scaled, (products.T * scale).T).T * scale).T
 
 
 def _best(error: Callable[[float], float]) -> tuple[float, float]:
@@ -213,7 +212,8 @@ def _linear_at(samples: Sequence[_Samples]) -> tuple[float, float]:
         slopes = np.concatenate([each.slopes(factor) for each in samples])
         if np.isnan(slopes).any():
             return math.nan
-        return math.sqrt(((features @ _response(features, slopes) - slopes) ** 2).sum() / (slopes**2).sum())
+        fitted = features @ least_squares(features.T @ features, features.T @ slopes)
+        return math.sqrt(((fitted - slopes) ** 2).sum() / (slopes**2).sum())
 
     return _best(error)
 

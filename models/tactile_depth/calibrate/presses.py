@@ -293,7 +293,7 @@ def to_grid(
             seen = None if found is None else found.circle
             stretches += [] if found is None or found.stretch is None else [found.stretch]
             given = None if press.circle is None else Circle(*press.circle)
-            circle = _on_ball(press, seen if find_circles else given or seen, pitch_mm)
+            circle = _on_ball(press, seen if find_circles else given or seen, ball)
             at = _grid_press(press.name, circle, ball, sampler, grid, aspect)
             frame = _new_frame(press.name, sampler.frame(image), {"the background": rest} | frames)
         except InputError as error:
@@ -308,27 +308,24 @@ def to_grid(
     _require_colours(views, pictures.name)
     notes += stretched(stretches)
     differences = np.array(agreement).reshape(-1, 3)
-    presses = GridPresses(pictures.name, views, background, rest, pitch_mm, sampler.scale, tuple(notes), differences)
-    form = presses.pixel_format if choice is None else choice.pixel_format
-    left_out = tuple(press.name for press in pictures.presses if press.name not in circles)
-    return replace(
-        presses,
-        pixel_format=form,
+    return GridPresses(
+        *(pictures.name, views, background, rest, pitch_mm, sampler.scale, tuple(notes), differences),
+        pixel_format="rgb888" if choice is None else choice.pixel_format,
         aspect=aspect,
         circles=circles,
-        left_out=left_out,
+        left_out=tuple(press.name for press in pictures.presses if press.name not in circles),
         ball_pitches=pictures.ball_pitches,
     )
 
 
-def _on_ball(press: BallPress, circle: Circle | None, pitch_mm: float) -> Circle:
-    """Return the circle of a press. Raises InputError: there is none, or it is too large for the ball."""
-    ball = press.diameter_mm / 2 / pitch_mm
+def _on_ball(press: BallPress, circle: Circle | None, ball: float) -> Circle:
+    """Return the circle of a press. Raises InputError: there is none, or it is too large for a ball of that radius."""
     if circle is None:
         raise InputError(f"{press.name}: no circle to be seen")
     if circle.radius >= LARGEST_CONTACT * ball:
-        contact = f"{press.name}: a contact of {circle.radius:.1f} pixels ({circle.radius * pitch_mm:.2f} mm)"
-        ball_px = f"radius {ball:.1f} pixels ({press.diameter_mm / 2:.2f} mm)"
+        radius_mm = press.diameter_mm / 2
+        contact = f"{press.name}: a contact of {circle.radius:.1f} pixels ({circle.radius / ball * radius_mm:.2f} mm)"
+        ball_px = f"radius {ball:.1f} pixels ({radius_mm:.2f} mm)"
         raise InputError(f"{contact} does not lie on a ball of {ball_px}: diameter or pitch is wrong")
     return circle
 

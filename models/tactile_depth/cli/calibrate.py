@@ -181,10 +181,10 @@ def press_pictures(options: argparse.Namespace) -> PressPictures:
 def on_grid(options: argparse.Namespace, pictures: PressPictures) -> GridPresses:
     """Return the presses on the grid, and warn of those that are left out."""
     pitch_mm = options.pitch_mm and (options.pitch_mm[0] if len(options.pitch_mm) == 1 else options.pitch_mm)
-    check_arguments(chosen(options), options.bits, pitch_mm, options.exposure_us)
+    check_arguments(chosen(options), options.bits, options.exposure_us)
+    height, aspect = pixel_size(pitch_mm)
     if options.grid is not None and min(options.grid) < SMALLEST_GRID:
         raise InputError(Argument("grid", options.grid), accepted=f"{SMALLEST_GRID} columns and rows or more")
-    height, aspect = pixel_size(pitch_mm)
     presses = to_grid(
         pictures,
         camera_pitch_mm(pictures, height),

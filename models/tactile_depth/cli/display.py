@@ -124,7 +124,7 @@ class Display(AbstractContextManager["Display"]):
                     raise
             output.stream.disconnect()
 
-    def show(self, number: int, picture: np.ndarray | None, result: Result | DeviceFrame, sensor: int = 0) -> bool:
+    def show(self, number: int, picture: np.ndarray | None, result: Result | DeviceFrame, sensor: int) -> bool:
         """Show one frame; return False if the user has closed the viewer.
 
         Parameters

@@ -400,7 +400,7 @@ def show(sensors: Sequence[Watched], display: Display, key: Callable[[], str] | 
             continue
         if not sensor.feed.counts.shown:
             describe(sensor, shot, len(sensors) > 1)
-        if display.show(*shot, *([index] if len(sensors) > 1 else [])) is False:
+        if display.show(*shot, index) is False:
             return False
         sensor.feed.counts.shown += 1
         if sensor.capture:

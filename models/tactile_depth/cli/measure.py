@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tactile_depth.base.errors import InputError, InputWarning, counted
+from tactile_depth.base.errors import InputError, InputWarning, counted, warn
 from tactile_depth.calibrate.press_pictures import PressPictures
 from tactile_depth.calibrate.presses import GridPresses, View
 from tactile_depth.depth.pipeline import Pipeline
@@ -99,7 +99,7 @@ def measure(address: str, pipeline: Pipeline, presses: GridPresses, pictures: Pr
     print(summary(presses.views, results))
     untouched = [name for name, read in results.items() if not read.is_touching]
     if untouched:
-        warnings.warn(InputWarning(f"the device sees no contact in {', '.join(untouched)}"), stacklevel=2)
+        warn(InputWarning(f"the device sees no contact in {', '.join(untouched)}"))
 
 
 def summary(views: Sequence[View], results: dict[str, Measured]) -> str:
@@ -116,7 +116,7 @@ def _read(device: Device, pipeline: Pipeline, view: View, picture: np.ndarray) -
     try:
         result = pipeline(picture, name=view.press.name)
     except UnusablePicture as error:
-        warnings.warn(InputWarning("left out: ", *error.parts), stacklevel=2)
+        warn(InputWarning("left out: ", *error.parts))
         return None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)  # those of the pipeline have been told

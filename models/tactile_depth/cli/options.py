@@ -66,7 +66,7 @@ def add_pipeline_arguments(parser: argparse.ArgumentParser, several: bool = Fals
         "or half the contact's peak if less",
     )
     parser.add_argument(
-        "--model", choices=MODELS, default="", help="gradient model; by default the better of the calibration"
+        "--model", choices=MODELS, default="", help="gradient model; by default the best of the calibration"
     )
     add_light_and_zero_arguments(parser)
 

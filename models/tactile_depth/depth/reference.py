@@ -210,14 +210,3 @@ def depth(frames: np.ndarray, calibration: Sensor, neumann: bool = False) -> np.
     float64 array (..., rows, cols), in grid pixels, positive pressed in
     """
     return solve(divergence(slopes(frames, calibration), neumann), neumann)
-
-
-def depth_of(
-    frames: np.ndarray,
-    calibration: Sensor,
-    config: Configuration,
-    tables: Tables | None = None,
-    light: np.ndarray | None = None,
-) -> np.ndarray:
-    """Return the depth of frames by the gradient model of a configuration, `slopes_of`."""
-    return solve(divergence(slopes_of(frames, calibration, config, tables, light), config.neumann), config.neumann)

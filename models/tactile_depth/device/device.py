@@ -233,9 +233,9 @@ class Device(AbstractContextManager["Device"]):
         given = {"touch_mm": touch_mm, "release_mm": release_mm, "area_mm": area_mm}
         lsb_mm = self.pipeline.depth_lsb_mm
         for name, depth_mm in given.items():
-            lowest_mm = lsb_mm if name == "touch_mm" else 0.0
+            lowest_mm, least = (lsb_mm, "above 0, up") if name == "touch_mm" else (0.0, "of 0")
             if depth_mm is not None and not (is_number(depth_mm) and lowest_mm <= depth_mm < self._limit_mm):
-                accepted = f"a depth above 0, up to {self._limit_mm:.3g} mm"
+                accepted = f"a depth {least} to {self._limit_mm:.3g} mm"
                 raise InputError(Argument(name, depth_mm), accepted=accepted)
         thresholds_mm = self._thresholds_mm | {name: depth for name, depth in given.items() if depth is not None}
         settings = self.pipeline.settings(**thresholds_mm)

@@ -205,7 +205,7 @@ def load_frames(
     Parameters
     ----------
     source : str
-        A scene's name, a `.npy` of uint8 (rows, cols, 3) or (frames, rows, cols, 3), a PNG, or a folder of PNGs.
+        A scene's name, a `.npy` of uint8 (rows, cols, 3) or (frames, rows, cols, 3), a picture, or a folder of them.
     size : (rows, cols) of the grid
     reference : str, optional
         Picture of the sensor without contact, of the same size as the frames; `flat` for a scene.
@@ -229,12 +229,7 @@ def load_frames(
 
 
 def flat_frames(
-    sensor: Sensor,
-    size: tuple[int, int],
-    camera: CameraChoice | None = None,
-    share: Share = WHOLE,
-    *,
-    with_reference: bool = True,
+    sensor: Sensor, size: tuple[int, int], camera: CameraChoice | None, share: Share, *, with_reference: bool
 ) -> Frames:
     """Return a grey picture as a frame and as its reference: for builds without a picture.
 

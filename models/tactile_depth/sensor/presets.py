@@ -58,5 +58,5 @@ CHIP = replace(
     SENSOR, parity=True, self_check=True, words={STORED: 15, COEFFICIENT: 10, GAIN: 16, "depth_range_mm": 2.0}
 )
 """A real sensor with the shortest words that add a tenth to the error of its calibration, as `make tune TOLERANCE=auto
-TARGET=ecp5` chose for 2 mm them on 45 presses of a GelSight Mini."""
+TARGET=ecp5` chose them for 2 mm on 45 presses of a GelSight Mini."""
 PRESETS = {"published": PUBLISHED, "sensor": SENSOR, "chip": CHIP}

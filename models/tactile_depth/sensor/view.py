@@ -28,7 +28,7 @@ LARGEST_DENOMINATOR = 1000  # of a share: 5/7 and 0.971 are exact
 Crop = str | float | tuple[float, float]
 
 
-def view_of(crop: Crop, name: str = "crop") -> tuple[float, float]:
+def view_of(crop: Crop) -> tuple[float, float]:
     """Return the shares of width and height that `crop` names: a convention, a share, or a share of each.
 
     Raises
@@ -41,7 +41,7 @@ def view_of(crop: Crop, name: str = "crop") -> tuple[float, float]:
     pair = tuple(shares) if isinstance(shares, tuple | list) else (shares,)
     pair = pair * 2 if len(pair) == 1 else pair
     if len(pair) != 2 or not all(map(is_share, pair)):
-        raise InputError(Argument(name, crop), accepted=ACCEPTED)
+        raise InputError(Argument("crop", crop), accepted=ACCEPTED)
     return float(pair[0]), float(pair[1])
 
 
