@@ -95,6 +95,7 @@ REFUSED: dict[str, tuple[Edit, str]] = {
     "the rest green": (rest_of(170, (0, 135, 0)), "of its rows are one row, repeated"),
     "the rest a row": (rest_of(100, None), "of its rows are one row, repeated"),
     "clipped": (in_light(2.2), "of its pixels are clipped"),
+    "clipped at 125": (lambda p: np.minimum(p, 125), "of its pixels are clipped"),
 }
 DOUBTED: dict[str, tuple[Edit, str]] = {
     "right side brighter": (
@@ -108,6 +109,10 @@ DOUBTED: dict[str, tuple[Edit, str]] = {
     "30 % across": (in_light(1 + 0.3 * X), "changes across it by"),
     "a quarter of the light": (in_light(0.25), "differs from that of the reference by -75 % in red, -75 % in green"),
     "a little clipped": (in_light(1.62), "of its pixels are clipped, heights there are too small"),
+    "a little clipped at 235": (
+        lambda p: np.minimum(in_light(1.5)(p), 235),
+        "of its pixels are clipped, heights there are too small",
+    ),
     "noise": (
         lambda p: np.random.default_rng(1).integers(0, 256, p.shape, np.uint8),
         "differs by .* % from its",

@@ -51,6 +51,13 @@ def test_a_capture_takes_a_power_of_two_of_pictures(small: Any, ball: Any) -> No
             capture(three)
 
 
+def test_a_stream_belongs_to_its_pipeline(small: Any, ball: Any) -> None:
+    for other in (small.copy(), td.Pipeline(ball.sensor, ball.reference, grid=(24, 32))):
+        with pytest.raises(td.InputError, match=r"stream is of another pipeline: call new_stream\(\)"):
+            small(ball.image, other.new_stream())
+    small(ball.image, small.new_stream())
+
+
 def test_a_capture_that_the_pipeline_has_not_is_refused(ball: Any) -> None:
     as_sent = td.Pipeline(td.load("synthetic"), grid=(16, 16), zero_offset=False)
     no_contact = np.full((16, 16, 3), 128, np.uint8)

@@ -170,7 +170,7 @@ def test_depths_at_their_bounds_through_rtl(tmp_path: Any, solver: str) -> None:
     gradient = np.zeros((patterns_held * size**2, 2))
     slopes = slopes_of_field(config.depth_range_px * field)
     gradient[: field.size] = slopes.reshape(-1, 2)
-    table = Sensor("patterns", gradient.reshape((1 << bits,) * 3 + (2,)), 0.1, camera=Camera(size, size))
+    table = Sensor("patterns", gradient.reshape((1 << bits,) * 3 + (2,)), 0.2, camera=Camera(size, size))
     table.save(tmp_path / "c.npz")
     index = np.arange(field.size).reshape(field.shape)
     colours = np.stack([index >> 2 * bits, index >> bits & 15, index & 15], axis=-1) << (8 - bits)

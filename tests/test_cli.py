@@ -156,13 +156,25 @@ def test_options_reach_the_pipeline(tmp_path: Path, inputs: Any, depth: Any, opt
     assert report["zero_offset"] == choices.get("zero_offset", True)
 
 
-def test_portrait_pictures_are_refused_until_they_are_rotated(tmp_path: Path, inputs: Any, arguments: Any) -> None:
+def test_a_name_with_a_line_break_is_drawn(tmp_path: Path, inputs: Any, arguments: Any) -> None:
+    name = tmp_path / "a\nb\r\tc.png"
+    name.write_bytes((inputs / "press.png").read_bytes())
+    assert main(["depth", str(name), *arguments, "--out", f"{tmp_path}/out"]) == 0
+    assert json.loads((tmp_path / "out" / "report.json").read_text())["pictures"][0]["picture"] == str(name)
+
+
+def test_portrait_pictures_are_refused_until_they_are_rotated(
+    tmp_path: Path, inputs: Any, arguments: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     folder = tmp_path / "portrait"
     folder.mkdir()
     for name in ("press.png", "background.png"):
         Image.fromarray(np.rot90(np.asarray(Image.open(inputs / name)), -1)).save(folder / name)
     words = [f"{folder}/press.png", *arguments, "--reference", f"{folder}/background.png", "--out", f"{tmp_path}/out"]
     assert main(["depth", *words]) == 2
+    refusal = capsys.readouterr().err
+    assert "rotate them by 90 or 270 degrees" in refusal
+    assert "or, if the calibration was made from pictures as these, correct its `camera_size`" in refusal
     assert main(["depth", *words, "--rotate", "90"]) == 0
     heights = np.load(tmp_path / "out" / "depth_mm.npy")
     np.testing.assert_array_equal(heights, expected(inputs).height_mm.astype(np.float32))

@@ -244,9 +244,16 @@ def test_the_files_that_macos_puts_beside_pictures_are_skipped(tmp_path: Path) -
 def test_pictures_of_a_folder_that_are_not_read_are_named(tmp_path: Path) -> None:
     for name in ("1.png", "2.webp", "10.BMP"):
         Image.new("RGB", (20, 20)).save(tmp_path / name)
-    (tmp_path / "notes.txt").touch()
-    with pytest.warns(InputWarning, match=r"no PNG or JPEG: 2\.webp, 2 in all: save them as PNG"):
+    for name in ("notes.txt", "3.jfif", "4.jpe", "5.ppm", "6.avif", "7.jp2", "8.tga", "9.npy"):
+        (tmp_path / name).touch()
+    with pytest.warns(InputWarning, match=r"no PNG or JPEG: 2\.webp, 9 in all: save them as PNG"):
         assert load_frames(str(tmp_path), (16, 16)).labels == ("1.png",)
+
+
+def test_a_npz_of_frames_is_refused_with_the_way_to_a_npy(tmp_path: Path) -> None:
+    np.savez(tmp_path / "a.npz", frames=noise(2, 16, 16, 3))
+    with pytest.raises(InputError, match=r"a\.npz: a \.npz: accepted is .*: save its array with numpy\.save, as \.npy"):
+        load_frames(str(tmp_path / "a.npz"), (16, 16))
 
 
 def test_subfolders_that_hold_pictures_are_named(tmp_path: Path) -> None:

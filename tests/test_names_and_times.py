@@ -27,11 +27,12 @@ def test_the_time_of_a_capture_is_in_the_result() -> None:
     assert [each.captured_at for each in mixed] == [7.25, None]
 
 
-@pytest.mark.parametrize("times", [[1.0], "now", [1.0, 2.0, 3.0], [True, False]])
+@pytest.mark.parametrize("times", [[1.0], "now", [1.0, 2.0, 3.0], [True, False], [1.0, np.nan], np.inf])
 def test_times_that_are_none_are_refused(times: Any) -> None:
     sample = td.sample()
     pipeline = td.Pipeline(sample.sensor, sample.reference, grid=(24, 32))
     with pytest.raises(td.InputError, match=r"captured_at=.*: accepted is seconds since the epoch"):
         pipeline(np.stack([sample.image] * 2), captured_at=times)
-    with pytest.raises(td.InputError, match="pictures have a tuple"):
-        next(pipeline.stream([(sample.image, "now")]))  # type: ignore[list-item]
+    for time in ("now", np.nan):
+        with pytest.raises(td.InputError, match="pictures have a tuple"):
+            next(pipeline.stream([(sample.image, time)]))  # type: ignore[list-item]

@@ -226,6 +226,41 @@ def test_a_captured_reference_is_checked(mini: td.Sensor, reference: np.ndarray,
 # Batches and streams.
 
 
+def gamma(picture: np.ndarray) -> np.ndarray:
+    return np.rint(255 * (picture / 255) ** 1.2).astype(np.uint8)
+
+
+def test_a_capture_that_is_refused_changes_nothing(mini: td.Sensor, reference: np.ndarray, press: np.ndarray) -> None:
+    """The doubts of the reference in use stay, too."""
+    with pytest.warns(td.InputWarning, match="as if something touched"):
+        pipeline = td.Pipeline(mini, press)
+    with pytest.raises(td.InputError, match="under 16 grey levels"):
+        pipeline.capture_reference(np.full_like(reference, 5))
+    assert "as if something touched" in str(pipeline.doubts[0])
+    assert pipeline(press).height_error is None
+
+
+@pytest.mark.parametrize("edit", [in_light(1 + 0.02 * X), lambda p: np.roll(p, 8, axis=1), gamma])
+def test_a_zero_offset_in_other_light_or_another_view_is_warned_of(
+    pipeline: td.Pipeline, reference: np.ndarray, press: np.ndarray, edit: Edit
+) -> None:
+    other = pipeline.copy()
+    with pytest.warns(td.InputWarning, match="changes across them .* capture the reference and the zero offset again"):
+        other.capture_zero(edit(reference))
+    assert other(press).height_error is None
+
+
+@pytest.mark.parametrize("zoom", [0.96, 0.92, 0.86])
+def test_a_picture_of_another_view_than_its_reference_is_warned_of(
+    pipeline: td.Pipeline, press: np.ndarray, zoom: float
+) -> None:
+    picture = Image.fromarray(press)
+    width, height = (zoom * size for size in picture.size)
+    left, top = ((1 - zoom) / 2 * size for size in picture.size)
+    box = left, top, left + width, top + height
+    doubted(pipeline, np.asarray(picture.resize(picture.size, Image.Resampling.BILINEAR, box)), "its light")
+
+
 def test_a_folder_names_the_picture(tmp_path: Path, pipeline: td.Pipeline, press: np.ndarray) -> None:
     for name, picture in (("1.png", press), ("2.png", np.zeros_like(press))):
         Image.fromarray(picture).save(tmp_path / name)

@@ -292,6 +292,13 @@ def test_a_light_touch_has_a_record(ball: Any, pipeline: Any, depth: float) -> N
 # Captures.
 
 
+def test_a_threshold_below_what_untouched_gel_reads_is_warned_of(ball: Any) -> None:
+    rest = ball.reference + np.random.default_rng(3).integers(0, 3, ball.reference.shape, np.uint8)
+    with pytest.warns(td.InputWarning, match="of the untouched gel is above it.* or more"):
+        pipeline = td.Pipeline(ball.sensor, rest, threshold_mm=1e-4)
+    assert not pipeline(ball.image).contact.touching
+
+
 @pytest.mark.parametrize(
     ("least", "greatest", "is_central"),
     [

@@ -205,6 +205,8 @@ def test_the_pitch_follows_from_the_balls() -> None:
 def test_a_pitch_that_is_contradicted_or_that_nothing_tells_is_named(folder: Path) -> None:
     message = "pitch_mm=0.12 contradicts presses, whose ball radii give 0.1 mm/pixel. Omit pitch_mm or correct ball_rad"
     assert message in refused(lambda: camera_pitch_mm(gather(folder), 0.12))
+    in_cm = refused(lambda: camera_pitch_mm(gather(in_memory(), drawn([], 1)), 10.0))
+    assert "accepted is 3 to 120 mm along the longer side: correct pitch_mm, in mm per camera pixel" in in_cm
     assert "pitch_mm is needed" in refused(lambda: camera_pitch_mm(gather(in_memory(), drawn([], 1)), None))
 
 
@@ -304,7 +306,8 @@ def test_diameters_in_another_unit_are_doubted(folder: Path) -> None:
     rows = table_rows()
     write_table(folder, [row | {"diameter_mm": row["diameter_mm"] / 10} for row in rows])
     note = "balls of 0.6 to 0.8 mm: diameter_mm is the diameter in millimetres"
-    assert used(folder) == (24, [f"{folder}/presses.csv: {note}"])
+    assert gather(folder).notes == (f"{folder}/presses.csv: {note}",)
+    assert "correct pitch_mm, in mm per camera pixel, or diameter_mm" in refused(lambda: read(folder))
 
 
 def test_too_few_presses_are_said(folder: Path) -> None:

@@ -17,7 +17,7 @@ from tactile_depth.calibrate.press_folder import read_presses
 from tactile_depth.pictures.doubts import UnusablePicture
 from tactile_depth.pictures.frames import read_picture
 from tactile_depth.pictures.reference_check import check_reference
-from tactile_depth.pictures.view_check import share_shown
+from tactile_depth.pictures.view_check import shares_shown
 from tactile_depth.sensor.sensor import equal_areas, lighting
 from tests import real_data
 from tests.ball_presses import real_folder
@@ -38,8 +38,13 @@ def noisy(picture: np.ndarray, light: Any = 1, noise: float = 1, seed: int = 1) 
 
 def view(picture: np.ndarray, share: float) -> np.ndarray:
     """Return the middle of a picture in its size."""
+    return squeezed(picture, share, share)
+
+
+def squeezed(picture: np.ndarray, across: float, down: float) -> np.ndarray:
+    """Return the middle of a picture, shares of its width and height, in its size."""
     rows, columns = picture.shape[:2]
-    height, width = round(rows * share), round(columns * share)
+    height, width = round(rows * down), round(columns * across)
     x, y = (columns - width) // 2, (rows - height) // 2
     cut = Image.fromarray(picture).crop((x, y, x + width, y + height))
     return np.asarray(cut.resize((columns, rows), Image.Resampling.BILINEAR))
@@ -142,6 +147,20 @@ def test_a_reference_of_a_smaller_view_names_the_crop(own: Own, share: float) ->
         assert named == pytest.approx(sensor.view[0] * share, rel=0.02), text
 
 
+@pytest.mark.parametrize(("width", "height"), [(0.75, 1), (1, 0.75), (0.9, 1), (1, 0.95), (0.9, 0.8)])
+def test_a_squeezed_reference_names_the_size_and_the_crop(mini: Own, digit: Own, width: float, height: float) -> None:
+    for sensor, background, _ in (mini, digit):
+        assert sensor.view is not None
+        text = doubts(sensor, noisy(squeezed(background, width, height), (0.8, 1, 1.1)))
+        named = re.search(
+            r"heights are wrong: resize the pictures to (\d+) x (\d+) and give crop=(.+),(.+), what", text
+        )
+        assert named, text
+        columns, rows, *crop = map(float, named.groups())
+        assert crop == pytest.approx((sensor.view[0] * width, sensor.view[1] * height), rel=0.02)
+        assert columns / rows == pytest.approx(4 / 3 * width / height, rel=0.03)
+
+
 @pytest.mark.parametrize("share", [*VIEWS, 5 / 7])
 def test_a_reference_of_a_larger_view_names_the_crop(own: Own, share: float) -> None:
     sensor, background, _ = own
@@ -156,7 +175,7 @@ def test_another_specimen_is_no_other_view(own: Own, seed: int) -> None:
     sensor, background, _ = own
     assert sensor.untouched is not None
     for other in (specimen(background, seed), smooth_light(seed + 2)):
-        assert share_shown(other, sensor.untouched) == 1
+        assert shares_shown(other, sensor.untouched) == (1, 1)
         with contextlib.suppress(UnusablePicture):  # as an exchange of sides
             assert DENTED not in doubts(sensor, other)
 
@@ -169,6 +188,9 @@ TONES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "more contrast": lambda p: 128 + 1.1 * (p - 128),
     "less saturation": lambda p: p + 0.1 * (p.mean(axis=-1, keepdims=True) - p),
     "limited range": lambda p: 16 + p * 219 / 255,
+    "limited range expanded twice": lambda p: (p - 16) * 255 / 219,
+    "40 levels darker": lambda p: p - 40,
+    "much contrast": lambda p: 128 + 1.4 * (p - 128),
 }
 
 

@@ -229,6 +229,22 @@ def show_warning(target: str) -> Callable[..., None]:
 
 
 @contextmanager
+def warned() -> Iterator[list[str]]:
+    """Give a list of the warnings about input that are shown meanwhile, each as its line."""
+    lines: list[str] = []
+    with warnings.catch_warnings():
+        shown = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+            if isinstance(message, InputWarning):
+                lines.append(message.text(named))
+            shown(message, category, *place, **more)
+
+        warnings.showwarning = show
+        yield lines
+
+
+@contextmanager
 def reported(target: str, interrupted: str = "") -> Iterator[None]:
     """End `make <target>` with one line on stderr and an exit status when an exception or a signal ends it.
 

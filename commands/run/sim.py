@@ -13,6 +13,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
@@ -29,6 +30,7 @@ from commands.run.draw import draw_depth
 from commands.run.sim_table import check_registers, coefficient_words, latencies, table
 from commands.study.accuracy import errors
 from tactile_depth.base import files
+from tactile_depth.base.errors import InputWarning
 from tactile_depth.chip import latency
 from tactile_depth.chip.camera_configuration import CameraChoice
 from tactile_depth.chip.configuration import Configuration
@@ -101,8 +103,9 @@ def run(request: Request, frames: Frames | None = None) -> int:
     `frames` replaces those that the request names.
     """
     simulation.check(request.simulator)
-    frames, calibration, config = synthesis.design(request, frames)
-    twin = Twin(calibration, config, untouched(request, frames))
+    with variables.warned() as of_pictures:
+        frames, calibration, config = synthesis.design(request, frames)
+        twin = Twin(calibration, config, untouched(request, frames))
     codes, light, clips = twin.played(frames.pixels, request.repeat)
     light_once = None if light is None else light[0]
     if config.flat_field:
@@ -135,8 +138,9 @@ def run(request: Request, frames: Frames | None = None) -> int:
         }
         differences = check_registers(played, report["frames"], clips, not request.stalls and frames.camera is None)
         report["registers_agree"] = not differences
-        report["warnings"] = [] if difference.count else warnings(config, report["rms_percent_of_peak"], clips)
-        report["warnings"] += doubts(dark, outside)
+        found = [] if difference.count else warnings(config, report["rms_percent_of_peak"], clips)
+        found += doubts(dark, outside)
+        report["warnings"] = [*of_pictures, *found]
         np.save(result / "depth.npy", rtl_codes.reshape(-1, config.rows, config.columns).astype(np.int32))
         save(result / "report.json", report)
         pitch = calibration.pixel_pitch_mm
@@ -161,7 +165,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
         print(line)
     print(difference.sentence())
     print(f"results: {os.path.relpath(out)}")
-    for line in report["warnings"]:
+    for line in found:
         print(f"make sim: warning: {line}", file=sys.stderr)
     return variables.MISMATCH if difference.count or differences else variables.EQUAL
 
@@ -210,8 +214,10 @@ def camera_report(request: Request, config: Configuration, frames: Frames, codes
     if camera is None:
         return {}
     plain = replace(request, camera=CameraChoice("rgb888", window=camera.crop))
-    as_rgb, sensor, _ = synthesis.design(plain)
-    twin = Twin(sensor, config, untouched(plain, as_rgb))
+    with catch_warnings():
+        simplefilter("ignore", InputWarning)  # those of the same pictures have been shown
+        as_rgb, sensor, _ = synthesis.design(plain)
+        twin = Twin(sensor, config, untouched(plain, as_rgb))
     light = twin.light_of_stream(as_rgb.pixels)
     reference_px = twin.exact_px(as_rgb.pixels, None if light is None else light[0])
     percent = errors(codes * config.depth_lsb_px, reference_px)

@@ -8,15 +8,13 @@ exit status 1 unless it is nothing.
 fingerprint of its sources (fingerprint.py), and write the page. The shortest cores come first.
 """
 
-import fcntl
 import json
 import os
 import statistics
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import as_completed
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -93,17 +91,6 @@ def counted(result: Result) -> int:
     return sum(result[name] for name in COUNTED)
 
 
-@contextmanager
-def alone() -> Iterator[None]:
-    """Wait until no other process changes the results."""
-    folder = os.open(RESULTS.parent, os.O_RDONLY)
-    try:
-        fcntl.flock(folder, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(folder)
-
-
 def write(file: Path, text: str) -> None:
     """Write a file as a whole or not at all."""
     with files.workspace(file.parent, guarded=False) as work:
@@ -118,7 +105,7 @@ def record(core: str, kind: str, begun: str, figures: Mapping[str, int | str]) -
         return
     head, changes = git("rev-parse", "--short=7", "HEAD"), git("status", "--porcelain", "hdl", "formal", "models", "tb")
     commit = (head or b"").decode().strip() + "+" * bool(changes)
-    with alone():
+    with files.locked(RESULTS.parent):  # others wait
         results = load()
         before = results.setdefault(core, {}).get(kind, {})
         if kind == "mutants" and before.get("sources") == begun and counted(before) > counted(figures):
@@ -233,7 +220,7 @@ def main(
     def lacking(results: Mapping[str, Mapping[str, Result]]) -> Left:
         return {core: kinds for core in wanted if (kinds := stale(core, results.get(core, {})))}
 
-    with alone():
+    with files.locked(RESULTS.parent):  # others wait
         write(PAGE, document())
     left = lacking(load())
     seconds = times(left, load())

@@ -133,10 +133,11 @@ assign writes_gain = {writes(LightGainBlueOffset), writes(LightGainGreenOffset),
 logic [LightGainWidth-1:0] gain_before;
 assign gain_before = writes_gain[0] ? light_gains[0] : writes_gain[1] ? light_gains[1] : light_gains[2];
 logic [31:0] dim, steepest, averaged, zero_averaged, off, level, area, frames_needed, dark, given_up, lost;
-logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, flips, residuals, largest, latency;
+logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, largest, latency;
+logic [7:0] flips, residuals;  // 255 stands for more
 logic clears, clears_q, record_q;  // of the clock before, with its residual
 logic [31:0] residual_q;
-wire [3:0][31:0] of_checks = {32'(ResidualBound), largest, residuals, flips};  // at FLIPS and behind it
+wire [3:0][31:0] of_checks = {32'(ResidualBound), largest, 32'(residuals), 32'(flips)};  // at FLIPS and behind it
 assign clears = writes(ControlOffset) & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
 // Events reach status and counters a clock later; those of a clock in reset do not.
 events_t seen;
@@ -332,8 +333,8 @@ always_ff @(posedge clk) begin
   clipped <= counted(clears ? '0 : clipped, 32'(seen.saturations));
   dark <= counted(clears ? '0 : dark, 32'(seen.dark));
   given_up <= counted(clears ? '0 : given_up, 32'(seen.depth_dropped));
-  flips <= counted(clears ? '0 : flips, 32'(seen.flipped));
-  residuals <= counted(clears ? '0 : residuals, 32'(seen.residual));
+  flips <= (clears ? '0 : flips) + 8'(seen.flipped && (clears || ~flips != '0));
+  residuals <= (clears ? '0 : residuals) + 8'(seen.residual && (clears || ~residuals != '0));
   if (clears_q) largest <= '0;
   if (record_q && (clears_q || residual_q > largest)) largest <= residual_q;
   clears_q <= clears;
@@ -355,9 +356,8 @@ always_ff @(posedge clk) begin
     width_nm <= PitchNm;
     light <= 32'd1;
     steepest <= 32'hff;
-    {silence, index, select, high, sticky, frames_in, frames_out, frames_dropped, clipped, flips, residuals, largest, latency}
-      <= '0;
-    {clears_q, record_q} <= '0;
+    {silence, index, select, high, sticky, frames_in, frames_out, frames_dropped, clipped, flips, residuals, largest, latency,
+      clears_q, record_q} <= '0;
   end
   if (cold_rst) bank <= '0;
 end

@@ -228,8 +228,11 @@ def test_a_second_depth_waits_for_the_end_of_the_first(pipeline: td.Pipeline, sa
         device.load()
         first = device.depth(iter([sample.image] * 3))
         next(first)
-        with pytest.raises(td.InputError, match=r"another depth\(\) of this device has not ended: end its loop"):
+        with pytest.raises(td.InputError, match=r"a depth\(\), load\(\) or capture has not ended: end its loop"):
             next(device.depth([sample.image]))
+        for change in (device.load, lambda: device.capture_reference([sample.reference]), device.capture_zero):
+            with pytest.raises(td.InputError, match="has not ended: end its loop"):
+                change()
         assert len(list(first)) == 2
         assert len(list(device.depth([sample.image]))) == 1
 

@@ -16,6 +16,7 @@ import os
 import secrets
 import shutil
 import tempfile
+import threading
 from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
@@ -96,7 +97,8 @@ def _create(folder: Path, work: Path, names: Iterable[str], path: str, guarded: 
         for name in names:
             with contextlib.suppress(FileNotFoundError):
                 os.lstat(folder / name)  # refuses a name that no file can have
-        _refuse(folder, names, path, guarded)
+        with locked(folder):
+            _refuse(folder, names, path, guarded)
         work.mkdir(mode=0o700)
     except InputError:
         raise
@@ -143,6 +145,11 @@ def own_files(folder: Path, names: Iterable[str]) -> set[str]:
     return {name for name in there if record.get(name) == _digest(folder / name)}
 
 
+def recorded(folder: Path) -> set[str]:
+    """Return the names of the files that `replace` wrote into a folder, by the record there."""
+    return set(_record(folder))
+
+
 def _is_cache(folder: Path) -> bool:
     place = folder.resolve()
     return any((each / CACHE_TAG).is_file() for each in (place, *place.parents))
@@ -183,7 +190,7 @@ def replace(
     """Move files from `work`, which lies inside `folder`, to `folder`, and remove `obsolete` files there.
 
     When a move fails, or a signal comes, the files that were there before come back. Folders stay, and so do files
-    that an earlier run did not write, or that were changed since.
+    that an earlier run did not write, or that were changed since. Another process that replaces files there waits.
 
     Parameters
     ----------
@@ -196,7 +203,37 @@ def replace(
         A folder, or a file of others, has the name of a file.
     OSError
     """
-    fresh = list(names)
+    with locked(folder):
+        _replace(work, list(names), folder, obsolete, guarded)
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Let others who change files of a folder wait, on systems that can; who holds it may enter again."""
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        fcntl = None  # type: ignore[assignment]
+    held: set[Path] = vars(_HELD).setdefault("folders", set())
+    place = folder.resolve()
+    if fcntl is None or place in held:
+        yield
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        with contextlib.suppress(OSError):  # a file system without locks
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        held.add(place)
+        yield
+    finally:
+        held.discard(place)
+        os.close(descriptor)
+
+
+_HELD = threading.local()  # folders that this thread has locked
+
+
+def _replace(work: Path, fresh: list[str], folder: Path, obsolete: Iterable[str], guarded: bool) -> None:
     _refuse(folder, fresh, guarded=guarded)
     obsolete = own_files(folder, obsolete)
     if guarded and not _is_cache(folder):
@@ -204,6 +241,9 @@ def replace(
         record |= {name: _digest(work / name) for name in fresh}
         (work / RECORD).write_text(json.dumps(record, indent=1) + "\n")
         fresh.append(RECORD)
+    if len(fresh) == 1 and not obsolete:
+        os.replace(work / fresh[0], folder / fresh[0])  # at no time is there no file
+        return
     earlier = Path(tempfile.mkdtemp(prefix="earlier-", dir=work))
     moves = [(folder / name, earlier / name) for name in {*fresh, *obsolete} if os.path.lexists(folder / name)]
     moves += [(work / name, folder / name) for name in fresh]
@@ -237,7 +277,8 @@ def new_files(folder: Path, index: str, key: str = "tables") -> Iterator[Path]:
     with workspace(folder, (index,)) as work:
         yield work
         written = {path.name for path in work.iterdir()}
-        replace(work, sorted(written), folder, listed(folder / index, key) - written)
+        with locked(folder):
+            replace(work, sorted(written), folder, listed(folder / index, key) - written)
 
 
 def listed(index: Path, key: str) -> set[str]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from tactile_depth.base.by_value import ByValue
 from tactile_depth.base.errors import Argument, InputError, is_number
-from tactile_depth.pictures.pictures import is_array
+from tactile_depth.pictures.pictures import array_of, is_array
 
 LARGEST_NUMBER = 1e6  # millimetres or pixels
 
@@ -62,7 +62,7 @@ class BallPress(ByValue):
 
     def __post_init__(self) -> None:
         if is_array(self.image):
-            object.__setattr__(self, "image", np.asarray(self.image))
+            object.__setattr__(self, "image", array_of(self.image, "image"))
         for length in (Argument("diameter_mm", self.diameter_mm), Argument("ball_radius_px", self.ball_radius_px)):
             if length.value is not None and not (is_number(length.value) and 0 < length.value < LARGEST_NUMBER):
                 raise InputError(Argument(length.name), f" is {length.value}", accepted="a number above 0")

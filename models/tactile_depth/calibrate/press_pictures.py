@@ -13,7 +13,8 @@ from tactile_depth.base.errors import Argument, InputError, Part
 from tactile_depth.calibrate.ball_press import BallPress
 from tactile_depth.calibrate.press_folder import background_path, read_presses
 from tactile_depth.pictures.frames import read_picture
-from tactile_depth.pictures.pictures import ROTATIONS, Picture, rotated
+from tactile_depth.pictures.pictures import ROTATIONS, Picture, array_of, rotated
+from tactile_depth.sensor.view import require_field
 
 BACKGROUND = Argument("background")
 PITCHES_AGREE = 0.02  # largest relative difference between the given pitch and the pitch from the balls' radii
@@ -117,6 +118,14 @@ def gather(
 
 def camera_pitch_mm(pictures: PressPictures, pitch_mm: float | None) -> float:
     """Return millimetres per camera pixel: `pitch_mm`, or the pitch from the balls' radii in pixels."""
+    pitch = _camera_pitch_mm(pictures, pitch_mm)
+    rows, columns = pictures.background.shape[:2]
+    remedy = ("correct ", Argument("pitch_mm"), ", in mm per camera pixel, or diameter_mm and ball_radius_px")
+    require_field((rows, columns), pitch, Argument("pitch_mm", pitch), remedy=remedy)
+    return pitch
+
+
+def _camera_pitch_mm(pictures: PressPictures, pitch_mm: float | None) -> float:
     if not pictures.pitches:
         if pitch_mm is None:
             raise InputError(
@@ -137,7 +146,7 @@ def camera_pitch_mm(pictures: PressPictures, pitch_mm: float | None) -> float:
 
 def _picture(image: Picture, name: Part, rotate: int) -> np.ndarray:
     """Return the pixels of a picture, from an array, a PIL image or a path, rotated by so many degrees."""
-    image = read_picture(Path(image)) if isinstance(image, str | Path) else np.asarray(image)
+    image = read_picture(Path(image)) if isinstance(image, str | Path) else array_of(image, name)
     if image.dtype != np.uint8 or image.ndim != 3 or image.shape[-1] != 3 or not image.size:
         raise InputError(name, f": {image.dtype} {image.shape}", accepted="uint8 (rows, columns, 3), RGB")
     return rotated(image, rotate)

@@ -147,7 +147,8 @@ def _draw_panel(canvas: Image.Image, panel: Panel, corner: tuple[int, int], size
 def _shortened(
     draw: ImageDraw.ImageDraw, font: ImageFont.FreeTypeFont | ImageFont.ImageFont, text: str, width: int
 ) -> str:
-    """Cut the beginning of a line, which is a path, until the line fits."""
+    """Replace what is no character of a line, which has a path, and cut its beginning until the line fits."""
+    text = "".join(each if each.isprintable() else "?" for each in text)
     if draw.textlength(text, font) <= width:
         return text
     while text and draw.textlength(".." + text, font) > width:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import secrets
 from collections.abc import Iterable, Iterator, Sequence
 from copy import copy
 from dataclasses import replace
@@ -25,8 +26,8 @@ from tactile_depth.chip.limits import BOUNDARIES, LIGHT_GAIN, Boundary, Model, S
 from tactile_depth.chip.poisson.cores import fastest
 from tactile_depth.chip.tactile_depth import zeroed
 from tactile_depth.depth.make_words import Sources, make_words
-from tactile_depth.depth.result import Recorder, Result, require_thresholds, settings_of, thresholds_of
-from tactile_depth.depth.stream import Stream, timed, times
+from tactile_depth.depth.result import Recorder, Result, check_steps, require_thresholds, settings_of, thresholds_of
+from tactile_depth.depth.stream import Stream, require_stream, timed, times
 from tactile_depth.depth.twin import PICTURES, Twin, require_flat_field, require_zero_offset
 from tactile_depth.pictures.blocks import Rest
 from tactile_depth.pictures.doubts import Doubt, Warned, tell, unexplained
@@ -126,9 +127,8 @@ class Pipeline:
         if grid is not None and not (len(np.shape(grid)) == 1 and len(grid) == 2 and all(map(is_whole, grid))):
             raise InputError(Argument("grid", grid), accepted=("(rows, columns)", "whole numbers"))
         numbers = {"data_width": data_width, "coefficient_width": coefficient_width, "gain_width": gain_width}
-        for name, number in numbers.items():
-            if not is_whole(number):
-                raise InputError(Argument(name, number), accepted="a whole number, of type int")
+        if wrong := next((each for each in numbers.items() if not is_whole(each[1])), None):
+            raise InputError(Argument(*wrong), accepted="a whole number, of type int")
         flags = {"zero_offset": zero_offset, "parity": parity, "self_check": self_check}
         for name, flag in (flags if light_gains is None else flags | {"light_gains": light_gains}).items():
             require_flag(Argument(name, flag))
@@ -142,11 +142,9 @@ class Pipeline:
         kind = Configuration if self._is_of_hardware or arithmetic == "chip" else ExactConfiguration
         shape: dict[str, Any] = {"columns": columns, "rows": rows, "solver": solver, "neumann": boundary == "neumann"}
         self._reader = Reader(sensor, self._grid, share)
-        self._rest: Rest | None = None
-        self._doubts: tuple[Doubt, ...] = ()
         self._zero_doubts: tuple[Doubt, ...] = ()
         pitch_mm = sensor.pixel_pitch_mm * camera_scale(sensor, kind(**shape))
-        rest = None if reference is None else self._rest_of(reference, REFERENCE, LARGEST_LOG2)
+        rest, doubts = (None, ()) if reference is None else self._rest_of(reference, REFERENCE, LARGEST_LOG2)
         self._sensor = replace(sensor, pixel_pitch_mm=pitch_mm, reference=rest)
         self._config = self.sensor.configuration(
             model,
@@ -160,10 +158,11 @@ class Pipeline:
             self_check=self_check,
         )
         require_thresholds(threshold_mm, area_threshold_mm, self.config, self.pixel_pitch_mm)
+        self._format_doubts = check_steps(self.config, self.pixel_pitch_mm, arithmetic)
         self._threshold_mm, self._area_threshold_mm = threshold_mm, area_threshold_mm
         self._zero, self._exact_zero = no_zero(self.config), np.zeros(self.grid)
-        self._captures = 0
-        self._use_reference(rest)
+        self._key, self._captures = secrets.token_hex(), 0  # of its streams
+        self._use_reference(rest, doubts)
         if reference is not None and rest is not None:
             self._sources.take_reference(reference)
             if zero_offset:
@@ -206,12 +205,13 @@ class Pipeline:
         """
         frames, checked, single = self._checked(pictures, name or PICTURES)
         captured = times(captured_at, len(frames))
-        result = replace(self.result_of(frames, checked, stream), captured_at=captured)
+        result = replace(self.result_of(frames, checked, require_stream(stream)), captured_at=captured)
         return result[0] if single else result
 
     def result_of(self, frames: np.ndarray, checked: Sequence[Checked], stream: Stream | None) -> Result:
         """Return the depth of frames on the grid, uint8 (frames, rows, columns, 3), and warn, as a call does."""
         if stream is not None:
+            stream.require(self._key)
             if stream.captures != self._captures:
                 stream.begin_as(self.new_stream())
             stream.accepted = True
@@ -260,7 +260,7 @@ class Pipeline:
         InputWarning
             Once for each kind of doubt, and for the first picture that is left out.
         """
-        stream = self.new_stream() if stream is None else stream
+        stream = require_stream(stream) or self.new_stream()
         for item in each_of(pictures):
             stream.taken += 1
             try:
@@ -274,12 +274,12 @@ class Pipeline:
     def new_stream(self) -> Stream:
         """Return the state of a stream before its first picture: light gains of 1, untouched gel."""
         light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
-        return Stream(self._captures, light, self._recorder.events(self._at_rest))
+        return Stream(self._key, self._captures, light, self._recorder.events(self._at_rest))
 
     def copy(self) -> Pipeline:
         """Return a copy, with captures of its own."""
         other = copy(self)
-        other._sources = copy(self._sources)
+        other._key, other._sources = secrets.token_hex(), copy(self._sources)
         return other
 
     def __repr__(self) -> str:
@@ -354,8 +354,8 @@ class Pipeline:
 
     @property
     def doubts(self) -> tuple[Doubt, ...]:
-        """Why all heights are uncertain: by the reference and the pictures of the zero offset."""
-        return (*self._doubts, *self._zero_doubts)
+        """Why all heights are uncertain: by word lengths, the reference and the pictures of the zero offset."""
+        return (*self._format_doubts, *self._doubts, *self._zero_doubts)
 
     def capture_reference(self, pictures: Pictures) -> None:
         """Take the mean of pictures without contact as the reference, as the hardware's capture does.
@@ -373,10 +373,9 @@ class Pipeline:
             The number of pictures is not accepted, they are too dark, or the pipeline takes colours as sent.
         """
         require_flat_field(self.config)
-        frames = self._rest_of(pictures, PICTURES, largest_log2_frames(self.config))
-        self._use_reference(frames)
+        self._use_reference(*self._rest_of(pictures, PICTURES, largest_log2_frames(self.config)))
         self._sources.take_reference(pictures)
-        self._settle(frames)
+        self._settle(self.sensor.reference)
 
     def capture_zero(self, pictures: Pictures) -> None:
         """Take the depth of pictures without contact as the zero offset, as the hardware's capture does.
@@ -389,8 +388,9 @@ class Pipeline:
         require_zero_offset(self.config)
         frames, *_ = self._checked(pictures, PICTURES)
         power_of_two_of(len(frames), LARGEST_LOG2, PICTURES)
-        self._zero_doubts = check_zero(frames, self._rest, PICTURES)
+        doubts = check_zero(frames, self._rest, PICTURES)
         self._use_zero(frames)
+        self._zero_doubts = doubts
         self._sources.take_zero(pictures)
         self._settle(frames)
 
@@ -424,13 +424,15 @@ class Pipeline:
             print(f"make words: {make_words(self.config, self.pixel_pitch_mm, self._sources.words())}")
         return index
 
-    def _use_reference(self, frames: np.ndarray | None) -> None:
+    def _use_reference(self, frames: np.ndarray | None, doubts: tuple[Doubt, ...]) -> None:
+        """Use frames without contact and their doubts; of those that are refused nothing stays."""
         if frames is not None:
             require_light(captured_gains(frames, self.config), self.config)
-            self._rest, self._sensor = Rest.of(frames), replace(self.sensor, reference=frames)
-        self._twin = Twin(self.sensor, self.config, cores=fastest())
-        self._gains = reference_gains(self.sensor, self.config)
-        _ = self._twin.tables, self._twin.exact_tables  # now, because they may refuse the sensor
+        sensor = self.sensor if frames is None else replace(self.sensor, reference=frames)
+        twin, gains = Twin(sensor, self.config, cores=fastest()), reference_gains(sensor, self.config)
+        _ = twin.tables, twin.exact_tables  # now, because they may refuse the sensor
+        self._sensor, self._twin, self._gains, self._doubts = sensor, twin, gains, doubts
+        self._rest = None if frames is None else Rest.of(frames)
 
     def _use_zero(self, frames: np.ndarray) -> None:
         twin = self._twin
@@ -461,11 +463,10 @@ class Pipeline:
         slopes = twin.exact_slopes(frames, gains)
         return slopes, twin.solved(slopes) / self.config.depth_lsb_px - self._exact_zero, gains
 
-    def _rest_of(self, pictures: Pictures, name: Argument, largest_log2: int) -> np.ndarray:
-        """Return pictures without contact on the grid, uint8 (frames, rows, columns, 3)."""
+    def _rest_of(self, pictures: Pictures, name: Argument, largest_log2: int) -> tuple[np.ndarray, tuple[Doubt, ...]]:
+        """Return pictures without contact on the grid, uint8 (frames, rows, columns, 3), and their doubts."""
         images, frames = self._reader.reference(pictures, name, largest_log2)
-        self._doubts = check_reference(self._reader.sensor, images, name, self._reader.share)
-        return frames
+        return frames, check_reference(self._reader.sensor, images, name, self._reader.share)
 
     def _checked(self, pictures: Pictures, name: Part) -> tuple[np.ndarray, list[Checked], bool]:
         """Return frames on the grid, uint8 (frames, rows, columns, 3), their checks, and True for a single picture."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -21,6 +22,8 @@ class Stream:
 
     Attributes
     ----------
+    pipeline : str
+        Key of the pipeline that it belongs to.
     captures : int
         Captures of the pipeline before the stream began.
     light : LightFilter or None
@@ -35,6 +38,7 @@ class Stream:
         A picture was accepted.
     """
 
+    pipeline: str
     captures: int
     light: LightFilter | None
     events: ContactEvents
@@ -42,6 +46,11 @@ class Stream:
     failed: int = 0
     warned: Warned = field(default_factory=Warned)
     accepted: bool = False
+
+    def require(self, pipeline: str) -> None:
+        """Raise InputError unless the stream belongs to the pipeline with this key."""
+        if self.pipeline != pipeline:
+            raise InputError(Argument("stream"), " is of another pipeline", remedy="call new_stream() of this one")
 
     def begin_as(self, new: Stream) -> None:
         """Begin afresh, after a capture: the light that the gains followed, and what is no contact, are others."""
@@ -62,10 +71,18 @@ class Stream:
             warn(InputWarning("left out and counted: ", *error.parts))
 
 
+def require_stream(stream: Stream | None) -> Stream | None:
+    """Return a stream that a user gave, or None; raise InputError for anything else."""
+    if stream is None or isinstance(stream, Stream):
+        return stream
+    remedy = "make one with `pipeline.new_stream()`, and give it with each of its pictures"
+    raise InputError(Argument("stream"), f" is a {type(stream).__name__}", accepted="a Stream", remedy=remedy)
+
+
 def timed(item: Picture | tuple[Picture, float]) -> tuple[Picture, float | None]:
     """Return a picture of a stream and when it was captured."""
     if isinstance(item, tuple):
-        if len(item) != 2 or not is_number(item[1]):
+        if len(item) != 2 or not is_number(item[1]) or not math.isfinite(item[1]):
             raise InputError(Argument("pictures"), " have a tuple", accepted="a picture, or a picture and its seconds")
         return item
     return item, None
@@ -76,7 +93,8 @@ def times(captured_at: float | Sequence[float] | np.ndarray | None, frames: int)
     if captured_at is None:
         return None
     seconds = np.asarray(captured_at)
-    if seconds.dtype.kind not in "iuf" or seconds.shape not in ((), (frames,)):
+    is_time = seconds.dtype.kind in "iuf" and seconds.shape in ((), (frames,))
+    if not is_time or not np.isfinite(seconds).all():
         accepted = "seconds since the epoch, one number or one for each picture"
         raise InputError(Argument("captured_at", captured_at), accepted=accepted)
     return np.full(frames, seconds, np.float64)

@@ -110,7 +110,7 @@ class Device(AbstractContextManager["Device"]):
         self._tables = held.signatures_of(pipeline)  # that the device is to use
         self._unseen: set[str] = set()  # those of a capture whose pictures this program did not send
         self._is_closed = self._is_window_checked = False
-        self._gives_depth = False
+        self._is_busy = False
         self._is_set = False  # the settings are those of this program
         self._line: Channel | None = self._connect()
         self._twin = pipeline.copy()  # with what the device holds, by what is known
@@ -142,7 +142,7 @@ class Device(AbstractContextManager["Device"]):
             The device has another configuration than the pipeline.
         DeviceError
         """
-        with self._open_line() as line:
+        with self._alone(), self._open_line() as line:
             require_same(line, self.pipeline)
             self._twin, self._tables = self.pipeline.copy(), held.signatures_of(self.pipeline)
             self._unseen.clear()
@@ -285,7 +285,7 @@ class Device(AbstractContextManager["Device"]):
             require_flag(Argument("stream", stream))
         if pictures is None and stream is False:
             raise InputError(Argument("stream", stream), ": without pictures", remedy="give pictures")
-        with self._only_depth(), self._open_line() as line:
+        with self._alone(), self._open_line() as line:
             held.require_tables(line, self._tables)
             light = self._require_settings(line)
             if pictures is None:
@@ -342,15 +342,15 @@ class Device(AbstractContextManager["Device"]):
     # The line.
 
     @contextmanager
-    def _only_depth(self) -> Iterator[None]:
-        """Raise InputError while another `depth` gives frames: each would take those of the other."""
-        if self._gives_depth:
-            raise InputError("another depth() of this device has not ended", remedy="end its loop, or close() it")
-        self._gives_depth = True
+    def _alone(self) -> Iterator[None]:
+        """Raise InputError while `depth` gives frames, or tables change: each would take frames of the other."""
+        if self._is_busy:
+            raise InputError("a depth(), load() or capture has not ended", remedy="end its loop, or close() it")
+        self._is_busy = True
         try:
             yield
         finally:
-            self._gives_depth = False
+            self._is_busy = False
 
     def _connect(self) -> Channel:
         """Open the line, and compare the device with the pipeline."""
@@ -426,7 +426,7 @@ class Device(AbstractContextManager["Device"]):
     @contextmanager
     def _capturing(self, table: str, twin: Pipeline | None = None) -> Iterator[Channel]:
         """Give the line for the capture of a table, which is then that of `twin`."""
-        with self._open_line() as line:
+        with self._alone(), self._open_line() as line:
             others = {name: word for name, word in self._tables.items() if name != table}
             held.require_tables(line, others, is_settled=False)
             self._tables[table] = NOT_KNOWN  # until it has ended

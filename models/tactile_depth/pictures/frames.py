@@ -17,12 +17,15 @@ from PIL import Image
 
 from tactile_depth.base.by_value import ByValue
 from tactile_depth.base.errors import Argument, InputError, InputWarning, counted, warn
-from tactile_depth.base.files import RECORD
+from tactile_depth.base.files import RECORD, recorded
 from tactile_depth.base.npy import is_file, read_header
 from tactile_depth.chip.camera_configuration import CameraChoice, CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.resampling import WHOLE, Share
+from tactile_depth.pictures.blocks import Rest
+from tactile_depth.pictures.doubts import Warned, tell
 from tactile_depth.pictures.grid_sampler import grid_sampler, middle
+from tactile_depth.pictures.picture_check import check_picture
 from tactile_depth.pictures.reference_check import check_reference
 from tactile_depth.sensor.scenes import AS_EVER, SCENES, SYNTHETIC_PIXEL_PITCH_MM, Press, render, scene_pixel_pitch_mm
 from tactile_depth.sensor.sensor import Sensor
@@ -31,7 +34,10 @@ LARGEST_CAMERA = 4096  # largest rows and columns of a frame, so that a damaged 
 PNG_SIGNATURE, JPEG_SIGNATURE = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
 APPLE_DOUBLE = "._"  # macOS puts such a file beside each on a foreign disk; it holds no picture
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg")
-OTHER_SUFFIXES = (".bmp", ".dng", ".gif", ".heic", ".tif", ".tiff", ".webp")  # of pictures that are not read
+OTHER_SUFFIXES = (  # of pictures that are not read in a folder
+    *(".avif", ".bmp", ".dng", ".gif", ".heic", ".heif", ".j2k", ".jfif", ".jp2", ".jpe", ".jxl", ".npy", ".pgm"),
+    *(".pnm", ".ppm", ".raw", ".tga", ".tif", ".tiff", ".webp"),
+)
 EXIF_ORIENTATION, UPRIGHT = 0x0112, 1
 PNG_COLOURS = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with transparency", 6: "RGB with transparency"}
 REST_SCENE = "flat"  # the scene without contact
@@ -163,6 +169,8 @@ def on_grid(sensor: Sensor, frames: Frames, whole: bool = False) -> Sensor:
     zoom = 1.0 if frames.picture_size is None else sensor.zoom(frames.picture_size, frames.name, frames.share)
     if frames.no_contact is not None:
         check_reference(sensor, middle(frames.no_contact[None], frames.share), share=frames.share)
+        assert frames.reference is not None
+        check_frames(frames, Rest.of(frames.reference[None]))
     placed = sensor
     scale = frames.pixel_scale / zoom
     if frames.camera is None and (whole or sensor.camera is not None):
@@ -173,6 +181,19 @@ def on_grid(sensor: Sensor, frames: Frames, whole: bool = False) -> Sensor:
         pitch_mm = sensor.pixel_pitch_mm / zoom
         placed = sensor.centred_at(columns * pitch_mm, rows * pitch_mm)
     return placed.scaled(scale, frames.reference)
+
+
+def check_frames(frames: Frames, rest: Rest) -> None:
+    """Refuse a frame that gives no right depth with its reference, `rest`; warn of each kind of doubt once.
+
+    Raises
+    ------
+    UnusablePicture
+    """
+    warned = Warned()
+    for label, frame in zip(frames.labels, frames.pixels, strict=True):
+        name = frames.name if len(frames.labels) == 1 else f"{frames.name}: {label}"
+        tell(warned.new(check_picture(frame, rest, name).doubts))
 
 
 def _warn_of_window(sensor: Sensor, frames: Frames) -> None:
@@ -253,7 +274,7 @@ def read_pictures(
     """Return labels and pictures, uint8 (rows, cols, 3) each, of a picture, a folder of pictures or a `.npy`.
 
     The pictures of a folder are read one by one when the iterable reaches them. Those of its subfolders are left out,
-    with a warning.
+    with a warning, and so are results that the command wrote there, without one.
 
     Parameters
     ----------
@@ -269,7 +290,9 @@ def read_pictures(
     except OSError as error:
         raise InputError(f"{name or source}: {error.strerror}: give a file or a folder") from error
     if folder:
-        pictures = sorted((each for each in listed if not each.name.startswith(APPLE_DOUBLE)), key=_natural)
+        results = recorded(path)  # of an earlier run with this folder as --out
+        given = (each for each in listed if not each.name.startswith(APPLE_DOUBLE) and each.name not in results)
+        pictures = sorted(given, key=_natural)
         files = [each for each in pictures if _is_picture(each.name)]
         inside = [each.name for each in pictures if not _is_picture(each.name) and _holds_pictures(each)]
         if not files:
@@ -287,6 +310,10 @@ def read_pictures(
         if array.ndim == 3:
             return (path.name,), [array]
         return tuple(str(i) for i in range(len(array))), array
+    if is_file(path) and path.suffix.lower() == ".npz":
+        raise InputError(
+            f"{name or source}: a .npz", accepted=accepted, remedy="save its array with numpy.save, as .npy"
+        )
     if is_file(path):
         return (path.name,), [read_picture(path)]
     raise InputError(f"{name or source}: no such file or folder: accepted is {accepted}")

@@ -8,8 +8,8 @@ import numpy as np
 from tactile_depth.base.errors import Argument, InputError, Part
 from tactile_depth.pictures.exchanges import CORRECT_IT, exchange_of
 from tactile_depth.pictures.grid_sampler import middle
-from tactile_depth.pictures.pictures import HasArray, HasInterface, is_array
-from tactile_depth.pictures.view_check import share_shown
+from tactile_depth.pictures.pictures import HasArray, HasInterface, array_of, is_array
+from tactile_depth.pictures.view_check import shares_shown
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import BUILT_IN
 from tactile_depth.sensor.sensor import LIGHTING_AGREES, Sensor
@@ -35,7 +35,7 @@ def identify(reference: np.ndarray | HasArray | HasInterface, *, crop: Crop | No
     """
     if not is_array(reference):
         raise InputError("the ", Argument("reference"), f" is a {type(reference).__name__}", accepted=PICTURE)
-    reference = np.asarray(reference)
+    reference = array_of(reference, Argument("reference"))
     if reference.dtype != np.uint8 or reference.ndim != 3 or reference.shape[-1] != 3 or min(reference.shape) < 3:
         raise InputError("the ", Argument("reference"), f" is {reference.dtype} {reference.shape}", accepted=PICTURE)
     rows, columns = reference.shape[:2]
@@ -58,7 +58,7 @@ def identify(reference: np.ndarray | HasArray | HasInterface, *, crop: Crop | No
             if (columns < rows) != (sensor.camera.columns < sensor.camera.rows):
                 mend = (", or rotate all pictures by 90 or 270 degrees: --rotate, or numpy.rot90",)
             continue
-        if seen.untouched is not None and share_shown(cut, seen.untouched) != 1:
+        if seen.untouched is not None and shares_shown(cut, seen.untouched) != (1, 1):
             return sensor  # in another view, which a pipeline names
         exchange = exchange_of(seen, cut)
         if difference > LIGHTING_AGREES or exchange:

@@ -26,6 +26,11 @@ GROSS, GROSS_NEAR_SHARE = 0.27, 0.4
 # of 3 grey levels 0.014, as JPEG of quality 75 0.034; presses 0.25 and more. Plane, right: 0.0016, as JPEG 0.0034;
 # 0.5 % up at one side and down at the other: 0.0089 and more. Quadratic: 0.0029, as JPEG 0.0058.
 UNTOUCHED, SLIGHT_PLANE, SLIGHT_QUADRATIC = 0.05, 0.0045, 0.01
+# Pictures for the zero offset, in which nothing touches: largest change of a plane and of a quadratic. Right, with
+# noise of 3 grey levels or as JPEG of quality 75: 0.0034 and 0.0058, of quality 50 0.0196. 1 % up at one side and down
+# at the other: 0.023; moved by 2 of 320 pixels: 0.042; a vignette of 5 %: 0.036; zoomed by 0.98: 0.031; gamma of 1.1:
+# 0.13.
+AT_REST_LIMITS = {1: 0.014, 2: 0.027}
 # Light that the gains leave, median over the picture. Right, also in other light: 0.006 at most; without light gains in
 # the light of the reference 0.018; without light gains in 5 % more or less light: 0.046 and more.
 UNCOMPENSATED = 0.03
@@ -132,11 +137,7 @@ def clipped_depth(count: int, name: Part) -> Doubt:
 
 def _other_light(ratios: np.ndarray, gains: np.ndarray | None, touches: bool, name: Part) -> list[Doubt]:
     """Doubt a picture whose light changes across it, or is not that of its reference after the light gains."""
-    light = medians(ratios)
-    rows, columns = (length // 2 * 2 for length in ratios.shape[:2])
-    coarse = (ratios[:rows:2] + ratios[1:rows:2])[:, :columns]
-    coarse = (coarse[:, ::2] + coarse[:, 1::2]) / (4 * light)
-    change = _uneven(np.log(np.maximum(coarse, 0.05)), touches)
+    light, change = medians(ratios), _uneven(_difference(ratios), touches)
     if change is not None:
         text = f": its light changes across it by {percents(change, '')} against the reference"
         return [doubt("uneven light", name, text, remedy=TAKE_ANOTHER)]
@@ -145,6 +146,21 @@ def _other_light(ratios: np.ndarray, gains: np.ndarray | None, touches: bool, na
         text = f": its light differs from that of the reference by {percents(light - 1)}, and {why}"
         return [doubt(LIGHT, name, text, remedy=TAKE_ANOTHER)]
     return []
+
+
+def _difference(ratios: np.ndarray) -> np.ndarray:
+    """Return log(picture / reference) of blocks twice as large, after a gain for each colour."""
+    rows, columns = (length // 2 * 2 for length in ratios.shape[:2])
+    coarse = (ratios[:rows:2] + ratios[1:rows:2])[:, :columns]
+    coarse = (coarse[:, ::2] + coarse[:, 1::2]) / (4 * medians(ratios))
+    return np.log(np.maximum(coarse, 0.05))
+
+
+def changed_at_rest(ratios: np.ndarray) -> np.ndarray | None:
+    """Return how much the light of a picture without contact changes across it, (3,); None for little."""
+    difference = _difference(ratios)
+    changes = {degree: spread(smooth(difference, degree, rounds=4), 0.05) for degree in AT_REST_LIMITS}
+    return next((change for degree, change in changes.items() if change.max() > AT_REST_LIMITS[degree]), None)
 
 
 def _uneven(difference: np.ndarray, touches: bool) -> np.ndarray | None:

@@ -9,8 +9,18 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_depth.base.errors import Part
-from tactile_depth.pictures.blocks import Rest, block_means, differences, largest, median, medians, smooth, spread
-from tactile_depth.pictures.doubts import COLOURS, Doubt, UnusablePicture, clipped, doubt
+from tactile_depth.pictures.blocks import (
+    RIDGE,
+    Rest,
+    block_means,
+    differences,
+    largest,
+    median,
+    medians,
+    smooth,
+    spread,
+)
+from tactile_depth.pictures.doubts import COLOURS, Doubt, UnusablePicture, clip_levels, clipped, doubt
 from tactile_depth.pictures.exchanges import CORRECT_IT, nearest_exchange, pattern
 from tactile_depth.sensor.sensor import TOO_DARK
 
@@ -31,6 +41,12 @@ PATTERN_DOUBTFUL = 0.04
 # The same of one of `BANDS` bands of rows. Right: 0.010 at most; torn by 20 pixels: 0.059 and more, by 40: 0.11 and
 # more.
 BAND_DIFFERS, BANDS = 0.02, 8
+# Zoom of a picture against its reference, by its light: logarithms of the shares of the width and height that it shows,
+# and the part of the median difference that these leave. Right, as JPEG of quality 50, presses enlarged 2.5 times:
+# 0.021 at most, 0.87 and more; a vignette of 6 %: 0.05, 0.53 and more. Zoomed by 0.95 to 0.8, or one axis alone: 0.052
+# and more, 0.46 at most, of which 0.019 at most is left; torn 0.028 and more. Heights are off by about twice the zoom.
+ZOOMED, ZOOM_DIFFERS, ZOOM_LEAVES = 0.02, 0.003, (0.5, 0.024)
+ZOOM_ROUNDS, ZOOM_SCALE = 6, 0.012  # of weights, and the distance from which a value loses its own
 # Step from a row of blocks to the second next, of the most different colour, exceeded in three quarters of the columns.
 # Right: 0.014 at most, with light that changes by 30 % 0.012; torn by 20 pixels 0.059 and more, by 40 0.097 and more.
 SEAM = 0.04
@@ -91,7 +107,14 @@ def check_picture(picture: np.ndarray, rest: Rest | None, name: Part) -> Checked
     if is_grey(blocks, rest.blocks):
         raise UnusablePicture(name, ": it is grey, its colours do not differ", remedy="give it in colour, as RGB")
     _require_all_rows(picture, rest, light, name)
+    if is_uneven(rest.blocks):  # else a flat facet has one level too
+        doubts = clipped(picture[None], name, clip_levels(picture))
     return Checked(name, ratios, doubts + _other_pattern(blocks, rest.blocks, name))
+
+
+def is_uneven(rest: np.ndarray) -> bool:
+    """Return True if the light of untouched gel, by its blocks, differs across it, as that of a real sensor does."""
+    return bool((spread(rest, 0.1) > COLOURED * rest.mean()).any())
 
 
 def is_grey(blocks: np.ndarray, rest: np.ndarray) -> bool:
@@ -130,6 +153,12 @@ def _other_pattern(blocks: np.ndarray, rest: np.ndarray, name: Part) -> list[Dou
     """Refuse a picture whose pattern of light is that of the reference in another order; doubt one with another."""
     difference = differences(blocks, rest)
     differs, bands = median(np.abs(difference)), _bands(difference)
+    if differs > ZOOM_DIFFERS:
+        zooms, left = _zooms(difference, rest)
+        if np.abs(zooms).max() > ZOOMED and left < min(ZOOM_LEAVES[0] * differs, ZOOM_LEAVES[1]):
+            width, height = np.exp(zooms)
+            text = f": by its light it shows {width:.2f} of the width and {height:.2f} of the height of its reference"
+            return [doubt("pattern", name, text, remedy="take both with the same zoom and mode of the camera")]
     if differs > PATTERN_DIFFERS:
         exchange, left = nearest_exchange(blocks, rest, blocks.shape[0] == blocks.shape[1])
         if exchange and left < EXCHANGE_LEAVES * min(differs, PATTERN_DIFFERS):
@@ -141,6 +170,26 @@ def _other_pattern(blocks: np.ndarray, rest: np.ndarray, name: Part) -> list[Dou
         text = f": it differs by {100 * differs:.0f} % from its reference in more than half of its area"
         return [doubt("pattern", name, text, remedy=OTHER_SENSOR)]
     return []
+
+
+def _zooms(difference: np.ndarray, rest: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return logarithms of the shares of its reference's width and height that a picture shows, and what is left.
+
+    Least squares of the difference (rows, columns, 3) by the change that a zoom and a shift of the reference's light
+    make; contacts, which are far from it, lose their weight.
+    """
+    rows, columns, colours = rest.shape
+    y, x = np.meshgrid(*((np.arange(n) + 0.5) / n - 0.5 for n in (rows, columns)), indexing="ij")
+    down, across = np.gradient(np.log(rest), 1 / rows, 1 / columns, axis=(0, 1))
+    changes = (x[..., None] * across, y[..., None] * down, across, down, *np.eye(colours))
+    terms = np.stack([np.broadcast_to(change, rest.shape) for change in changes], axis=-1).reshape(-1, len(changes))
+    weights = np.ones(len(terms))
+    for _ in range(ZOOM_ROUNDS):
+        weighted = terms.T * weights
+        change = np.linalg.solve(weighted @ terms + RIDGE * np.eye(len(changes)), weighted @ difference.ravel())
+        left = difference - (terms @ change).reshape(rest.shape)
+        weights = np.repeat(1 / (ZOOM_SCALE**2 + largest(np.abs(left)).ravel() ** 2), colours)
+    return change[:2], median(np.abs(left - medians(left)))
 
 
 def _bands(difference: np.ndarray) -> np.ndarray:

@@ -12,6 +12,7 @@ import numpy as np
 from tactile_depth.base.errors import Argument, InputError, Part
 from tactile_depth.pictures.frames import read_pictures
 
+RGB = "RGB"  # mode of a PIL image
 SHAPES = "uint8 (rows, columns, 3), RGB, or (frames, rows, columns, 3)"
 
 
@@ -31,6 +32,14 @@ class HasInterface(Protocol):
 def is_array(value: object) -> bool:
     """Return True if numpy takes an object as an array."""
     return hasattr(value, "__array__") or hasattr(value, "__array_interface__")
+
+
+def array_of(given: object, name: Part) -> np.ndarray:
+    """Return what numpy takes as an array; refuse a PIL image whose channels are not red, green and blue."""
+    mode = getattr(given, "mode", RGB)
+    if isinstance(mode, str) and mode != RGB:
+        raise InputError(name, f": a PIL image of mode {mode}", accepted=RGB, remedy='give it after .convert("RGB")')
+    return np.asarray(given)
 
 
 ROTATIONS = (0, 90, 180, 270)  # degrees, counter-clockwise
@@ -58,7 +67,7 @@ def pictures_of(given: Pictures, name: Part) -> tuple[Iterator[tuple[Part, np.nd
         )
         return named, single
     if is_array(given):
-        array = np.asarray(given)
+        array = array_of(given, name)
         if array.dtype != np.uint8 or array.ndim not in (3, 4) or array.shape[-1] != 3 or not array.size:
             raise InputError(name, f" are {array.dtype} {array.shape}", accepted=SHAPES)
         if array.ndim == 3:
@@ -78,7 +87,14 @@ def each_of(given: Pictures | Iterable[Any]) -> Iterator[Any]:
     if isinstance(given, str | Path):
         labels, pictures = read_pictures(given)
         return (Path(given, label) for label in labels) if Path(given).is_dir() else iter(pictures)
-    return iter([given]) if is_array(given) and np.ndim(np.asarray(given)) == 3 else iter(given)  # type: ignore[arg-type]
+    if is_array(given) and np.ndim(np.asarray(given)) != 4:
+        return iter([given])
+    try:
+        return iter(given)  # type: ignore[arg-type]
+    except TypeError:
+        accepted = "a path, or an iterable of pictures"
+        remedy = "give its frames by a generator, in RGB"
+        raise InputError("pictures", f" are a {type(given).__name__}", accepted=accepted, remedy=remedy) from None
 
 
 def _item(name: Part, index: int) -> Part:

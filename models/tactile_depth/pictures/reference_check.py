@@ -9,9 +9,21 @@ from scipy.ndimage import uniform_filter
 from tactile_depth.base.errors import Argument, Part
 from tactile_depth.chip.resampling import WHOLE, Share
 from tactile_depth.pictures.blocks import Rest, block_means, differences, largest, medians, smooth
-from tactile_depth.pictures.doubts import REFERENCE, TAKE_ANOTHER, Doubt, UnusablePicture, clipped, doubt, tell
+from tactile_depth.pictures.doubts import (
+    CLIPPED,
+    REFERENCE,
+    TAKE_ANOTHER,
+    Doubt,
+    UnusablePicture,
+    clip_levels,
+    clipped,
+    doubt,
+    percents,
+    tell,
+)
 from tactile_depth.pictures.exchanges import CORRECT_IT, DARKEST, exchange_of
-from tactile_depth.pictures.picture_check import is_grey
+from tactile_depth.pictures.light_check import changed_at_rest
+from tactile_depth.pictures.picture_check import is_grey, is_uneven
 from tactile_depth.pictures.tone_check import other_tone
 from tactile_depth.pictures.view_check import other_view
 from tactile_depth.sensor.sensor import LIGHTING_AGREES, TOO_DARK, Sensor, equal_areas, lighting
@@ -59,7 +71,8 @@ def check_reference(
             problem = f": picture {number} differs from the others by {100 * differs.max():.0f} %, as if touched"
             raise UnusablePicture(name, problem, remedy="take all with the sensor untouched")
     rest = pictures.mean(axis=0, dtype=np.float32)
-    doubts = [*clipped(pictures, name), *_other_lighting(sensor, rest, name, share)]
+    levels = clip_levels(pictures) if is_uneven(blocks.mean(axis=0)) else (CLIPPED,) * 3
+    doubts = [*clipped(pictures, name, levels), *_other_lighting(sensor, rest, name, share)]
     doubts = doubts or _contact(sensor, rest, blocks.mean(axis=0), name)
     tell(doubts)
     return tuple(doubts)
@@ -82,7 +95,7 @@ def _contact(sensor: Sensor, rest: np.ndarray, blocks: np.ndarray, name: Part) -
 
 
 def check_zero(frames: np.ndarray, rest: Rest | None, name: Part) -> tuple[Doubt, ...]:
-    """Check pictures for the zero offset; warn, and return a doubt, if something touches that does not in `rest`.
+    """Check pictures for the zero offset; warn, and return a doubt, if they show another light or contact than `rest`.
 
     Parameters
     ----------
@@ -91,13 +104,19 @@ def check_zero(frames: np.ndarray, rest: Rest | None, name: Part) -> tuple[Doubt
     """
     if rest is None:
         return ()
-    differs, is_touched = _dents(equal_areas(frames.mean(axis=0)), equal_areas(rest.pixels))
-    if not is_touched:
+    mean = frames.mean(axis=0)
+    differs, is_touched = _dents(equal_areas(mean), equal_areas(rest.pixels))
+    change = changed_at_rest(block_means(mean) / rest.blocks)
+    if change is not None:
+        text = f": their light changes across them by {percents(change, '')} against the reference, or their view does"
+        found = doubt("light of the zero offset", name, text, remedy="capture the reference and the zero offset again")
+    elif is_touched:
+        text = f": differences of {100 * differs:.0f} % from the reference, as if something touched the gel"
+        found = doubt("contact in the zero offset", name, text, remedy="capture the zero offset with the gel untouched")
+    else:
         return ()
-    text = f": differences of {100 * differs:.0f} % from the reference, as if something touched the gel"
-    doubts = (doubt("contact in the zero offset", name, text, remedy="capture the zero offset with the gel untouched"),)
-    tell(doubts)
-    return doubts
+    tell([found])
+    return (found,)
 
 
 def _dents(areas: np.ndarray, own: np.ndarray) -> tuple[float, bool]:

@@ -9,11 +9,16 @@ from tactile_depth.base.errors import Part
 from tactile_depth.pictures.doubts import Doubt, doubt
 from tactile_depth.sensor.sensor import UNTOUCHED_AREAS, equal_areas
 
-# RMS of log(reference / calibration's picture) that a quadratic in the position leaves for each colour, and the share
-# of it that remains with functions of the levels. Gamma of 0.9 or 1.1, 4 levels brighter, contrast or saturation of
-# 1.1 or 0.9 (heights off by 5 % and more): 0.0032 and more, of which 0.52 at most remain, 0.003 at most. Right, in
-# other light, with noise, as JPEG, with a dent: 0.89 and more; another specimen: 0.64 and more, 0.0107 and more.
-CHANGED, REMAINS, LEFT = 0.003, 0.58, 0.006
+# RMS of log(reference / calibration's picture) that a quadratic in the position leaves for each colour, and the part
+# of it that remains with functions of the levels. Gamma of 0.9 or 1.1, 4 levels brighter, contrast or saturation of 1.1
+# or 0.9 (heights off by 5 % and more): 0.0027 and more, of which 0.5 at most remain, 0.0024 at most. Right, in other
+# light, with noise, as JPEG, with a dent: 0.94 and more; a drawn picture whose noise is doubled: 0.0023. Gamma of 1.05,
+# of which 0.74 remain, and 2 levels more or less, 0.0014, are not told from them.
+CHANGED, REMAINS, LEFT = 0.0025, 0.58, 0.006
+# The part of larger changes, which leave more: 20 to 40 levels darker, video range expanded twice, contrast of 1.2 to
+# 1.4, 0.28 at most; 360 drawn specimens: 0.36 and more, and beyond `LEFT`.
+EXPLAINED = 0.32
+DARK = 60  # grey levels: a darker area counts less, as a level more or less changes its logarithm more
 
 
 def other_tone(reference: np.ndarray, untouched: np.ndarray, name: Part) -> list[Doubt]:
@@ -24,21 +29,31 @@ def other_tone(reference: np.ndarray, untouched: np.ndarray, name: Part) -> list
     reference : array (rows, columns, 3)
     untouched : array (`UNTOUCHED_AREAS`, 3)
     """
-    own = np.maximum(untouched, 1).astype(np.float64).reshape(-1, 3)
-    change = np.log(np.maximum(equal_areas(reference), 1).reshape(-1, 3) / own)
+    by_light, by_tone = _left_by(equal_areas(reference), untouched)
+    is_tone = by_tone < max(EXPLAINED * by_light, min(REMAINS * by_light, LEFT))
+    if by_light < CHANGED or not is_tone:
+        return []
+    text = ": by its colours the camera has another gamma, brightness, contrast or saturation than in the calibration"
+    return [doubt("tone", name, text, remedy="set the camera as for the calibration, or calibrate again")]
+
+
+def _left_by(areas: np.ndarray, untouched: np.ndarray) -> tuple[float, float]:
+    """Return what a quadratic in the position, and functions of the levels too, leave of log(areas / untouched)."""
+    own, seen = (np.maximum(each, 1).astype(np.float64).reshape(-1, 3) for each in (untouched, areas))
+    change, weights = np.log(seen / own), np.minimum(np.minimum(seen, own), DARK)
+    weights /= np.sqrt((weights**2).mean(axis=0))
     y, x = (axis.ravel() for axis in np.meshgrid(*(np.linspace(-1, 1, n) for n in UNTOUCHED_AREAS), indexing="ij"))
     light = np.stack((np.ones_like(x), x, y, x * x, x * y, y * y), axis=1)
-    by_light = by_tone = 0.0
+    left = np.zeros(2)
     for colour in range(3):
         levels = own[:, colour, None]
         others = np.delete(own, colour, axis=1)
         tone = np.concatenate((light, np.log(levels), 1 / levels, others / levels), axis=1)
-        by_light += _left(light, change[:, colour]) / 3
-        by_tone += _left(tone, change[:, colour]) / 3
-    if by_light < CHANGED**2 or by_tone > min(REMAINS**2 * by_light, LEFT**2):
-        return []
-    text = ": by its colours the camera has another gamma, brightness, contrast or saturation than in the calibration"
-    return [doubt("tone", name, text, remedy="set the camera as for the calibration, or calibrate again")]
+        weight = weights[:, colour, None]
+        values = weight[:, 0] * change[:, colour]
+        left += [_left(weight * terms, values) / 3 for terms in (light, tone)]
+    by_light, by_tone = map(float, np.sqrt(left))
+    return by_light, by_tone
 
 
 def _left(terms: np.ndarray, values: np.ndarray) -> float:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scale at which the light of a reference fits that of the calibration's own picture: the part of the gel it shows."""
+"""Scales at which the light of a reference fits that of the calibration's own picture: the part of the gel it shows."""
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -12,15 +13,16 @@ from tactile_depth.chip.resampling import Share
 from tactile_depth.pictures.blocks import RIDGE
 from tactile_depth.pictures.doubts import VIEW, Doubt, doubt
 from tactile_depth.sensor.sensor import UNTOUCHED_AREAS, Sensor, equal_areas, overlaps
-from tactile_depth.sensor.view import CONVENTIONS, VIEWS_AGREE
+from tactile_depth.sensor.view import CONVENTIONS, VIEWS_AGREE, view_of
 
-# RMS of log(reference / calibration's picture) after scale, shift, and a plane for each colour. The same specimen in
-# another view, in light times 0.8 to 1.1 that changes by 1 % to each side, with noise, as JPEG of quality 85: 0.0064 at
-# most, and at most 0.31 of what the best shift alone leaves. 88 drawn specimens in the same view: 0.0098 and more, and
-# 0.8 and more of it, or 0.046 and more; the same specimen in light with a vignette of 5 %: 0.68 of it and more.
-FITS, OF_SHIFTED = 0.015, 0.5
+# RMS of log(reference / calibration's picture) after two scales, shift, and a plane for each colour, and its share of
+# what the best shift alone leaves. The same Mini or DIGIT in another view, also of one axis alone, in light times 0.8
+# to 1.1 that changes by 1 % to each side, with noise, as JPEG of quality 85: 0.007 and 0.42 at most. 180 drawn
+# specimens in the same view: 0.72 and more of it; in light with a vignette of 5 %, also of one axis: 0.51 and more.
+FITS, OF_SHIFTED = 0.015, 0.45
 AS_IS = 0.004  # what is left at scale 1 from which another view can fit; views of 0.95: 0.0073 and more
 SAME_VIEW = 0.035  # difference of two views that changes heights by less than 5 %; views of 0.95 are right by 0.002
+SAME_ASPECT = 0.025  # difference of the scales of both axes: one scale 0.007 at most, one axis of 0.95: 0.047 and more
 SCALES, FARTHEST = (0.4, 2.5), 0.15  # largest scale either way, and largest shift, of the picture
 STARTS, STEPS, SMALLEST_STEP = (1.0, 0.63, 1.6), 8, 1e-3
 FINE = (4 * UNTOUCHED_AREAS[0], 4 * UNTOUCHED_AREAS[1])  # areas of a reference, from which those of a scale are made
@@ -31,21 +33,21 @@ class Placed(NamedTuple):
 
     Attributes
     ----------
-    scale : float
-        Share of the calibration's width and height that the picture shows.
+    scales : float64 array (2,)
+        Shares of the calibration's width and height that the picture shows.
     shift : float64 array (2,)
         From middle to middle, along the columns and down the rows, of the calibration's width and height.
     left : float
         RMS difference that is left.
     """
 
-    scale: float
+    scales: np.ndarray
     shift: np.ndarray
     left: float
 
 
-def share_shown(reference: np.ndarray, untouched: np.ndarray) -> float:
-    """Return the share of the width and height of the calibration's picture that a reference shows.
+def shares_shown(reference: np.ndarray, untouched: np.ndarray) -> tuple[float, float]:
+    """Return the shares of the width and of the height of the calibration's picture that a reference shows.
 
     Parameters
     ----------
@@ -54,20 +56,25 @@ def share_shown(reference: np.ndarray, untouched: np.ndarray) -> float:
 
     Returns
     -------
-    float
-        1 also if its light fits at no scale, as that of another specimen.
+    (float, float)
+        1 each also if its light fits at no scale, as that of another specimen.
     """
-    fit = _Fit(equal_areas(reference, FINE), untouched)
-    if fit.difference(1, np.zeros(2))[1] < AS_IS:
-        return 1.0
-    shifted = fit.place(1, free=slice(1, 3)).left
-    best = Placed(1, np.zeros(2), np.inf)
+    fit, as_is = _Fit(equal_areas(reference, FINE), untouched), Placed(np.ones(2), np.zeros(2), np.inf)
+    if fit.difference(as_is.scales, as_is.shift)[1] < AS_IS:
+        return 1.0, 1.0
+    shifted = fit.place(1, free=slice(2, 4)).left
+    best = as_is
     for start in STARTS:
-        best = min(best, fit.place(start, free=slice(0, 3)), key=lambda placed: placed.left)
+        best = min(best, fit.place(start, free=slice(0, 4)), key=lambda placed: placed.left)
         if best.left < AS_IS:
             break
-    fits = best.left < min(FITS, OF_SHIFTED * shifted)
-    return best.scale if fits and abs(np.log(best.scale)) > SAME_VIEW else 1.0
+    sizes = np.log(best.scales)
+    if best.left >= min(FITS, OF_SHIFTED * shifted) or np.abs(sizes).max() < SAME_VIEW:
+        return 1.0, 1.0
+    if abs(sizes[0] - sizes[1]) < SAME_ASPECT:
+        sizes[:] = sizes.mean()
+    width, height = map(float, np.exp(sizes))
+    return width, height
 
 
 def other_view(sensor: Sensor, reference: np.ndarray, name: Part, share: Share) -> list[Doubt]:
@@ -78,15 +85,27 @@ def other_view(sensor: Sensor, reference: np.ndarray, name: Part, share: Share) 
     reference : array (rows, columns, 3)
         A share of what the user gave.
     """
-    if sensor.untouched is None or (scale := share_shown(reference, sensor.untouched)) == 1:
+    if sensor.untouched is None or (shares := shares_shown(reference, sensor.untouched)) == (1, 1):
         return []
-    size = "large" if scale < 1 else "small"
-    text = f": by its light it shows {scale:.2f} of the width and height that it should, so heights are too {size}"
+    width, height = shares
+    is_squeezed = width != height
+    part = f"{width:.2f} of the width and {f'{height:.2f} of the ' * is_squeezed}height that it should"
+    size = "wrong" if is_squeezed else f"too {'large' if width < 1 else 'small'}"
     remedy: tuple[Part, ...] = ("give pictures that show as much of the gel as those of the calibration",)
     if sensor.view is not None:
-        width, height = (scale * view / float(part) for view, part in zip(sensor.view, share[::-1], strict=True))
-        remedy = ("give ", Argument("crop", _named(width, height)), ", what the pictures show")
-    return [doubt(VIEW, name, text, remedy=remedy)]
+        crop = _named(width * sensor.view[0] / float(share[1]), height * sensor.view[1] / float(share[0]))
+        resize = f"resize the pictures to {_unsqueezed(sensor, len(reference) / share[0], crop)} and " * is_squeezed
+        remedy = (f"{resize}give ", Argument("crop", crop), ", what the pictures show")
+    return [doubt(VIEW, name, f": by its light it shows {part}, so heights are {size}", remedy=remedy)]
+
+
+def _unsqueezed(sensor: Sensor, rows: Fraction, crop: str | float) -> str:
+    """Return the size of pictures of so many rows that show a crop with pixels as wide as those of the calibration."""
+    assert sensor.camera is not None
+    assert sensor.view is not None
+    width, height = (shown / own for shown, own in zip(view_of(crop), sensor.view, strict=True))
+    columns = float(rows) * sensor.camera.columns * width / (sensor.camera.rows * height)
+    return f"{round(columns)} x {round(rows)}"
 
 
 def _named(width: float, height: float) -> str | float:
@@ -101,7 +120,7 @@ def _named(width: float, height: float) -> str | float:
 class _Fit:
     """Least squares of log(reference / calibration's picture) in the areas of the latter.
 
-    Free are the scale, the shift, and a plane for each colour.
+    Free are the scales of both axes, the shift, and a plane for each colour.
     """
 
     def __init__(self, levels: np.ndarray, untouched: np.ndarray) -> None:
@@ -109,39 +128,39 @@ class _Fit:
         self._own = np.log(np.maximum(untouched, 1))
         down, across = np.gradient(self._own, *(1 / count for count in UNTOUCHED_AREAS), axis=(0, 1))
         self._y, self._x = np.meshgrid(*((np.arange(n) + 0.5) / n - 0.5 for n in UNTOUCHED_AREAS), indexing="ij")
-        outward = self._x[..., None] * across + self._y[..., None] * down
-        self._slopes = np.stack((outward, across, down), axis=-1)
+        slopes = self._x[..., None] * across, self._y[..., None] * down, across, down
+        self._slopes = np.stack(slopes, axis=-1)
 
-    def difference(self, scale: float, shift: np.ndarray) -> tuple[np.ndarray, float, np.ndarray]:
-        """Return what is left, (areas, 3), its RMS, and its change by scale and shift, (areas, 3, 3)."""
+    def difference(self, scales: np.ndarray, shift: np.ndarray) -> tuple[np.ndarray, float, np.ndarray]:
+        """Return what is left, (areas, 3), its RMS, and its change by scales and shift, (areas, 3, 4)."""
         (across, columns), (down, rows) = (
-            _cells(count, scale, by) for count, by in zip(UNTOUCHED_AREAS[::-1], shift, strict=True)
+            _cells(count, scale, by) for count, scale, by in zip(UNTOUCHED_AREAS[::-1], scales, shift, strict=True)
         )
         seen = np.moveaxis(down @ np.moveaxis(across @ self._levels, 2, 0), 0, 2)
         both = np.ix_(rows, columns)
         x, y = self._x[both].ravel(), self._y[both].ravel()
-        own, slopes = self._own[both].reshape(-1, 3), self._slopes[both].reshape(-1, 9)
+        own, slopes = self._own[both].reshape(-1, 3), self._slopes[both].reshape(-1, 12)
         values = np.concatenate((np.log(np.maximum(seen.reshape(-1, 3), 1)) - own, slopes), axis=1)
         plane = np.linalg.qr(np.stack((np.ones_like(x), x, y), axis=1))[0]
         values -= plane @ (plane.T @ values)
         left = values[:, :3]
-        return left, float(np.sqrt((left**2).mean())), values[:, 3:].reshape(-1, 3, 3)
+        return left, float(np.sqrt((left**2).mean())), values[:, 3:].reshape(-1, 3, 4)
 
     def place(self, scale: float, free: slice) -> Placed:
-        """Return the best place from a first scale; `free`: of scale, shift along columns, and down rows."""
-        shift = np.zeros(2)
-        left, rms, changes = self.difference(scale, shift)
-        best = Placed(scale, shift, rms)
+        """Return the best place from a first scale; `free`: of both scales, shift along columns, and down rows."""
+        scales, shift = np.full(2, scale), np.zeros(2)
+        left, rms, changes = self.difference(scales, shift)
+        best = Placed(scales, shift, rms)
         for _ in range(STEPS):
-            step = np.zeros(3)
-            terms = changes.reshape(-1, 3)[:, free]
+            step = np.zeros(4)
+            terms = changes.reshape(-1, 4)[:, free]
             step[free] = np.linalg.solve(terms.T @ terms + RIDGE * np.eye(terms.shape[1]), terms.T @ left.ravel())
             if np.abs(step).max() < SMALLEST_STEP:
                 break
-            scale = float(np.clip(scale * np.exp(np.clip(step[0], -0.1, 0.1)), *SCALES))
-            shift = np.clip(shift + step[1:], -FARTHEST, FARTHEST)
-            left, rms, changes = self.difference(scale, shift)
-            best = min(best, Placed(scale, shift, rms), key=lambda placed: placed.left)
+            scales = np.clip(scales * np.exp(np.clip(step[:2], -0.1, 0.1)), *SCALES)
+            shift = np.clip(shift + step[2:], -FARTHEST, FARTHEST)
+            left, rms, changes = self.difference(scales, shift)
+            best = min(best, Placed(scales, shift, rms), key=lambda placed: placed.left)
         return best
 
 

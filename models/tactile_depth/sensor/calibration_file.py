@@ -27,7 +27,7 @@ from tactile_depth.sensor.sensor import (
     Sensor,
 )
 from tactile_depth.sensor.verdict import BAD, GRADES, Verdict
-from tactile_depth.sensor.view import SMALLEST_VIEW, is_share
+from tactile_depth.sensor.view import SMALLEST_VIEW, is_share, require_field
 
 FOLDER = Path(__file__).resolve().parent / "calibrations"
 BUILT_IN = ("synthetic", "gelsight-mini")
@@ -83,6 +83,10 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
         if key not in arrays:
             raise InputError(f"{path}: no `{key}` in it: a calibration holds {' and '.join(f'`{k}`' for k in needed)}")
     largest_slope = _slope(path, arrays, "largest_slope") if has_polynomials else 0.0
+    pitch_mm = _limited(path, arrays, "pixel_pitch_mm", PIXEL_PITCHES_MM, "in mm")
+    camera = _old_camera(path, camera_size) if old else _camera(path, arrays, camera_size)
+    remedy = "correct `pixel_pitch_mm`, in mm per camera pixel, or the size of the camera's pictures"
+    require_field((camera.rows, camera.columns), pitch_mm, f"{path}: `pixel_pitch_mm` is {pitch_mm:g}", remedy=remedy)
     models = [model for model in MODELS if held[model]]
     keys = {model: f"fitted_slope_{model}" for model in models}
     fitted = {model: _slope(path, arrays, key) for model, key in keys.items() if key in arrays}
@@ -91,11 +95,11 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
     return Sensor(
         name,
         _gradient(path, arrays["gradient"]) if held["lut"] else None,
-        _limited(path, arrays, "pixel_pitch_mm", PIXEL_PITCHES_MM, "in mm"),
+        pitch_mm,
         _polynomials(path, arrays, "coefficients", COEFFICIENTS) if held["quadratic"] else None,
         largest_slope,
         _model(path, arrays.get("model"), models),
-        camera=_old_camera(path, camera_size) if old else _camera(path, arrays, camera_size),
+        camera=camera,
         flat_field=True if old else bool(_checked(path, arrays, "flat_field", (), "b", "True or False")),
         fitted_slope=fitted,
         height_errors={
@@ -227,6 +231,9 @@ def _height_error(path: Path, arrays: Arrays, model: str) -> HeightError:
     mean, spread, presses = _finite(path, arrays, key, (3,), accepted)
     if min(mean, spread, presses) < 0:
         raise InputError(f"{path}: `{key}` has negative values: accepted is {accepted}")
+    if presses < 1:
+        problem = f"{path}: `{key}` is of no presses, so nothing is known of the error"
+        raise InputError(problem, accepted=accepted, remedy="leave it out of the file")
     return HeightError(float(mean), float(spread), int(min(presses, 1e9)))
 
 

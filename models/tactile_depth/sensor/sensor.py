@@ -222,7 +222,8 @@ class Sensor(ByValue):
                 name,
                 f": {picture_size[1]} x {picture_size[0]} pixels (columns x rows){kept}, but {self.name} is calibrated "
                 f"for pictures of {self.camera.columns} x {self.camera.rows}",
-                remedy="rotate them by 90 or 270 degrees: --rotate, or numpy.rot90"
+                remedy="rotate them by 90 or 270 degrees (--rotate, or numpy.rot90), or, if the calibration was made "
+                "from pictures as these, correct its `camera_size`, whose rows come first"
                 if is_turned
                 else (
                     *("give pictures of that camera, of the same aspect ratio, say with ", Argument("crop")),

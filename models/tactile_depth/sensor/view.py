@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from tactile_depth.base.errors import Argument, InputError, is_number
+from tactile_depth.base.errors import Argument, InputError, Part, is_number
 from tactile_depth.chip.resampling import WHOLE, Share
 from tactile_depth.sensor.sensor import Sensor, lighting
 
@@ -24,6 +25,11 @@ ACCEPTED = (
 
 VIEWS_AGREE = 0.01  # largest relative difference between two values of one view: 5/7 is also written 0.71
 LARGEST_DENOMINATOR = 1000  # of a share: 5/7 and 0.971 are exact
+
+# Longer side of what pictures show of a fingertip. A DIGIT shows 16 mm (320 pixels of 0.051 mm, docs/digit.md), a
+# GelSight Mini 20 mm (its calibration), a GelSight R1.5 28 mm (320 pixels of 0.0877 mm, Isaac Lab); a factor of 4 and
+# more of margin on both sides, for parts of a picture, finer lenses and longer gels.
+FIELD_MM = (3, 120)
 
 Crop = str | float | tuple[float, float]
 
@@ -55,6 +61,21 @@ def _number(text: str) -> float | None:
 def is_share(share: object) -> bool:
     """Return True for a share of a picture's width or height that a view can have."""
     return is_number(share) and SMALLEST_VIEW <= float(share) <= 1  # type: ignore[arg-type]
+
+
+def require_field(size: tuple[int, int], pitch_mm: float, *pitch: Part, remedy: str | Iterable[Part]) -> None:
+    """Raise InputError unless pictures (rows, columns) of pixels of `pitch_mm` show as much as a fingertip has.
+
+    Parameters
+    ----------
+    pitch : parts of the message that name the pitch
+    """
+    (rows, columns), (low, high) = size, FIELD_MM
+    if not low <= max(size) * pitch_mm <= high:
+        problem = (
+            f": pictures of {columns} x {rows} pixels show {columns * pitch_mm:.3g} x {rows * pitch_mm:.3g} mm of gel"
+        )
+        raise InputError(*pitch, problem, accepted=f"{low} to {high} mm along the longer side", remedy=remedy)
 
 
 def completed(sensor: Sensor, crop: Crop) -> Sensor:

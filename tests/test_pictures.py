@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a pipeline takes as pictures and as a stream, and what it refuses with a remedy."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import tactile_depth as td
+
+COARSE: dict[str, Any] = {"data_width": 15, "depth_range_mm": 100.0}
+
+
+@pytest.fixture(scope="module")
+def drawn() -> td.Sample:
+    return td.sample()
+
+
+@pytest.fixture(scope="module")
+def pipeline(drawn: td.Sample) -> td.Pipeline:
+    return td.Pipeline(drawn.sensor, drawn.reference, grid=(24, 32))
+
+
+@pytest.mark.parametrize("mode", ["YCbCr", "HSV", "L", "RGBA", "CMYK"])
+def test_pil_images_of_another_mode_are_refused(pipeline: td.Pipeline, drawn: td.Sample, mode: str) -> None:
+    image = Image.fromarray(drawn.image)
+    np.testing.assert_array_equal(pipeline(image).codes, pipeline(drawn.image).codes)
+    message = rf'a PIL image of mode {mode}: accepted is RGB: give it after \.convert\("RGB"\)'
+    other = image.convert(mode)
+    refusals: list[Any] = [
+        lambda: pipeline(other),
+        lambda: pipeline([image, other]),
+        lambda: next(pipeline.stream([other])),
+        lambda: next(pipeline.stream(other)),  # type: ignore[arg-type]
+        lambda: td.Pipeline(drawn.sensor, other),
+        lambda: td.identify(other),
+        lambda: td.BallPress(other, 4.0),  # type: ignore[arg-type]
+    ]
+    for refused in refusals:
+        with pytest.raises(td.InputError, match=message):
+            refused()
+
+
+def test_a_stream_that_is_none_is_refused(pipeline: td.Pipeline, drawn: td.Sample) -> None:
+    refusals: list[Any] = [
+        lambda: pipeline(drawn.image, stream="x"),  # type: ignore[arg-type]
+        lambda: next(pipeline.stream([drawn.image], "x")),  # type: ignore[arg-type]
+    ]
+    for refused in refusals:
+        with pytest.raises(
+            td.InputError, match=r"stream is a str: accepted is a Stream: make one with `pipeline\.new_"
+        ):
+            refused()
+
+
+@pytest.mark.parametrize("given", [object(), 0, None, np.uint8(3)])
+def test_pictures_of_a_stream_that_are_none_are_refused(pipeline: td.Pipeline, given: Any) -> None:
+    with pytest.raises(td.InputError, match=r"accepted is a|accepted is uint8"):
+        next(pipeline.stream(given))
+
+
+def test_steps_that_are_coarser_than_a_press_are_warned_of(drawn: td.Sample) -> None:
+    with pytest.warns(td.InputWarning, match=r"data_width=15 and a depth range of 100 mm have steps of") as caught:
+        coarse = td.Pipeline(drawn.sensor, drawn.reference, grid=(96, 128), **COARSE)
+    shallower, wider = str(caught[0].message).rpartition("give depth_range_mm=")[2].split(" or data_width=")
+    with pytest.warns(td.InputWarning):
+        assert coarse(drawn.image).height_error is None
+    for mended in ({"depth_range_mm": float(shallower)}, {"data_width": int(wider)}):
+        fine = td.Pipeline(drawn.sensor, drawn.reference, grid=(96, 128), **(COARSE | mended))
+        assert fine.doubts == ()
+
+
+def test_double_precision_has_no_steps(drawn: td.Sample) -> None:
+    assert td.Pipeline(drawn.sensor, drawn.reference, arithmetic="float", **COARSE).doubts == ()
