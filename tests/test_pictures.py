@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a pipeline takes as pictures and as a stream, and what it refuses with a remedy."""
+"""Pictures and streams that a pipeline takes, and those that it refuses with a remedy."""
 
 from typing import Any
 

@@ -15,9 +15,7 @@ from tactile_depth.sensor.scenes import SCENES
 def untouched(request: Request, frames: Frames) -> np.ndarray | None:
     """Return the frames of `ZERO`, uint8 (a power of two, rows, columns, 3); None without it.
 
-    Warns if something touches in them that does not in the reference of `frames`, pictures of a sensor.
-
-    Raises InputError.
+    Warns if they show other light or contact than the reference of `frames`, pictures of a sensor. Raises InputError.
     """
     if request.zero is None:
         return None

@@ -31,7 +31,7 @@ by up to 5 % at 0.02 mm, 7 % at 0.022, 23 % at 0.044, 47 % at 0.11, 74 % at 0.22
 SMALLEST_MM2 = 0.1
 """Least area of a contact whatever the threshold: a disc with a diameter of 0.36 mm, 4 pixels of a usual grid."""
 MOST_AT_REST = 0.02
-"""Share of untouched pixels above a threshold: 0 at 0.07 mm on a GelSight Mini, 0.1 at 0.005 mm."""
+"""Share of untouched pixels above a threshold: 0 at 0.07 mm on a GelSight Mini, 0.01 at 0.01 mm, 0.05 at 0.005 mm."""
 MOSTLY_EMPTY = 0.5
 """Share of the bounding box: 0.73 and more in 45 real presses, 0.39 for two drawn balls side by side."""
 

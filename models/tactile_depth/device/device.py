@@ -139,7 +139,7 @@ class Device(AbstractContextManager["Device"]):
         Raises
         ------
         InputError
-            The device has another configuration than the pipeline.
+            The device has another configuration than the pipeline, or a `depth` has not ended.
         DeviceError
         """
         with self._alone(), self._open_line() as line:
