@@ -2,12 +2,13 @@
 """Client of an AXI4-Lite port: single beats, whole transactions, and registers by name."""
 
 from collections.abc import Awaitable
+from random import Random
 from typing import Any
 
 from cocotb.triggers import RisingEdge, gather
 from cocotb_bus.drivers.amba import AXI4LiteMaster, AXIProtocolError
 
-from tactile_depth.chip.registers.axil_port import Response
+from tactile_depth.chip.registers.axil_port import Response, strobed_bits
 from tactile_depth.chip.registers.register_map import MAP, WORD
 
 CLIENT = {  # PROTOCOL of a core with the port
@@ -77,6 +78,45 @@ async def response_of(transaction: Awaitable) -> Response:
     except AXIProtocolError as error:
         return Response(error.xresp)
     return Response.OKAY
+
+
+async def check_waits(dut: Any, random: Random) -> None:
+    """Write the register TIMEOUT with address and word in either order: each is taken once, and responses stay until
+    they are taken; bytes without a strobe keep their value."""
+    pins = {name: getattr(dut, f"s_axil_{name}") for name in ("awready", "wready", "arready", "bvalid", "rvalid")}
+    dut.s_axil_bready.value = dut.s_axil_rready.value = 0
+
+    async def stays(clocks: int = 3, **wanted: Any) -> None:
+        for _ in range(clocks):
+            await RisingEdge(dut.clk)
+            got = {name: int(pin.value) for name, pin in pins.items()}
+            assert got == {"awready": 1, "wready": 1, "arready": 1, "bvalid": 0, "rvalid": 0} | wanted
+
+    held = 0
+    for strobe in (15, *range(16), 15):
+        data = random.getrandbits(32)
+        beats = {"aw": {"awaddr": OFFSET["TIMEOUT"]}, "w": {"wdata": data, "wstrb": strobe}}
+        first, second = beats if strobe & 1 else reversed(beats)
+        await stays()
+        await present(dut, first, **beats[first])
+        await RisingEdge(dut.clk)
+        await stays(**{f"{first}ready": 0})
+        await present(dut, second, **beats[second])
+        while not dut.s_axil_bvalid.value:
+            await RisingEdge(dut.clk)
+        await stays(awready=0, wready=0, bvalid=1)
+        assert await take(dut, "b", 2) == Response.OKAY
+        mask = strobed_bits(strobe)
+        held = data & mask | held & ~mask
+        await present(dut, "ar", araddr=OFFSET["TIMEOUT"])
+        await RisingEdge(dut.clk)
+        for _ in range(4):
+            await stays(1, arready=0, rvalid=1)
+            assert int(dut.s_axil_rdata.value) == held
+        assert await take(dut, "r", 2) == Response.OKAY
+    assert await write(dut, OFFSET["GRID"], 0) == Response.SLVERR
+    assert await write(dut, OFFSET["TIMEOUT"], 0) == Response.OKAY
+    assert await read(dut, OFFSET["TIMEOUT"]) == (0, Response.OKAY)
 
 
 class Master:

@@ -284,6 +284,21 @@ def test_what_is_saved_is_read_again(tmp_path: Path) -> None:
             assert np.array_equal(old, new) if isinstance(old, np.ndarray) else old == new, part.name
 
 
+@pytest.mark.parametrize("key", ["pixel_pitch_mm", "camera_size", "corrections", "untouched"])
+def test_a_file_that_was_changed_after_the_fit_has_no_error(tmp_path: Path, key: str) -> None:
+    path = tmp_path / "mini.npz"
+    load("gelsight-mini").save(path)
+    with np.load(path) as held:
+        changed = dict(held)
+    assert load(path).height_errors
+    changed[key] = (changed[key] / 2).astype(changed[key].dtype)
+    np.savez(path, **changed)
+    with pytest.warns(InputWarning, match="was changed after the fit: its error does not hold any more"):
+        sensor = load(path)
+    assert not sensor.height_errors
+    assert sensor.verdict is None
+
+
 def test_a_calibration_without_a_camera_is_not_saved(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no camera in it"):
         synthetic().save(tmp_path / "copy.npz")

@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from unittest.mock import Mock
@@ -20,12 +19,8 @@ from PIL import Image
 import tactile_depth as td
 from tactile_depth.base.files import RECORD
 from tactile_depth.base.interruption import SIGNALS
-from tactile_depth.cli.depth import summary
-from tactile_depth.cli.drawing import DARK, OUTSIDE, Scale, round_number
 from tactile_depth.cli.main import main
-from tactile_depth.cli.overview import draw_overview
-from tactile_depth.cli.ply import triangles
-from tactile_depth.depth.pipeline import THRESHOLD_MM
+from tactile_depth.sensor.presets import THRESHOLD_MM
 from tests.drawn_light import as_picture, no_contact, pressed
 from tests.real_data import FOLDER, needs_real_data
 
@@ -198,6 +193,24 @@ def test_a_second_run_removes_the_files_of_the_first_and_nothing_else(tmp_path: 
     assert {path.name for path in tmp_path.iterdir()} == {
         RECORD, "notes.txt", "depth_mm.npy", "depth_um.png", "depth.ply", "overview.png", "report.json"
     }  # fmt: skip
+
+
+def test_a_second_picture_of_one_name_does_not_replace_the_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, inputs: Any, arguments: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "press.png").write_bytes((inputs / "press.png").read_bytes())
+    for picture, status in (("press.png", 0), ("press.png", 0), (f"{inputs}/press.png", 2)):
+        assert main(["depth", picture, *arguments]) == status
+    assert "press-depth holds results of press.png: give another folder as --out" in capsys.readouterr().err
+
+
+def test_empty_paths_are_refused(inputs: Any, arguments: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    """Variables of a shell that are not set would name the present folder."""
+    press = [f"{inputs}/press.png", *arguments]
+    for words in (["", *arguments], [*press, "--reference", ""], [*press, "--out", ""]):
+        assert main(["depth", *words]) == 2
+        assert "is empty: give a" in capsys.readouterr().err
 
 
 def test_a_file_of_others_is_not_replaced(tmp_path: Path, inputs: Any, depth: Any) -> None:
@@ -453,45 +466,3 @@ def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) 
         main(["--version"])
     assert ended.value.code == 0
     assert capsys.readouterr().out == f"tactile-depth {td.__version__}\n"
-
-
-# Mesh and drawing.
-
-
-def test_triangles_face_up() -> None:
-    index = triangles(3, 4)
-    y, x = np.divmod(np.arange(12), 4)
-    points = np.stack([x, -y, np.zeros(12)], axis=-1).astype(float)
-    a, b, c = (points[index[:, corner]] for corner in range(3))
-    np.testing.assert_array_equal(np.cross(b - a, c - a)[:, 2], np.ones(12))
-    assert sorted({*index.ravel().tolist()}) == list(range(12))
-
-
-def test_colours_run_from_dark_blue_to_yellow() -> None:
-    np.testing.assert_array_equal(Scale(0, 2).colours(np.array([-1.0, 0.0, 2.0, 3.0]))[:, 0], [68, 68, 253, 253])
-    for limit, step in ((0.99, 0.5), (1.0, 1.0), (4.9, 2.0), (70, 50), (0.021, 0.02)):
-        assert round_number(limit) == pytest.approx(step)
-
-
-@pytest.mark.parametrize(("count", "pixels"), [(1, "1 pixel"), (2, "2 pixels")])
-def test_the_line_on_a_picture_counts_doubtful_pixels(inputs: Any, count: int, pixels: str) -> None:
-    result = replace(expected(inputs), fitted_slope=np.inf, saturations={"depth": count})
-    dark = np.arange(result.dark.size).reshape(result.dark.shape) < count
-    line = summary(replace(result, dark=dark))
-    assert line.endswith(f"; {pixels} without light; {pixels.replace('pixel', 'value')} clipped")
-
-
-def test_doubtful_pixels_are_marked_in_the_overview(inputs: Any) -> None:
-    result = expected(inputs)
-    image = np.array(Image.open(inputs / "press.png"))
-
-    def marked(result: Any, colour: Any) -> Any:
-        return (np.array(draw_overview(image, result, "")) == colour).all(axis=-1)[:400].sum()
-
-    dark = np.zeros_like(result.dark)
-    dark[2, 3] = True
-    cell = (480 // 32) ** 2
-    assert [marked(result, colour) for colour in (OUTSIDE, DARK)] == [0, 0]
-    assert marked(replace(result, dark=dark), DARK) == cell
-    steep = replace(result, fitted_slope=0.4)
-    assert marked(steep, OUTSIDE) == cell * steep.outside.sum() > 0

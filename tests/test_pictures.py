@@ -42,6 +42,11 @@ def test_pil_images_of_another_mode_are_refused(pipeline: td.Pipeline, drawn: td
             refused()
 
 
+def test_a_mask_is_not_lost(pipeline: td.Pipeline, drawn: td.Sample) -> None:
+    with pytest.raises(td.InputError, match=r"a masked array, whose mask would be lost: give it after \.filled"):
+        pipeline(np.ma.masked_equal(drawn.image, 0))
+
+
 def test_a_stream_that_is_none_is_refused(pipeline: td.Pipeline, drawn: td.Sample) -> None:
     refusals: list[Any] = [
         lambda: pipeline(drawn.image, stream="x"),  # type: ignore[arg-type]

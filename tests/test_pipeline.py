@@ -265,7 +265,7 @@ def test_the_contact_in_millimetres(pipeline: Any, ball: Any) -> None:
 
 def test_the_area_of_a_stream_follows_the_last_peak(ball: Any) -> None:
     """In a stream the area threshold is half the peak of the frame before; a picture by itself is one that stays."""
-    pipeline = td.Pipeline(ball.sensor, ball.reference, grid=SMALL, light_gains=False, area_threshold_mm=10)
+    pipeline = td.Pipeline(ball.sensor, ball.reference, grid=SMALL, light_gains=False, area_threshold_mm=4)
     first, second = (result.contact for result in pipeline.stream([ball.image, ball.image]))
     assert first.touching
     assert (first.area_mm2, first.centroid_px) == (0, first.peak_px)
@@ -409,7 +409,8 @@ def test_the_error_of_the_calibration_comes_with_the_result() -> None:
         ({"threshold_mm": 0.0}, "threshold_mm=0.0"),
         ({"threshold_mm": None}, "threshold_mm=None: accepted is a depth above 0"),
         ({"threshold_mm": 1e3}, "threshold_mm=1000.0"),
-        ({"area_threshold_mm": -0.1}, "area_threshold_mm=-0.1: accepted is a depth, 0 or more"),
+        ({"area_threshold_mm": -0.1}, "area_threshold_mm=-0.1: accepted is a depth of 0 or more"),
+        ({"area_threshold_mm": 300}, "area_threshold_mm=300: accepted is .* within the depth range of"),
         ({"reference": None}, "sample needs a reference"),
         ({"reference": "none.png"}, "none.png: no such file or folder"),
         ({"reference": 3}, "reference are int: accepted is a uint8 array or a path"),
@@ -421,6 +422,15 @@ def test_the_error_of_the_calibration_comes_with_the_result() -> None:
 def test_a_pipeline_that_cannot_be_is_refused(ball: Any, choices: Any, message: Any) -> None:
     with pytest.raises(td.InputError, match=message):
         td.Pipeline(**{"sensor": ball.sensor, "reference": ball.reference, **choices})
+
+
+def test_an_upright_grid_of_wide_pictures_is_warned_of(ball: Any, recwarn: pytest.WarningsRecorder) -> None:
+    for grid in ((64, 64), (32, 64)):
+        td.Pipeline(ball.sensor, ball.reference, grid=grid)
+    assert not recwarn
+    message = r"grid=\(64, 32\) is rows and columns, and shows 0\.38 of the width .*give grid=\(32, 64\)"
+    with pytest.warns(td.InputWarning, match=message):
+        td.Pipeline(ball.sensor, ball.reference, grid=(64, 32))
 
 
 @pytest.mark.parametrize(

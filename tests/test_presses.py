@@ -18,7 +18,7 @@ from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate import circles
 from tactile_depth.calibrate.circles import find_circle
 from tactile_depth.calibrate.fitting import fit_presses
-from tactile_depth.calibrate.press_folder import read_presses
+from tactile_depth.calibrate.press_folder import CIRCLE, read_presses
 from tactile_depth.calibrate.press_pictures import camera_pitch_mm, gather
 from tactile_depth.calibrate.presses import GridPress, to_grid
 from tests.ball_presses import (
@@ -234,7 +234,7 @@ OUTSIDE = "03.png: the press is outside the picture: left out"
     ("picture", "changed", "message"),
     [
         (drawn([], 1)[:-2], {}, "03.png: 110 x 160 pixels, but the background has 112 x 160: left out"),
-        (drawn([], 99), {"centre_x_px": "", "centre_y_px": ""}, "03.png: no circle to be seen: left out"),
+        (drawn([], 99), dict.fromkeys(CIRCLE, ""), "03.png: no circle to be seen: left out"),
         *((None, {"centre_x_px": centre}, OUTSIDE) for centre in (-40.0, 400.0, -19.0)),
         (
             None,
@@ -283,12 +283,14 @@ def test_a_frame_that_is_missing_or_damaged_is_left_out(folder: Path) -> None:
         ({"centre_x_px": "inf"}, "x=inf"),
         ({"frame": "../03.png"}, "no path in the folder"),
         ({"frame": "02.png"}, "02.png a second time"),
+        ({"contact_radius_px": ""}, "a circle without all of centre_x_px, centre_y_px, contact_radius_px: give all"),
+        ({"ball_diameter_mm": 6.5}, "diameter_mm is 8, but ball_diameter_mm 6.5: give one of both"),
     ],
 )
 def test_a_bad_line_is_left_out(folder: Path, changed: Any, message: Any) -> None:
     rows = table_rows()
     rows[3] |= changed
-    write_table(folder, rows)
+    write_table(folder, rows, [*COLUMNS, *(changed.keys() - set(COLUMNS))])
     count, (note,) = used(folder)
     assert count == 23
     assert f"{folder}/presses.csv: line 5 left out" in note
@@ -300,6 +302,33 @@ def test_unknown_columns_are_named_and_not_used(folder: Path) -> None:
     count, (note,) = used(folder)
     assert count == 24
     assert f"{folder}/presses.csv: unknown columns force_N: not used" in note
+
+
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_a_table_that_is_not_separated_by_commas_is_named(folder: Path, separator: str) -> None:
+    table = folder / "presses.csv"
+    table.write_text(table.read_text().replace(",", separator))
+    assert "needed are frame and diameter_mm, each column once, separated by commas" in refused(lambda: gather(folder))
+
+
+def exchanged(image: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(image[..., ::-1])
+
+
+def zoomed(image: np.ndarray) -> np.ndarray:
+    return np.asarray(Image.fromarray(image[6:-6, 8:-8]).resize(image.shape[1::-1]))
+
+
+@pytest.mark.parametrize(
+    ("edit", "message", "left"),
+    [(exchanged, "red and blue are exchanged", 0), (zoomed, "by its light it shows 0.9", 24)],
+)
+def test_presses_that_do_not_fit_the_background_are_named(folder: Path, edit: Any, message: str, left: int) -> None:
+    for row in table_rows():
+        Image.fromarray(edit(pictures()[row["frame"]])).save(folder / row["frame"])
+    count, notes = used(folder)
+    assert count == left
+    assert f"00.png: {message}" in notes[0]
 
 
 def test_diameters_in_another_unit_are_doubted(folder: Path) -> None:

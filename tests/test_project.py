@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files around the code: one version of each tool, one address of the repository, and a time limit that ends a hang."""
 
+import ast
 import os
 import re
 import subprocess
@@ -27,6 +28,8 @@ VERSIONS = (  # files that have the version of the latest release, how each writ
     ("examples/ros2/package.xml", r"<version>(.*)</version>", 1),
     ("examples/ros2/setup.py", r'version="(.*)"', 1),
 )
+PYTHON = ("commands", "formal", "models", "tb", "tests")
+LONGEST_FILE, LONGEST_FUNCTION = 500, 80  # lines, by CONTRIBUTING.md
 BENCH = """
 import cocotb
 from cocotb.triggers import Timer
@@ -47,6 +50,15 @@ def test_a_loop_in_zero_time(tmp_path, monkeypatch):
     simulator.build("icarus", "loop", [tmp_path / "loop.sv"], {{}}, tmp_path)
     simulator.run("loop", "bench_of_loop", tmp_path, tmp_path, simulator="icarus", seed=1)
 """
+
+
+def test_files_and_functions_of_python_are_short() -> None:
+    for path in (path for folder in PYTHON for path in (ROOT / folder).rglob("*.py")):
+        text = path.read_text()
+        assert len(text.splitlines()) <= LONGEST_FILE, path
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and node.end_lineno:
+                assert node.end_lineno - node.lineno < LONGEST_FUNCTION, (path, node.name)
 
 
 def test_a_tool_has_one_version() -> None:

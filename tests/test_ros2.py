@@ -4,6 +4,7 @@
 import importlib
 import math
 import sys
+from dataclasses import replace
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
@@ -61,6 +62,8 @@ def test_heights_and_points_are_in_metres(conversions: Any, pipeline: Any, ball:
     pitch = result.pixel_pitch_mm / 1000
     np.testing.assert_allclose(xyz[3, 5, :2], [5 * pitch, 3 * pitch], rtol=1e-6)
     assert cloud["is_dense"]
+    wide = conversions.points(replace(result, pixel_aspect=1.5))
+    np.testing.assert_allclose(np.frombuffer(wide["data"], "<f4").reshape(xyz.shape), xyz * [1.5, 1, 1], rtol=1e-6)
 
 
 def test_the_contact_is_in_si_units_in_the_documented_order(conversions: Any, pipeline: Any, ball: Any) -> None:
@@ -99,6 +102,7 @@ class Node:
         self.published: dict[Any, Any] = {}
         self.services: dict[Any, Any] = {}
         self.errors: list[Any] = []
+        self.warnings: list[str] = []
 
     def declare_parameter(self, name: str, default: Any) -> Any:
         return SimpleNamespace(value=self.parameters.get(name, default))
@@ -114,7 +118,11 @@ class Node:
         self.services[name] = callback
 
     def get_logger(self) -> Any:
-        return SimpleNamespace(info=lambda _: None, error=lambda text, **_: self.errors.append(text))
+        return SimpleNamespace(
+            info=lambda _: None,
+            error=lambda text, **_: self.errors.append(text),
+            warning=lambda text, **_: self.warnings.append(text),
+        )
 
 
 @pytest.fixture
@@ -216,6 +224,18 @@ def test_a_bad_picture_is_logged_and_the_node_goes_on(make_node: Any, files: Any
     assert node.errors == ["encoding 'mono8': accepted are rgb8, bgr8: convert it with image_proc"]
     node.receive(message(ball.image))
     assert len(node.published["height"]) == 1
+
+
+def test_doubts_of_a_picture_are_logged(make_node: Any, files: Any, ball: Any) -> None:
+    node = make_node(calibration=f"{files}/sensor.npz", reference=f"{files}/background.png")
+    node.receive(message(ball.image))
+    assert not node.warnings
+    bright = ball.image.copy()
+    bright[:, : bright.shape[1] // 50] = 255
+    with pytest.warns(td.InputWarning):
+        node.receive(message(bright))
+    (warning,) = node.warnings
+    assert "of its pixels are clipped" in warning
 
 
 def test_a_reference_of_no_known_sensor_is_tried_again(make_node: Any, ball: Any) -> None:

@@ -17,13 +17,14 @@ from PIL import Image
 import tactile_depth as td
 from tactile_depth.base.errors import InputError, InputWarning
 from tactile_depth.calibrate.fitting import fit_presses
+from tactile_depth.calibrate.judgement import _background
 from tactile_depth.calibrate.press_folder import HEAD
 from tactile_depth.calibrate.press_pictures import gather
 from tactile_depth.calibrate.presses import GridPresses, to_grid
 from tactile_depth.cli.circle_page import circle_page
 from tactile_depth.cli.main import main
 from tactile_depth.sensor.verdict import Verdict
-from tests.ball_presses import PITCH, places, real_folder, table_rows, write_folder, write_table
+from tests.ball_presses import PITCH, pictures, places, real_folder, table_rows, write_folder, write_table
 
 
 def verdict(presses: GridPresses) -> Verdict:
@@ -96,6 +97,32 @@ def test_markers_on_the_gel_are_named(presses: GridPresses) -> None:
     assert "markers: dark spots cover 6 % of the gel" in str(found)
 
 
+def touched(presses: GridPresses, number: int) -> bool:
+    """Return True if one press as background of all others is named."""
+    views = presses.views[:number] + presses.views[number + 1 :]
+    return _background(replace(presses, views=views, background_on_grid=presses.views[number].frame))[0] == "bad"
+
+
+def test_a_background_in_which_something_touches_is_named(presses: GridPresses) -> None:
+    assert all(touched(presses, number) for number in range(len(presses.views)))
+    found = verdict(replace(presses, views=presses.views[1:], background_on_grid=presses.views[0].frame))
+    assert found.grade == "bad"
+    assert re.search(r"a touched background: it differs by \d\d % from the median of the presses", str(found))
+
+
+def beside(presses: GridPresses, number: int, count: int = 8) -> GridPresses:
+    """Return the presses nearest to one."""
+    at = presses.views[number].press
+    order = sorted(presses.views, key=lambda view: np.hypot(view.press.x - at.x, view.press.y - at.y))
+    return replace(presses, views=tuple(order[:count]))
+
+
+def test_presses_at_one_position_do_not_make_a_background_touched(presses: GridPresses) -> None:
+    for number in range(len(presses.views)):
+        assert _background(beside(presses, number)) == ("good", "")
+        assert _background(beside(presses, number, 3)) == ("good", "")
+
+
 def test_the_best_model_is_that_of_the_smallest_error_by_all_figures(presses: GridPresses) -> None:
     fit = fit_presses(presses, ("lut", "quadratic"))
     scores = fit.evaluation.scores
@@ -122,7 +149,10 @@ def test_a_bad_calibration_is_refused_unless_asked_for_and_told_when_it_is_loade
     assert {path.name for path in tmp_path.glob("mine*")} == {f"mine-circles.{kind}" for kind in ("csv", "html", "png")}
     assert main([*words, "--keep-bad"]) == 0
     with pytest.warns(InputWarning, match=r"mine.npz: the verdict of its fit is bad; .*: calibrate again"):
-        assert td.load(out).verdict is not None
+        sensor = td.load(out)
+    result = td.Pipeline(sensor, pictures()["background.png"])(pictures()["00.png"])
+    doubt = "the verdict of the calibration is bad: heights may be wrong: calibrate again"
+    assert (result.warnings, result.height_error) == ((doubt,), None)
     with pytest.warns(InputWarning, match="the verdict of the fit is bad; likely cause"):
         td.fit(folder, pitch_mm=PITCH, models="quadratic", quiet=True)
 
@@ -184,6 +214,8 @@ def test_real_presses_are_good_and_any_half_of_them_is_usable() -> None:
     found = verdict(presses)
     assert found.grade != "bad"
     assert "pitch not checked" not in str(found)
+    assert all(touched(presses, number) for number in range(0, 45, 4))
+    assert all(_background(beside(presses, number)) == ("good", "") for number in range(0, 45, 4))
 
 
 @pytest.mark.parametrize(("pitch_mm", "view"), [(1.2 * 0.0634, None), (0.0634 / 1.2, None), (0.0634, (1.0, 1.0))])

@@ -21,7 +21,7 @@ from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.registers.register_map import CAMERA_MAP
 from tactile_depth.chip.resampling import resampling
 from tactile_depth.cli.main import main
-from tactile_depth.device.tables import window_doubt
+from tactile_depth.device.tables import window_doubts
 from tactile_depth.pictures.grid_sampler import middle
 from tactile_depth.sensor.sensor import equal_areas, lighting
 from tactile_depth.sensor.view import completed, share_of, shown, view_of
@@ -313,8 +313,8 @@ def test_a_device_with_another_window_is_named(window: Any, right: bool) -> None
             return [registers.values[{r.offset: r.name for r in CAMERA_MAP}[address]] for address in addresses]
 
     line: Any = Line()
-    doubt = window_doubt(line, pipeline)
-    assert (doubt is None) == right
-    if doubt is not None:
+    doubts = window_doubts(line, pipeline)
+    assert len(doubts) == (not right)
+    for doubt in doubts:
         assert "gelsight-mini is for 91,68,457,343 of a picture of 640 x 480" in str(doubt)
         assert "build the device with WINDOW=91,68,457,343" in str(doubt)

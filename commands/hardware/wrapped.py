@@ -17,10 +17,10 @@ from commands.hardware import synthesis
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.hardware_files import write_files
 from tactile_depth.depth.make_words import make_words
-from tactile_depth.depth.pipeline import AREA_THRESHOLD_MM, THRESHOLD_MM
 from tactile_depth.depth.result import settings_of, thresholds_of
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames
+from tactile_depth.sensor.presets import AREA_THRESHOLD_MM, THRESHOLD_MM
 
 PRESET = "chip"
 CHOICES = (*run_request.CONFIGURING, *run_request.CAMERA)

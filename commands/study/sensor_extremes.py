@@ -23,10 +23,10 @@ from tactile_depth.base import files
 from tactile_depth.base.errors import InputError, InputWarning
 from tactile_depth.chip.configuration import STORED, WIDTHS, WORDS, Configuration
 from tactile_depth.chip.registers.register_map import REGISTERS
-from tactile_depth.depth.pipeline import THRESHOLD_MM, Pipeline
+from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import camera_scale
-from tactile_depth.sensor.presets import CHIP
+from tactile_depth.sensor.presets import CHIP, THRESHOLD_MM
 from tactile_depth.sensor.sensor import Sensor
 
 RESULTS = ("extremes.json",)

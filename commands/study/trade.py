@@ -51,12 +51,12 @@ from tactile_depth.chip.contact import threshold_comparator
 from tactile_depth.chip.latency import last_pixel_to_first_depth
 from tactile_depth.chip.limits import most_lanes
 from tactile_depth.chip.poisson.cores import fastest
-from tactile_depth.depth.pipeline import AREA_THRESHOLD_MM, THRESHOLD_MM
 from tactile_depth.depth.result import Recorder, settings_of
 from tactile_depth.depth.twin import Twin
 from tactile_depth.pictures.frames import Frames, load_frames, on_grid
 from tactile_depth.sensor.built_in import read
 from tactile_depth.sensor.calibration_file import PIXEL_PITCHES_MM
+from tactile_depth.sensor.presets import AREA_THRESHOLD_MM, THRESHOLD_MM
 from tactile_depth.sensor.sensor import Sensor
 
 DEFAULT_OUT = ROOT / "build" / "trade"

@@ -233,13 +233,8 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
 
     default = next((at for solver in COLUMNS if build(at := Widths(solver, *DEFAULT)) is not None), None)
     counted, base = _print_choice(search, best, default, limits)
-    print(f"proof in RTL, on {len(proving.pixels)} frames that it was not tuned on:")
-    status = sim.run(replace(shaped(best), out=out / "proof"), proving)
-    report = json.loads((out / "proof" / "report.json").read_text())
-    proven = limits.judgement.of(report["rms_percent_of_peak"])
-    if status or proven > limits.tolerance:
-        misses = f"it misses TOLERANCE={limits.tolerance:g} on frames that it was not tuned on ({proven:.4f} % of peak)"
-        print("the proof failed: see above" if status else f"{misses}: give more frames or a smaller tolerance")
+    proven = _proven(shaped(best), out / "proof", proving, limits)
+    if proven is None:
         return 1
     report = {
         "tolerance_percent": limits.tolerance,
@@ -257,6 +252,22 @@ def main(limits: Limits, chosen: Annotated[tuple[run_request.Request, list[str]]
     error = f"{limits.judgement.name} {proven:.4f} % of peak, within {limits.tolerance:.4g}"
     print(f"proven: {error}; make sim CONFIG={os.path.relpath(out / 'config.json')}")
     return 0
+
+
+def _proven(request: run_request.Request, out: Path, proving: Frames, limits: Limits) -> float | None:
+    """Return the error of the RTL on frames that it was not tuned on; None, and print why, if the proof fails."""
+    print(f"proof in RTL, on {len(proving.pixels)} frames that it was not tuned on:")
+    status = sim.run(replace(request, out=out), proving)
+    report = json.loads((out / "report.json").read_text())
+    error = limits.judgement.of(report["rms_percent_of_peak"])
+    if status:
+        print("the proof failed: see above")
+    elif error > limits.tolerance:
+        misses = f"it misses TOLERANCE={limits.tolerance:g} on frames that it was not tuned on ({error:.4f} % of peak)"
+        print(f"{misses}: give more frames or a smaller tolerance")
+    else:
+        return error
+    return None
 
 
 def _write(out: Path, documents: dict[str, Any]) -> None:

@@ -20,6 +20,7 @@ import re
 import subprocess
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from commands.common import repository
@@ -83,6 +84,44 @@ class Graph:
     latches: list[tuple[int, int, int]]  # literal, next, start: 0, 1, or the literal itself for any value
     outputs: dict[str, int]
     ands: list[tuple[int, int, int]]
+
+    @cached_property
+    def gates_behind(self) -> dict[int, list[int]]:
+        """The positions of the gates that read each node."""
+        return readers(operands for _, *operands in self.ands)
+
+    @cached_property
+    def latches_behind(self) -> dict[int, list[int]]:
+        """The positions of the latches that load each node."""
+        return readers([following] for _, following, _ in self.latches)
+
+    def reached(self, nodes: Iterable[int]) -> list[tuple[int, int, int]]:
+        """Return the gates whose value can depend on nodes without a latch between, in the order of the graph."""
+        found: set[int] = set()
+        left = list(nodes)
+        while left:
+            new = set(self.gates_behind.get(left.pop(), ())) - found
+            found |= new
+            left += [self.ands[position][0] for position in new]
+        return [self.ands[position] for position in sorted(found)]
+
+    def loaded(self, nodes: Iterable[int]) -> list[tuple[int, int, int]]:
+        """Return the latches that load nodes."""
+        return [self.latches[position] for node in nodes for position in self.latches_behind.get(node, ())]
+
+
+def readers(read_by: Iterable[Iterable[int]]) -> dict[int, list[int]]:
+    """Return, for each node, the positions of those that read one of its literals."""
+    found: dict[int, list[int]] = {}
+    for position, literals in enumerate(read_by):
+        for literal in literals:
+            found.setdefault(literal & ~1, []).append(position)
+    return found
+
+
+def read(values: Mapping[int, int], literal: int) -> int:
+    """Return the value of a literal, given those of the nodes."""
+    return values[literal & ~1] ^ (literal & 1)
 
 
 def environment(core: str, folder: Path) -> str:
@@ -199,6 +238,8 @@ class Miter(Gates):
         self.started = next(literals)
         self.latch, self.twin = ({latch[0]: next(literals) for latch in source.latches} for _ in range(2))
         super().__init__(next(literals) // 2)
+        self.apart: set[int] = set()  # latches with a second copy
+        self.next: dict[int, int] = {}  # of the latches of both copies
         self._build()
 
     def state(self, latch: int, literal: int, start: int) -> int:
@@ -208,72 +249,57 @@ class Miter(Gates):
         return self.either((self.both(self.started, latch), self.both(self.started ^ 1, self.power_up[literal])))
 
     def _build(self) -> None:
-        source = self.source
+        value = self._first()
+        other = self._second(value)
+        outputs = self.source.outputs
+        wrong: dict[str | int, int] = {}  # of bits of outputs, and of latches
+        for name, literal in outputs.items():
+            port = name.split("[")[0]
+            if port == HOLDS or port.startswith("looked_at_"):
+                continue
+            looked_at = read(value, outputs[f"looked_at_{port}"])
+            wrong[name] = self.both(looked_at, self.differ(read(value, literal), read(other, literal)))
+        for literal, following, _ in self.source.latches:
+            if literal not in self.apart:
+                wrong[literal] = self.differ(read(value, following), read(other, following))
+            else:
+                self.next[self.twin[literal]] = read(other, following)
+            self.next[self.latch[literal]] = read(value, following)
+        self.wrong = {place: different for place, different in wrong.items() if different}
+        self.bad = self.either(self.wrong.values())
+
+    def _first(self) -> dict[int, int]:
+        """Build the copy without the mutant; return the literal of each node."""
         value = {0: 0} | self.input_of | dict.fromkeys(self.selector, 0)
-
-        def read(values: Mapping[int, int], literal: int) -> int:
-            return values[literal & ~1] ^ (literal & 1)
-
-        if RESET in source.inputs:  # the first cycle is a reset
-            literal = source.inputs[RESET]
+        if RESET in self.source.inputs:  # the first cycle is a reset
+            literal = self.source.inputs[RESET]
             value[literal] = self.either((self.input_of[literal], self.started ^ 1))
-        for literal, _, start in source.latches:
+        for literal, _, start in self.source.latches:
             value[literal] = self.state(self.latch[literal], literal, start)
-        for out, a, b in source.ands:
+        for out, a, b in self.source.ands:
             value[out] = self.both(read(value, a), read(value, b))
-        # The part of the second copy that can differ: logic that depends on the selector, then logic that it reaches.
-        users: dict[int, list[int]] = {}
-        for index, (_, *operands) in enumerate(source.ands):
-            for operand in operands:
-                users.setdefault(operand & ~1, []).append(index)
-        loaded: dict[int, list[int]] = {}
-        for index, (_, following, _) in enumerate(source.latches):
-            loaded.setdefault(following & ~1, []).append(index)
-        apart: set[int] = set()  # latches with a second copy
-        changed = [literal for literal, bit in self.selector.items() if self.number >> bit & 1]
-        other = value | dict.fromkeys(changed, 1)
+        return value
+
+    def _second(self, value: Mapping[int, int]) -> dict[int, int]:
+        """Build what differs in the copy with the mutant: logic behind the selector, then what that logic reaches."""
+        changed = {literal for literal, bit in self.selector.items() if self.number >> bit & 1}
+        other = {**value, **dict.fromkeys(changed, 1)}
         while changed:
-            reached: set[int] = set()
-            stack = list(changed)
-            while stack:  # gates whose value may differ
-                for index in users.get(stack.pop(), ()):
-                    if index not in reached:
-                        reached.add(index)
-                        stack.append(source.ands[index][0])
             moved = set(changed)
-            for index in sorted(reached):
-                out, a, b = source.ands[index]
+            for out, a, b in self.source.reached(changed):
                 if a & ~1 in moved or b & ~1 in moved:
                     new = self.both(read(other, a), read(other, b))
                     if new != other[out]:
                         other[out] = new
                         moved.add(out)
-            changed = []
-            for node in moved:
-                for index in loaded.get(node, ()):
-                    literal, following, start = source.latches[index]
-                    may_differ = literal not in apart and (self.allowed is None or literal in self.allowed)
-                    if may_differ and read(other, following) != read(value, following):
-                        apart.add(literal)
-                        other[literal] = self.state(self.twin[literal], literal, start)
-                        changed.append(literal)
-        self.apart = apart
-        wrong: dict[str | int, int] = {}  # of bits of outputs, and of latches
-        for name, literal in source.outputs.items():
-            port = name.split("[")[0]
-            if port == HOLDS or port.startswith("looked_at_"):
-                continue
-            looked_at = read(value, source.outputs[f"looked_at_{port}"])
-            wrong[name] = self.both(looked_at, self.differ(read(value, literal), read(other, literal)))
-        for literal, following, _ in source.latches:
-            if literal not in apart:
-                wrong[literal] = self.differ(read(value, following), read(other, following))
-        self.wrong = {place: different for place, different in wrong.items() if different}
-        self.bad = self.either(self.wrong.values())
-        self.next = {self.latch[literal]: read(value, following) for literal, following, _ in source.latches}
-        self.next.update(
-            {self.twin[literal]: read(other, following) for literal, following, _ in source.latches if literal in apart}
-        )
+            changed = set()
+            for literal, following, start in self.source.loaded(moved):
+                may_differ = literal not in self.apart and (self.allowed is None or literal in self.allowed)
+                if may_differ and read(other, following) != read(value, following):
+                    self.apart.add(literal)
+                    other[literal] = self.state(self.twin[literal], literal, start)
+                    changed.add(literal)
+        return other
 
     def write(self, path: Path, outputs: Collection[int]) -> None:
         """Write a binary AIGER file with literals as outputs."""

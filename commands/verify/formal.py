@@ -111,7 +111,8 @@ def cone_script(cone: Cone, config: Configuration) -> str:
         f"prep -flatten -top {cone.core}",
         "memory_collect",
         # td_node_map and contact_events delay values and position in one memory: as registers, each bit is separate.
-        "memory_map t:$mem_v2 */*u_map.u_delay.*words */*u_events.u_delay.*words %u %i",
+        # dst_inverse delays a mark of the frame in one: nothing else is behind its registers.
+        "memory_map t:$mem_v2 */*u_map.u_delay.*words */*u_events.u_delay.*words */*u_alone.*words %u %u %i",
         "opt_clean",
         "simplemap",
         "opt_clean",

@@ -47,6 +47,7 @@ PROOFS = tuple(
 )
 
 
+GAINS_TAKEN = 5  # slots from the first pixel of a frame to the one in which its gains are taken
 OUTPUTS = ["out_valid", "out_pixel", "out_last", "out_user"]
 
 
@@ -63,6 +64,7 @@ class Bench:
         pins = {"in_samples": self.channels * self.width, "in_colour": 2, "in_row_start": 1, "in_frame_start": 1}
         self.slots = Slots(pins)
         self.gains = UNITY
+        self.taken: dict[int, int] = {}  # slot to the gains that a frame takes there
         self.rng = np.random.default_rng(cocotb.RANDOM_SEED)
         self.stimuli: list[Slot] = []
         self.expected: list[Any] = []
@@ -98,11 +100,13 @@ class Bench:
             place += slot["in_valid"]
             if slot["in_valid"] and completes[place]:
                 self.leaves(means[self.place].tolist())
+            if slot["in_valid"] and place == 0:
+                self.taken[len(self.stimuli) + GAINS_TAKEN] = packed(self.gains, GAIN.width)
             self.append(slot)
 
     def append(self, slot: Slot) -> None:
-        """Append a slot, with the gains of its frame."""
-        self.stimuli.append(slot | {"in_gains": packed(self.gains, GAIN.width)})
+        """Append a slot. Gains move with every slot, and hold still for no frame."""
+        self.stimuli.append(slot | {"in_gains": self.slots.random.getrandbits(3 * GAIN.width)})
 
     def leaves(self, colours: list[int], abort: int = 0) -> None:
         last = int((self.place + 1) % self.columns == 0) ^ abort
@@ -123,6 +127,8 @@ class Bench:
     async def check(self, pause: float = 0.0) -> None:
         for _ in range(LATENCY + 1):
             self.append(self.slots.idle())
+        for slot, gains_of_frame in self.taken.items():
+            self.stimuli[slot]["in_gains"] = gains_of_frame
         outputs = await drive(self.dut, self.stimuli, OUTPUTS, pause)
         aborts = {word[0] for word in self.expected if word[1] < 0}
         got = []

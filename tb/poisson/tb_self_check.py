@@ -163,6 +163,14 @@ async def single_words(dut: Any) -> None:
 
 
 @cocotb.test
+async def few_words(dut: Any) -> None:
+    """Send frames that are zero but for a few words, whose sums no other hides."""
+    chance = np.random.default_rng(cocotb.RANDOM_SEED)
+    f, z = (words * (chance.random(words.shape) < 2 / words[0].size) for words in random_frames(dut, 8 * FRAMES, None))
+    await check(dut, f, z)
+
+
+@cocotb.test
 async def near_the_bound(dut: Any) -> None:
     """Send frames whose residuals are the bound, one more and one less, from either side of zero."""
     rows, columns, in_width = parameters(dut, "Rows", "Columns", "InWidth")

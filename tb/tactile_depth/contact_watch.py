@@ -41,6 +41,7 @@ class ContactWatch:
         self.comparator = ThresholdComparator()
         self.events = ContactEvents(config.rows, config.columns, config.data_width, config.solver == "tridiagonal")
         self.registers = RegisterMirror(dut, *SETTINGS, "CONTROL")
+        self.late = dict(self.registers.words)  # of the cycle before
         self.raised: list[int] = []
         self.packets: list[list[int]] = []
         self.settings: list[Settings] = []  # cycle in which the first depth of each frame left
@@ -53,9 +54,10 @@ class ContactWatch:
         self.settings.clear()
 
     def setting(self, register: str) -> int:
-        """Return the value of a register that the cores use in this cycle."""
-        word = self.registers.words[register]
-        return (word ^ 1 << 31) - (1 << 31) if "THRESHOLD" in register else word
+        """Return the value of a register that the cores use in this cycle; a threshold counts a cycle later."""
+        if "THRESHOLD" in register:
+            return (self.late[register] ^ 1 << 31) - (1 << 31)
+        return self.registers.words[register]
 
     @property
     def depth_bits(self) -> int:
@@ -75,7 +77,7 @@ class ContactWatch:
         """Compare `contact` with the model, which takes the beats and the registers of the previous cycle."""
         dut, model = self.dut, self.comparator
         contact_pin, rst, valid, ready = map(unsigned, (dut.contact, dut.rst, dut.m_axis_tvalid, dut.m_axis_tready))
-        words, hold, threshold, drops = None, False, 0, False  # registers, and what they say
+        words, hold, threshold, drops = dict(self.late), False, 0, False  # registers, and what they say
         yield
         clock, was = 1, False
         while True:
@@ -87,12 +89,14 @@ class ContactWatch:
                 self.registers.reset()
                 was = False
                 continue
+            if self.late is not words:
+                self.late = words
+                threshold = self.setting("THRESHOLD")
             self.registers.clock()
             if words != self.registers.words:
                 words = dict(self.registers.words)
                 control = CONTROL.unpack(words["CONTROL"])
                 hold, drops = bool(control["hold_contact"]), bool(control["drop_frames"])
-                threshold = self.setting("THRESHOLD")
             if drops:  # depth that is dropped counts too: see `check_with_drops`
                 self.drops.append((clock, contact, threshold, hold))
                 continue

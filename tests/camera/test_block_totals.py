@@ -30,7 +30,3 @@ def test_each_pixel_of_a_pattern_is_in_the_total_of_its_colour(colour: tuple[int
             want_areas[i, j, of] += height * width
     np.testing.assert_array_equal(totals, want_totals)
     np.testing.assert_array_equal(areas, want_areas)
-
-
-def test_areas_of_one_block_add_up() -> None:
-    assert block_areas(np.array([7]), np.array([8]), 15).tolist() == [[[56, 15 * 15 - 56 - 56, 56]]]

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """pixel_format: RTL against the model, the model against BT.601 in double precision and against pictures."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -72,12 +70,3 @@ def test_a_pattern_has_the_colours_of_its_name(phase: int) -> None:
     picture = np.tile(np.array([10, 20, 30], np.uint8), (2, 2, 1))
     sent = pixel_format(photograph(picture, device), device).reshape(-1).tolist()
     assert sent == [{"r": 10, "g": 20, "b": 30}[letter] for letter in PHASES[phase]]
-
-
-def test_bytes_of_a_pixel_come_back_in_either_order() -> None:
-    picture = np.random.default_rng(1).integers(0, 256, (4, 8, 3), dtype=np.uint8)
-    parallel = CameraConfiguration((4, 8), (1, 1), "rgb565")
-    serial = replace(parallel, pixel_format="rgb565_bytes")
-    np.testing.assert_array_equal(
-        pixel_format(photograph(picture, parallel), parallel), pixel_format(photograph(picture, serial), serial)
-    )

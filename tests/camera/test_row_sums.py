@@ -5,7 +5,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tactile_depth.chip.camera.row_sums import red_columns, row_sums, sums_over_blocks
+from tactile_depth.chip.camera.row_sums import red_columns, sums_over_blocks
 
 
 @given(st.integers(1, 12), st.integers(0, 40), st.integers(1, 12), st.integers(0, 2**32 - 1))
@@ -28,10 +28,3 @@ def test_columns_of_red_and_blue_fill_a_block(denominator: int, extra: int, firs
     np.testing.assert_array_equal(red + red_columns(~blue, numerator, denominator), numerator)
     assert red.min() > 0  # from a ratio of 2 on every block has both
     assert red.max() < numerator
-
-
-def test_a_row_of_a_pattern_is_split_by_columns() -> None:
-    row = np.array([[1, 10, 2, 20, 3, 30]])
-    blue = np.array([False, True] * 3)
-    np.testing.assert_array_equal(row_sums(row, blue, 2, 1), [[[1, 10], [2, 20], [3, 30]]])
-    np.testing.assert_array_equal(row_sums(row, blue, 3, 1), [[[3, 10], [3, 50]]])

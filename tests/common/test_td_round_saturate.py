@@ -5,25 +5,11 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.chip.bounds import Responses
 from tactile_depth.chip.common.td_round_saturate import Monitor, round_half_even, round_saturate
-
-
-# In eighths, dropping three bits: ties on both sides of zero, beside a tie, carry out of the top, overflow.
-@pytest.mark.parametrize(
-    ("eighths", "expected"),
-    [
-        *[(0, 0), (4, 0), (12, 2), (20, 2), (28, 4), (-4, 0), (-12, -2), (-20, -2), (-28, -4)],
-        *[(3, 0), (5, 1), (11, 1), (13, 2), (-3, 0), (-5, -1), (-11, -1), (-13, -2)],
-        *[(59, 7), (60, 7), (61, 7), (64, 7), (127, 7), (-64, -8), (-68, -8), (-69, -8), (-128, -8)],
-    ],
-)
-def test_cases_by_hand(eighths: Any, expected: Any) -> None:
-    assert round_saturate(np.array([eighths]), 3, 4) == [expected]
 
 
 @given(st.integers(-(2**50), 2**50), st.integers(-10, 45))

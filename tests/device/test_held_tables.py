@@ -190,9 +190,32 @@ def test_a_device_that_computes_otherwise(cable: Cable, pipeline: td.Pipeline) -
         td.Device(cable.address, pipeline)
 
 
-def test_a_dark_level_that_a_program_left(device: td.Device, depth: Depth) -> None:
-    device.registers["DARK_LEVEL"] = 40
-    with pytest.raises(td.DeviceError, match=rf"\(DARK_LEVEL\): {FIRST}"):
+@pytest.mark.parametrize("table", ["reference", "zero"])
+def test_a_capture_of_the_pipeline_after_the_load(
+    table: str, cable: Cable, sample: td.Sample, pipeline: td.Pipeline, depth: Depth
+) -> None:
+    pipeline, other = pipeline.copy(), sample.image if table == "zero" else in_light(sample.reference, 0.9)
+    with td.Device(cable.address, pipeline) as device:
+        device.load()
+        getattr(pipeline, f"capture_{table}")(other)
+        with pytest.raises(td.DeviceError, match=rf"the pipeline has another {table} than was loaded: call load\(\)"):
+            depth(device)
+        getattr(device, f"capture_{table}")(other)
+        assert len(depth(device)) == 1
+        getattr(device, f"capture_{table}")(sample.reference)
+        assert len(depth(device)) == 1
+        device.load()
+        assert len(depth(device)) == 1
+
+
+@pytest.mark.parametrize("name", ["DARK_LEVEL", "DEBOUNCE", "MINIMUM_AREA"])
+def test_a_setting_that_a_program_left(name: str, cable: Cable, device: td.Device, depth: Depth) -> None:
+    device.registers[name] = 40
+    with pytest.raises(td.DeviceError, match=rf"\({name}\): {FIRST}"):
         depth(device)
     device.load()
     assert len(depth(device)) == 1
+    device.registers[name] = 40
+    device.close()
+    with td.Device(cable.address, device.pipeline) as opened:
+        assert all(frame.contact.touching for frame in depth(opened))

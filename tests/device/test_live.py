@@ -241,6 +241,7 @@ def test_a_device_that_is_unplugged_ends_it_with_one_line(
     monkeypatch.setattr(command.Display, "show", unplug)
     run(inputs, f"device:{cable.address}", *background(inputs), status=3)
     captured = capsys.readouterr()
-    (line,) = captured.err.splitlines()
+    warned, line = captured.err.splitlines()
+    assert "not from the device's own camera" in warned
     assert "is gone: plug the device in again" in line
     assert counted(captured.out)["shown"] >= 3

@@ -87,20 +87,24 @@ def test_a_program_reads_the_same_on_bytes_and_at_the_pins() -> None:
         assert read == seen(result)
 
 
-def test_the_table_of_a_capture_is_read_back() -> None:
+def test_the_tables_of_captures_are_read_back() -> None:
     sample = td.sample("ball")
     captured = small(sample)
     captured.capture_reference(dimmer(sample))
+    captured.capture_zero(sample.image)
     gains = reference_gains(captured.sensor, captured.config)
     with td.Device("sim", small(sample)) as device:
         device.load()
         device.self_test()
         device.capture_reference(dimmer(sample))
+        device.capture_zero(sample.image)
         device.self_test()
         with device._open_line() as line:
-            words = captures.read_captured(line, "reference", functools.partial(line.send, device._untouched))
+            send = functools.partial(line.send, device._untouched)
+            words, zero = (captures.read_captured(line, name, send) for name in ("reference", "zero"))
         (frame,) = device.depth(sample.image)
     np.testing.assert_array_equal(words, reference_entries(gains)[:, 0])
+    np.testing.assert_array_equal(zero.astype(np.int32), captured.zero_codes.ravel())
     np.testing.assert_array_equal(frame.codes, captured(sample.image).codes)
 
 

@@ -19,9 +19,11 @@ from tactile_depth.chip.contact.frame_flags import FrameFlags
 from tactile_depth.chip.gradient.flat_field import captured_gains
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, received
 from tactile_depth.chip.table_entries import reference_entries
+from tactile_depth.device import captures
+from tactile_depth.sensor.sensor import TOO_DARK, equal_areas
 from tests.device.cable import Cable
 from tests.device.conftest import Plug
-from tests.device.test_device import require_equal, singles
+from tests.device.test_device import grid_picture, require_equal, singles
 
 GRID = (24, 32)
 NAMES: tuple[DepthFormatName, ...] = get_args(DepthFormatName)
@@ -161,7 +163,7 @@ def test_a_camera_in_right_light_has_no_doubt(
 ) -> None:
     images = [in_light(image, 1 + 0.002 * np.sin(n)) for n in range(10) for image in (sample.image, sample.reference)]
     frames, warned = told(lambda: filmed(pipeline, plug, images, 100, depth_format=name))
-    assert not warned
+    assert [text[:50] for text in warned] == ["the reference is not from the device's own camera:"]
     for frame in frames:
         assert (frame.warnings, frame.saturations, frame.dark, frame.outside) == ((), None, None, None)
         assert frame.light_gains == pytest.approx(1, abs=0.03)
@@ -187,6 +189,8 @@ def test_a_camera_in_right_light_has_no_doubt(
             {"depth_range_mm": 0.5},
             r"\d+ of its depths clipped, heights there are too small: give a larger depth_range",
         ),
+        ("black", {}, "100 % of its pixels are black, which reads as flat gel: switch the lights on"),
+        ("half black", {}, "50 % of its pixels are black, which reads as flat gel: switch the lights on"),
         ("exchanged", {}, "its gel stands out by .* mm, as if something touched it in the reference: take a reference"),
     ],
 )
@@ -195,6 +199,8 @@ def test_what_a_device_says_of_its_camera(
     scene: str, choices: dict[str, Any], text: str, name: DepthFormatName, sample: td.Sample, plug: Plug
 ) -> None:
     images = {"dim": [in_light(sample.image, 0.4)], "flicker": [in_light(sample.image, 0.8), sample.image]}
+    lit = (sample.image * 0, np.where(np.arange(len(sample.image))[:, None, None] % 80 < 40, sample.image, 15))
+    images |= {name: [image.astype(np.uint8)] for name, image in zip(("black", "half black"), lit, strict=True)}
     is_exchanged = scene == "exchanged"
     reference = sample.image if is_exchanged else sample.reference
     with warnings.catch_warnings():
@@ -205,6 +211,21 @@ def test_what_a_device_says_of_its_camera(
     (said,) = (each for each in warned if each.startswith("frame "))
     assert re.fullmatch(rf"frame \d+: {text}.*", said)
     assert re.search(text, frames[-1].warnings[-1])
+
+
+@pytest.mark.parametrize("stream", [False, True])
+def test_a_black_spot_in_a_picture_that_is_sent_is_that_of_the_package(
+    stream: bool, cable: Cable, device: td.Device, sample: td.Sample
+) -> None:
+    """The device counts black pixels of its camera as dark, but not those of pictures that the host has checked."""
+    spotted = sample.image.copy()
+    spotted[100:110, 100:110] = 0
+    assert grid_picture(device.pipeline, spotted).max(axis=-1).min() < TOO_DARK
+    for picture in (sample.image, spotted):
+        (frame,) = device.depth([picture], stream=stream)
+        assert not frame.flags.dark
+    device.capture_zero([spotted])
+    assert len(list(device.depth([spotted]))) == 1
 
 
 def test_a_device_with_lanes(pipeline: td.Pipeline, sample: td.Sample, plug: Plug) -> None:
@@ -264,6 +285,51 @@ def test_a_capture_of_the_camera_is_not_known(steady: td.Pipeline, sample: td.Sa
         assert next(device.depth()).codes.shape == steady.grid
 
 
+def test_a_reference_that_is_not_of_the_camera_is_warned_of_once(
+    steady: td.Pipeline, sample: td.Sample, plug: Plug
+) -> None:
+    camera = grid_picture(steady, in_light(sample.reference, 0.97))[None]
+    cable = plug(steady, camera=camera, camera_s=0.002)
+    with td.Device(cable.address, steady) as device:
+        device.load()
+        with pytest.warns(
+            td.InputWarning, match=r"not from the device's own camera: .*: with .* call capture_reference\(\)"
+        ):
+            next(device.depth())
+        assert told(lambda: next(device.depth()))[1] == []
+    with td.Device(cable.address, steady) as device:
+        device.load()
+        device.capture_reference(frames=1)
+        assert told(lambda: next(device.depth()))[1] == []
+    with pytest.warns(td.InputWarning, match="from a capture before"), td.Device(cable.address, steady) as device:
+        assert told(lambda: next(device.depth()))[1] == []
+
+
+@pytest.mark.parametrize("light", [1.0, np.linspace(0.95, 1.05, 320)[:, None]])
+@pytest.mark.parametrize("touched", [False, True])
+def test_a_zero_offset_of_the_camera_is_checked(
+    touched: bool, light: Any, pipeline: td.Pipeline, sample: td.Sample, plug: Plug
+) -> None:
+    untouched, seen = (
+        grid_picture(pipeline, in_light(image, light))
+        for image in (sample.reference, (sample.reference, sample.image)[touched])
+    )
+    cable = plug(pipeline, camera=untouched[None], camera_s=0.02)
+    assert cable.setup is not None
+    with td.Device(cable.address, pipeline) as device:
+        device.load()
+        device.capture_reference(frames=1)
+        cable.setup.camera = seen[None]
+        _, warned = told(lambda: device.capture_zero(frames=1))
+        cable.setup.camera = untouched[None]
+        frames, more = told(lambda: list(itertools.islice(device.depth(), 4)))
+    assert len(warned) == touched
+    assert more == []
+    assert [list(frame.warnings) for frame in frames] == [warned] * 4
+    for text in warned:
+        assert re.fullmatch(r"the zero offset that .* camera: it is not smooth .* touched the gel: capture .*", text)
+
+
 @pytest.fixture(scope="module")
 def mini() -> tuple[td.Pipeline, np.ndarray]:
     """Pipeline of a real sensor, and its calibration's own picture without contact on the grid."""
@@ -316,6 +382,30 @@ def test_a_reference_of_the_camera_is_checked(
             next(device.depth())
         device.load()
         assert next(device.depth()).codes.shape == pipeline.grid
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda rest: 0.9 * rest, None),
+        (lambda rest: rest * np.linspace(0.97, 1.03, rest.shape[1])[:, None], None),
+        (lambda rest: rest - 10, "another gamma, brightness, contrast or saturation"),
+        (lambda rest: 255 * (rest / 255) ** 1.15, "another gamma, brightness, contrast or saturation"),
+    ],
+)
+@pytest.mark.parametrize("grid", [(48, 64), (64, 64)])
+def test_a_reference_of_the_camera_has_the_tone_of_the_calibration(
+    grid: tuple[int, int], change: Callable[[np.ndarray], np.ndarray], message: str | None, mini: Any
+) -> None:
+    """A square grid cuts the calibration's own picture too."""
+    sensor = mini[0].reader.sensor
+    own = equal_areas(sensor.untouched, (sensor.camera.rows, sensor.camera.columns))
+    pipeline = td.Pipeline(sensor, np.rint(own).astype(np.uint8), grid=grid, model="quadratic")
+    gains = captured_gains(grid_picture(pipeline, in_light(change(own), 1))[None], pipeline.config)
+    (doubts, _), warned = told(lambda: captures.check_reference_of_camera(pipeline, reference_entries(gains)[:, 0]))
+    assert [*map(str, doubts)] == warned
+    assert len(warned) == (message is not None)
+    assert message is None or message in warned[0]
 
 
 def test_the_message_names_the_picture(cable: Cable, device: td.Device, sample: td.Sample) -> None:

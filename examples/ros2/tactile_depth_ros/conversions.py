@@ -70,7 +70,7 @@ def points(result: Result) -> dict[str, Any]:
     """
     rows, columns = result.height_mm.shape
     y, x = np.mgrid[:rows, :columns] * (result.pixel_pitch_mm * M_PER_MM)
-    cloud = np.stack([x, y, result.height_mm * M_PER_MM], axis=-1).astype("<f4")
+    cloud = np.stack([x * result.pixel_aspect, y, result.height_mm * M_PER_MM], axis=-1).astype("<f4")
     size = 4 * len(POINT_FIELDS)
     return {
         "height": rows,

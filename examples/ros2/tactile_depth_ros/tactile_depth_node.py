@@ -91,6 +91,8 @@ class TactileDepthNode(Node):
         self.get_logger().info(f"captured the {name}")
 
     def _publish(self, header: object, result: td.Result) -> None:
+        if result.warnings:
+            self.get_logger().warning("; ".join(result.warnings), throttle_duration_sec=1.0)
         self._height.publish(Image(header=header, **conversions.depth_image(result)))
         fields = [
             PointField(name=name, offset=4 * index, datatype=conversions.FLOAT32, count=1)

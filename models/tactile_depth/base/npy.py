@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from hashlib import sha256
 from pathlib import Path
 from typing import BinaryIO
 
@@ -15,6 +17,7 @@ Bytes = npt.NDArray[np.uint8]
 Codes = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
+DIGEST = "digest"
 
 
 def is_file(path: Path) -> bool:
@@ -31,3 +34,12 @@ def read_header(file: BinaryIO) -> tuple[tuple[int, ...], bool, np.dtype]:
     if version == (1, 0):
         return np.lib.format.read_array_header_1_0(file)
     raise ValueError(f"version {version[0]}.{version[1]}, which arrays of numbers do not need")
+
+
+def digest_of(entries: Mapping[str, npt.ArrayLike]) -> str:
+    """Return the digest of the entries of an .npz but for its own."""
+    digest = sha256()
+    for name in sorted(entries.keys() - {DIGEST}):
+        array = np.asarray(entries[name])
+        digest.update(f"{name} {array.dtype.str} {array.shape}".encode() + array.tobytes())
+    return digest.hexdigest()

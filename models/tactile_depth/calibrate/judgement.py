@@ -15,10 +15,11 @@ from scipy.ndimage import median_filter
 
 from tactile_depth.base.errors import InputError
 from tactile_depth.calibrate.evaluation import Evaluation, scores_of
-from tactile_depth.calibrate.presses import FITTED_SHARE, GridPresses, View
+from tactile_depth.calibrate.presses import FITTED_SHARE, NOTHING_TOUCHES, GridPresses, View
 from tactile_depth.chip.limits import COEFFICIENTS, DEVIATION
 from tactile_depth.depth.reference import pixel_terms
 from tactile_depth.pictures.identify import identify
+from tactile_depth.pictures.reference_check import dents
 from tactile_depth.sensor.sensor import Sensor, equal_areas
 from tactile_depth.sensor.verdict import BAD, GOOD, GRADES, USABLE, Verdict
 from tactile_depth.sensor.view import shown
@@ -47,6 +48,11 @@ MOST_DOUBTFUL = 0.2  # share of the presses whose circles may be doubtful, or th
 # A dark spot has less than that share of the light around it, in a square so wide in a picture of 320 columns. Share of
 # the picture: real gels without markers 0.000; drawn markers 0.06 to 0.08.
 DARK_SPOT, SPOT_PX, COLUMNS, MOST_SPOTS = 0.8, 31, 320, 0.02
+# Presses that leave an area alone, of which the median is that of untouched gel. `dents` of the background beyond its
+# limit, of 8 real or drawn presses and more, also beside each other: -0.003 at most; with another press as background
+# 0.09 and more. Share of the areas that must be known, so that their noise is: 0.69 and more; of 5 presses, with 0.51,
+# the excess is 0.009.
+FEWEST_UNTOUCHED, KNOWN_AREAS = 4, 0.6
 NAMED = 4  # presses in a reason
 NOT_CHECKED = "pitch not checked: balls fit any, and neither ball_radius_px nor the view of a known sensor says more"
 PITCH_AGREES = 0.1  # largest relative difference to the pitch of a built-in calibration of the same kind of sensor
@@ -59,10 +65,11 @@ def judge(presses: GridPresses, evaluation: Evaluation) -> Verdict:
     numbers = evaluation.faults(model)
     grades = [GOOD if not numbers else BAD if evaluation.severity(model) > 1 else USABLE]
     causes = []
-    circles, known = _circles(presses), known_sensor(presses)
+    circles, spread, known = _circles(presses), _spread(presses), known_sensor(presses)
+    background = (GOOD, "") if spread[0] == BAD else _background(presses)
     diameters = (GOOD, "") if circles[0] == BAD else _diameters(presses)  # which need right circles
     against_known = (GOOD, "") if known is None else _against(known, presses)
-    for grade, cause in (circles, against_known, diameters, _markers(presses), _spread(presses)):
+    for grade, cause in (circles, against_known, diameters, background, _markers(presses), spread):
         if cause:
             grades.append(grade)
             causes.append(cause)
@@ -259,6 +266,29 @@ def _change_in(view: View) -> tuple[float, float]:
     ring = (press.distance * 10).astype(int)[near]  # a tenth of the radius wide
     mean = np.bincount(ring, change[near]) / np.maximum(np.bincount(ring), 1)
     return float(change[press.distance < 1].sum() / most), float(mean[2:].argmax() + 2.5) / 10
+
+
+def _background(presses: GridPresses) -> tuple[str, str]:
+    """Return whether the background differs from the gel that the presses leave alone, as if something touched in it.
+
+    Presses all over the gel leave each area alone, but for a few of them.
+    """
+    own, changes = np.maximum(equal_areas(presses.background_on_grid), 1), []
+    for view in presses.views:
+        alone = equal_areas((view.press.distance <= NOTHING_TOUCHES)[..., None])[..., 0] == 0
+        if alone.any():
+            change = np.log(np.maximum(equal_areas(view.frame), 1) / own)
+            changes.append(np.where(alone[..., None], change - np.median(change[alone], axis=0), np.nan))
+    stack, usual = np.array(changes).reshape(-1, *own.shape), np.zeros_like(own)
+    known = (~np.isnan(stack[..., 0])).sum(axis=0) >= FEWEST_UNTOUCHED
+    usual[known] = np.nanmedian(stack[:, known], axis=0)
+    differs, is_touched = dents(own * np.exp(usual), own)
+    if not is_touched or known.mean() < KNOWN_AREAS:
+        return GOOD, ""
+    return BAD, (
+        f"likely cause: a touched background: it differs by {100 * differs:.0f} % from the median of the presses, in "
+        "places that they leave alone: take it with the sensor untouched"
+    )
 
 
 def _markers(presses: GridPresses) -> tuple[str, str]:

@@ -50,8 +50,8 @@ def read_presses(folder: Path, table: Path | None = None) -> tuple[list[BallPres
     diameter = next((name for name in DIAMETERS if name in head), "")
     if "frame" not in head or not diameter or len(set(head)) < len(head):
         raise InputError(
-            f"{path}: columns {', '.join(head) or 'none'}: needed are frame and diameter_mm, each column once; "
-            f"accepted are {', '.join(KNOWN)}"
+            f"{path}: columns {', '.join(head) or 'none'}: needed are frame and diameter_mm, each column once, "
+            f"separated by commas; accepted are {', '.join(KNOWN)}"
         )
     if 0 < len(missing := [name for name in CIRCLE if name not in head]) < len(CIRCLE):
         raise InputError(f"{path}: no column {', '.join(missing)}: give all of {', '.join(CIRCLE)}, or none")
@@ -119,6 +119,10 @@ def _press(folder: Path, cells: dict[str, str], diameter: str) -> BallPress:
     diameter_mm = number(diameter)
     if diameter_mm is None:
         raise ValueError(f"no {diameter}")
+    if (other := number(DIAMETERS[-1])) not in (None, diameter_mm):
+        raise ValueError(f"{diameter} is {diameter_mm:g}, but {DIAMETERS[-1]} {other:g}: give one of both")
     x, y, radius = (number(column) for column in CIRCLE)
+    if 0 < (x, y, radius).count(None) < len(CIRCLE):
+        raise ValueError(f"a circle without all of {', '.join(CIRCLE)}: give all three or none")
     circle = None if x is None or y is None or radius is None else (x, y, radius)
     return BallPress(folder / name, diameter_mm, circle, name, number(BALL_RADIUS))

@@ -21,7 +21,10 @@ from tactile_depth.chip.configuration import COLOURS, Configuration
 from tactile_depth.chip.gradient.flat_field import captured_gains, pixel_gains, require_light
 from tactile_depth.chip.gradient.light_gains import Light, settled
 from tactile_depth.chip.resampling import WHOLE, Share
+from tactile_depth.pictures.blocks import Rest
+from tactile_depth.pictures.doubts import Warned
 from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler, picture_grid
+from tactile_depth.pictures.picture_check import check_picture
 
 SMALLEST_GRID = 16  # columns
 FITTED_SHARE = 0.9  # fraction of the contact's radius: beyond it the gel leaves the ball
@@ -181,7 +184,7 @@ class GridPresses:
     scale : float
         Camera pixels per grid pixel.
     notes : tuple of str
-        One line for each press, column or line that was left out.
+        One line for each press, column or line that was left out, and for the first press with each kind of doubt.
     agreement : float64 array (n, 3)
         Detected minus given circles in camera pixels: x, y, radius.
     pixel_format : str
@@ -246,7 +249,7 @@ def to_grid(
     grid: tuple[int, int] | None = None,
     share: Share = WHOLE,
 ) -> GridPresses:
-    """Resample presses to a grid; `notes` names the presses left out and why.
+    """Resample presses to a grid; `notes` names the presses left out and why, and doubts.
 
     Parameters
     ----------
@@ -281,13 +284,14 @@ def to_grid(
     rest = sampler.frame(background)
     gains = captured_gains(rest[None], config)
     require_light(gains, config, BACKGROUND)
-    notes, agreement, stretches = list(pictures.notes), [], []
+    notes, agreement, stretches, warned = list(pictures.notes), [], [], Warned()
     geometry: list[tuple[GridPress, float]] = []
     circles: dict[str, Circle] = {}
     frames: dict[str, np.ndarray] = {}
     for press in pictures.presses:
         try:
-            image = pictures.image(press)
+            frame = sampler.frame(image := pictures.image(press))
+            notes += map(str, warned.new(check_picture(frame, Rest.of(rest[None]), press.name).doubts))
             ball = press.diameter_mm / 2 / pitch_mm
             found = find_circle(image, background, ball, aspect) if is_seen or press.circle is None else None
             seen = None if found is None else found.circle
@@ -295,7 +299,7 @@ def to_grid(
             given = None if press.circle is None else Circle(*press.circle)
             circle = _on_ball(press, seen if find_circles else given or seen, ball)
             at = _grid_press(press.name, circle, ball, sampler, grid, aspect)
-            frame = _new_frame(press.name, sampler.frame(image), {"the background": rest} | frames)
+            _require_new(press.name, frame, {"the background": rest} | frames)
         except InputError as error:
             notes.append(str(InputError(f"{error}: left out")))
             continue
@@ -306,10 +310,9 @@ def to_grid(
         frames[press.name] = frame
     views = _views(geometry, np.array([*frames.values()], np.uint8).reshape(-1, *grid, 3), gains, config)
     _require_colours(views, pictures.name)
-    notes += stretched(stretches)
-    differences = np.array(agreement).reshape(-1, 3)
+    told, differences = (*notes, *stretched(stretches)), np.array(agreement).reshape(-1, 3)
     return GridPresses(
-        *(pictures.name, views, background, rest, pitch_mm, sampler.scale, tuple(notes), differences),
+        *(pictures.name, views, background, rest, pitch_mm, sampler.scale, told, differences),
         pixel_format="rgb888" if choice is None else choice.pixel_format,
         aspect=aspect,
         circles=circles,
@@ -340,12 +343,11 @@ def _views(
     return tuple(View(*at, *parts) for at, *parts in zip(geometry, stack, codes, colours, strict=True))
 
 
-def _new_frame(name: str, frame: np.ndarray, seen: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Return a frame; raise InputError if it shows what one of `seen` shows: a fit without it measures a press."""
+def _require_new(name: str, frame: np.ndarray, seen: Mapping[str, np.ndarray]) -> None:
+    """Raise InputError if a frame shows what one of `seen` shows: a fit without it measures a press."""
     same = (other for other, by in seen.items() if np.abs(frame.astype(np.int16) - by).max() <= SAME_PRESS)
     if (other := next(same, None)) is not None:
         raise InputError(f"{name}: it shows what {other} shows")
-    return frame
 
 
 def _require_colours(views: Sequence[View], name: str) -> None:

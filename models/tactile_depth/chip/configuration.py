@@ -57,44 +57,34 @@ from tactile_depth.chip.resources import BLOCK, ULTRA
 @former_names(auto_zero="zero_offset")
 @dataclass(frozen=True)
 class Configuration:
-    """The choices that define a pipeline, and the numbers that follow from them.
-
-    Raises InputError if the pipeline cannot be built.
+    """The choices that define a pipeline, and the numbers that follow; InputError if it cannot be built.
 
     Attributes
     ----------
-    columns : int
-        Columns of the grid, a power of two.
-    rows : int
-        Rows of the grid; 0: as many as columns. Only the tridiagonal solver accepts a different number.
+    columns, rows : int
+        The grid; columns are a power of two. Without rows as many; only the tridiagonal solver accepts another number.
     solver : str
-        `spectral` or `tridiagonal`.
+        `spectral` or `tridiagonal`, which alone has more than one lane.
     neumann : bool
         Zero slope at the frame's edge instead of zero depth.
     lanes : int
-        Depth values per clock, a power of two. Only the tridiagonal solver has more than one.
+        Depth values per clock, a power of two.
     data_width, coefficient_width, gain_width : int
         Bits of a stored word, of a coefficient, and of a gain of the flat field.
     depth_range_px : float
         Largest depth that formats are sized for, in grid pixels; None: a quarter of the grid.
-    gradient_limit : float
-        Largest slope, a power of two.
-    coefficient_limit : float
-        Models of polynomials: no coefficient reaches it, a power of two. Faint colours need large coefficients.
+    gradient_limit, coefficient_limit : float
+        Largest slope; a bound that no coefficient of a polynomial reaches, larger for faint colours; powers of two.
     bits_per_channel : int
         Bits of each colour that index the gradient table.
     gradient_model : str
         `lut`, a table of colours; `quadratic` or `cubic`, polynomials of the position, which need `flat_field`.
-    flat_field : bool
-        Colours are taken relative to a reference frame.
-    zero_offset : bool
-        The depth that is read without contact is subtracted.
-    light_gains : bool
-        A gain for each colour follows the light; needs polynomials.
-    parity : bool
-        A parity bit in each word of the memories, by which the device sees a flipped bit.
-    self_check : bool
-        The depth of each frame is put into the equation, by which the device sees an error of the solver.
+    flat_field, zero_offset, light_gains : bool
+        Colours are relative to a reference frame; the depth read without contact is subtracted; a gain for each colour
+        follows the light, which needs polynomials.
+    parity, self_check : bool
+        Each word of the memories has a parity bit, by which the device sees a flipped bit; the depth of each frame is
+        put into the equation, by which it sees an error of the solver.
     """
 
     columns: Annotated[int, Choice(variable="N", option="--grid {}x..")] = 128
@@ -274,10 +264,7 @@ class Configuration:
 
     @property
     def unit_px(self) -> float:
-        """Unit of length of slopes, divergence and forward modes, in grid pixels.
-
-        The spectral divide changes units. The tridiagonal solver cannot, so slopes already have the unit of its depth.
-        """
+        """Unit of length, in grid pixels, up to the forward modes: that of the depth where no divide changes units."""
         return self.depth_limit_px / 2.0**self.depth_limit_log2 if self.solver == "tridiagonal" else 1.0
 
     @property
@@ -412,8 +399,6 @@ class Configuration:
     def depth_lsb_px(self) -> float:
         """Depth of code 1, in grid pixels."""
         return self.depth.lsb * self.depth_limit_px
-
-    # HDL parameters.
 
     def solver_parameters(self) -> dict[str, int]:
         """Return the HDL parameters that both solvers share."""

@@ -28,6 +28,7 @@ from tactile_depth.cli.options import (
     add_light_and_zero_arguments,
     add_picture_arguments,
     build_choices,
+    path_of,
     size,
 )
 from tactile_depth.cli.overview import draw_circles, draw_presses
@@ -102,7 +103,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_picture_arguments(parser, "it is kept in FILE.npz, and unknown by default")
     parser.add_argument("--exposure-us", type=float, metavar="US", help="exposure time of the camera, to be kept")
-    parser.add_argument("--out", type=Path, metavar="FILE.npz", help="default: <name of PRESSES>.npz")
+    parser.add_argument("--out", type=path_of, metavar="FILE.npz", help="default: <name of PRESSES>.npz")
     parser.add_argument("--picture", action="store_true", help="draw three of the presses beside FILE.npz, as FILE.png")
     add_light_and_zero_arguments(parser)
     add_build_arguments(parser)

@@ -15,9 +15,9 @@ import numpy as np
 from PIL import ExifTags, Image
 from PIL.PngImagePlugin import PngInfo
 
-from tactile_depth.base.errors import counted
+from tactile_depth.base.errors import InputError, counted
 from tactile_depth.base.files import new_files
-from tactile_depth.cli.options import add_pipeline_arguments, choose_sensor, make_pipeline, read_reference
+from tactile_depth.cli.options import add_pipeline_arguments, choose_sensor, make_pipeline, path_of, read_reference
 from tactile_depth.cli.overview import draw_overview
 from tactile_depth.cli.ply import write_ply
 from tactile_depth.depth.pipeline import Pipeline
@@ -69,7 +69,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the subcommand."""
     parser.add_argument("pictures", nargs="+", metavar="PICTURE", help="PNG, JPEG, a .npy of frames, or a folder")
     parser.add_argument("--reference", required=True, metavar="BACKGROUND", help="the sensor without contact")
-    parser.add_argument("--out", type=Path, metavar="FOLDER", help=f"default: {DEFAULT_OUT}")
+    parser.add_argument("--out", type=path_of, metavar="FOLDER", help=f"default: {DEFAULT_OUT}")
     add_pipeline_arguments(parser)
     parser.set_defaults(run=run)
 
@@ -80,6 +80,8 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     reference = read_reference(options.reference, options.rotate)
     sensor = choose_sensor(options, reference)
     pipeline = make_pipeline(options, sensor, reference)
+    if options.out is None:
+        _keep_others(out, options.pictures[0])
     with new_files(out, REPORT, "files") as folder:
         frames, heights = [], []
         for label, image, captured_at in _pictures(options.pictures, options.rotate):
@@ -101,6 +103,15 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     for label, _, result in frames:
         print(f"{label}: {summary(result)}")
     print(f"results: {out}; overview.png is for looking: viewers show depth_um.png, which is in micrometres, black")
+
+
+def _keep_others(out: Path, first: str) -> None:
+    """Raise InputError if a folder that no argument names holds results of another first picture or folder."""
+    before = first
+    with contextlib.suppress(OSError, ValueError, LookupError, TypeError):
+        before = str(json.loads((out / REPORT).read_text())["pictures"][0]["picture"]).partition(": ")[0]
+    if Path(before).resolve() != Path(first).resolve():
+        raise InputError(f"{out} holds results of {before}: give another folder as --out, or delete it")
 
 
 def default_out(first: str) -> Path:

@@ -11,7 +11,6 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TextIO
 
 import numpy as np
@@ -29,6 +28,7 @@ from tactile_depth.cli.options import (
     choose_sensor,
     make_pipeline,
     named_sensor,
+    path_of,
     read_reference,
     size,
 )
@@ -85,7 +85,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"the sensor without contact; {CAPTURE} (default): the first {CAPTURED} frames, so do not touch it; with "
         "several sensors one for each, in their order",
     )
-    parser.add_argument("--save", type=Path, metavar="FILE.rrd", help="record what is shown; `rerun FILE.rrd` opens it")
+    parser.add_argument(
+        "--save", type=path_of, metavar="FILE.rrd", help="record what is shown; `rerun FILE.rrd` opens it"
+    )
     parser.add_argument("--headless", action="store_true", help="open no viewer; needs --save")
     parser.add_argument("--web", action="store_true", help="show it in a browser of this computer, without a screen")
     parser.add_argument(

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import re
+from pathlib import Path
 from typing import Any, get_args
 
 import numpy as np
@@ -12,13 +13,13 @@ import numpy as np
 from tactile_depth.base.errors import InputError
 from tactile_depth.chip.configuration import CHOICES, DEFAULTS, NUMBERS
 from tactile_depth.chip.limits import BOUNDARIES, MODELS, Solver
-from tactile_depth.depth.pipeline import AREA_THRESHOLD_MM, ARITHMETICS, THRESHOLD_MM, Pipeline
+from tactile_depth.depth.pipeline import ARITHMETICS, Pipeline
 from tactile_depth.pictures.frames import read_stack
 from tactile_depth.pictures.identify import identify
 from tactile_depth.pictures.pictures import ROTATIONS, rotated
 from tactile_depth.sensor.built_in import load, read
 from tactile_depth.sensor.calibration_file import BUILT_IN
-from tactile_depth.sensor.presets import SENSOR
+from tactile_depth.sensor.presets import AREA_THRESHOLD_MM, SENSOR, THRESHOLD_MM
 from tactile_depth.sensor.sensor import Sensor
 from tactile_depth.sensor.view import CONVENTIONS
 
@@ -29,6 +30,13 @@ def size(text: str) -> tuple[int, int]:
     if not match:
         raise argparse.ArgumentTypeError(f"{text!r} is no size: accepted is columns x rows, as 320x240")
     return int(match[2]), int(match[1])
+
+
+def path_of(text: str) -> Path:
+    """Read a path to write to; an empty one, as of a variable that is not set, is none."""
+    if not text:
+        raise argparse.ArgumentTypeError("is empty: give a path")
+    return Path(text)
 
 
 def add_pipeline_arguments(parser: argparse.ArgumentParser, several: bool = False) -> None:

@@ -30,20 +30,19 @@ from tactile_depth.depth.result import Recorder, Result, check_steps, require_th
 from tactile_depth.depth.stream import Stream, require_stream, timed, times
 from tactile_depth.depth.twin import PICTURES, Twin, require_flat_field, require_zero_offset
 from tactile_depth.pictures.blocks import Rest
-from tactile_depth.pictures.doubts import Doubt, Warned, tell, unexplained
+from tactile_depth.pictures.doubts import Doubt, Warned, of_verdict, tell, unexplained
 from tactile_depth.pictures.frames import camera_scale
 from tactile_depth.pictures.light_check import doubts_of, least_clipped
 from tactile_depth.pictures.picture_check import Checked, check_picture
 from tactile_depth.pictures.pictures import Picture, Pictures, each_of
 from tactile_depth.pictures.reader import Reader, default_grid, power_of_two_of
 from tactile_depth.pictures.reference_check import check_reference, check_zero
-from tactile_depth.sensor.presets import SENSOR
+from tactile_depth.sensor.presets import AREA_THRESHOLD_MM, SENSOR, THRESHOLD_MM
 from tactile_depth.sensor.sensor import Sensor
 from tactile_depth.sensor.view import Crop, shown
 
 ARITHMETICS = ("chip", "float")
 Arithmetic = Literal["chip", "float"]
-THRESHOLD_MM, AREA_THRESHOLD_MM = 0.07, 0.3  # of a contact
 REFERENCE = Argument("reference")
 
 
@@ -158,7 +157,7 @@ class Pipeline:
             self_check=self_check,
         )
         require_thresholds(threshold_mm, area_threshold_mm, self.config, self.pixel_pitch_mm)
-        self._format_doubts = check_steps(self.config, self.pixel_pitch_mm, arithmetic)
+        self._format_doubts = (*of_verdict(sensor.verdict), *check_steps(self.config, self.pixel_pitch_mm, arithmetic))
         self._threshold_mm, self._area_threshold_mm = threshold_mm, area_threshold_mm
         self._zero, self._exact_zero = no_zero(self.config), np.zeros(self.grid)
         self._key, self._captures = secrets.token_hex(), 0  # of its streams
@@ -354,7 +353,7 @@ class Pipeline:
 
     @property
     def doubts(self) -> tuple[Doubt, ...]:
-        """Why all heights are uncertain: by word lengths, the reference and the pictures of the zero offset."""
+        """Why all heights are uncertain: by the calibration, word lengths, the reference and the zero offset."""
         return (*self._format_doubts, *self._doubts, *self._zero_doubts)
 
     def capture_reference(self, pictures: Pictures) -> None:

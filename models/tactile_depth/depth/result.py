@@ -20,6 +20,7 @@ from tactile_depth.chip.contact.contact_debounce import TOUCHING
 from tactile_depth.chip.contact.contact_events import ContactEvents, Record, Settings
 from tactile_depth.depth.regions import regions
 from tactile_depth.pictures.doubts import Doubt, doubt, tell
+from tactile_depth.sensor.presets import AREA_THRESHOLD_MM
 from tactile_depth.sensor.sensor import HeightError
 
 *_, RANGE = WORDS  # of depth, as an argument
@@ -79,8 +80,9 @@ def require_thresholds(threshold_mm: float, area_threshold_mm: float, config: Co
     if not is_number(threshold_mm) or not 0 < threshold_mm / lsb_mm < 2 ** (config.depth.width - 1):
         accepted = f"a depth above 0 and within the depth range of {deepest_mm:.3g} mm"
         raise InputError(Argument("threshold_mm", threshold_mm), accepted=accepted)
-    if not is_number(area_threshold_mm) or not 0 <= area_threshold_mm / lsb_mm < 2**31:
-        raise InputError(Argument("area_threshold_mm", area_threshold_mm), accepted="a depth, 0 or more")
+    if not is_number(area_threshold_mm) or not 0 <= area_threshold_mm < max(deepest_mm, AREA_THRESHOLD_MM):
+        accepted = f"a depth of 0 or more and within the depth range of {deepest_mm:.3g} mm"
+        raise InputError(Argument("area_threshold_mm", area_threshold_mm), accepted=accepted)
 
 
 def check_steps(config: Configuration, pitch_mm: float, arithmetic: str) -> tuple[Doubt, ...]:

@@ -6,22 +6,32 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext, suppress
+from dataclasses import replace
 
 import numpy as np
 
+from tactile_depth.base.errors import InputError
 from tactile_depth.base.npy import Bytes
+from tactile_depth.chip.gradient.flat_field import captured_gains, pixel_gains, require_light, untouched_of
 from tactile_depth.chip.registers.axil_registers import GAINS
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
+from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.device.arrived import arrived
+from tactile_depth.device.camera_frame import dead_pixels
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import CAMERA_S, Exchange
 from tactile_depth.device.registers import read_words, write_words
 from tactile_depth.device.tables import select, wait_in_use
+from tactile_depth.pictures.doubts import Doubt, UnusablePicture
+from tactile_depth.pictures.reader import Reader
+from tactile_depth.pictures.reference_check import check_reference, check_zero_depth
+from tactile_depth.sensor.sensor import Sensor, equal_areas
 
 ATTEMPTS = 3
 LIGHT = REGISTERS["LIGHT"]
+OF_CAMERA = "the reference that the device took from its camera"
 
 
 def write_gains(line: Channel, gains: Sequence[int]) -> None:
@@ -136,6 +146,37 @@ def read_captured(line: Channel, table: str, give_picture: Callable[[], None]) -
     if len(words) < size:
         raise DeviceError(f"the device refuses to read its table {table}", remedy="call load() first")
     return np.array(words)
+
+
+def check_reference_of_camera(pipeline: Pipeline, entries: np.ndarray) -> tuple[tuple[Doubt, ...], int]:
+    """Refuse or doubt a reference by the entries of its table; return the doubts and the number of its dead pixels."""
+    config, sensor = pipeline.config, _as_captured(pipeline)
+    gains = entries.reshape(*config.reference_nodes, -1)[..., :3]
+    require_light(gains, config, OF_CAMERA)
+    try:
+        doubts = check_reference(sensor, untouched_of(gains, config)[None], OF_CAMERA)
+    except UnusablePicture as error:
+        problem = str(error).removesuffix(f": {error.remedy}")
+        remedy = "build the device for its camera (BAYER), and mount that as calibrated"
+        raise InputError(problem, remedy=remedy) from error
+    return doubts, dead_pixels(pixel_gains(gains, config))
+
+
+def _as_captured(pipeline: Pipeline) -> Sensor:
+    """Return the sensor with the calibration's own picture as a capture keeps it: as gains at nodes of the grid."""
+    sensor, config = pipeline.reader.sensor, pipeline.config
+    if sensor.untouched is None or sensor.camera is None:
+        return sensor
+    own = np.rint(equal_areas(sensor.untouched, (sensor.camera.rows, sensor.camera.columns))).astype(np.uint8)
+    ((_, frame),), _ = Reader(sensor, pipeline.grid).pictures(own, OF_CAMERA)
+    return replace(sensor, untouched=equal_areas(untouched_of(captured_gains(frame[None], config), config)))
+
+
+def check_zero_of_camera(pipeline: Pipeline, entries: np.ndarray) -> tuple[Doubt, ...]:
+    """Doubt a zero offset by the entries of its table."""
+    sign = 1 << pipeline.config.depth.width - 1
+    codes = (entries.reshape(pipeline.config.reference_nodes) & 2 * sign - 1 ^ sign) - sign
+    return check_zero_depth(codes * pipeline.depth_lsb_mm, "the zero offset that the device took from its camera")
 
 
 def _start(line: Channel, table: str, count: int) -> None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, MutableMapping
 from contextlib import AbstractContextManager, closing, contextmanager
+from itertools import chain
 
 import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, InputWarning, is_number, one_of, require_flag, warn
 from tactile_depth.base.npy import Bytes
 from tactile_depth.chip.depth.zero_capture import LARGEST_LOG2
-from tactile_depth.chip.gradient.flat_field import require_light, untouched_of
 from tactile_depth.chip.gradient.frame_marks import slope_limit
 from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
@@ -23,23 +23,21 @@ from tactile_depth.depth.result import Recorder, Result, thresholds_of
 from tactile_depth.depth.twin import PICTURES, require_flat_field, require_zero_offset
 from tactile_depth.device import captures, held, sent
 from tactile_depth.device.addresses import open_channel
-from tactile_depth.device.arrived import arrived
-from tactile_depth.device.camera_frame import of_camera
+from tactile_depth.device.camera_frame import dead_pixels, of_camera
 from tactile_depth.device.channel import Arrival, Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import Exchange, camera_frames
 from tactile_depth.device.frame import DeviceFrame, seen_as
 from tactile_depth.device.registers import Registers, read_words, write_words
 from tactile_depth.device.self_test import signature_of
-from tactile_depth.device.status import COUNTERS, DeviceStatus
-from tactile_depth.device.tables import load_tables, require_same, wait_in_use, window_doubt
-from tactile_depth.pictures.doubts import UnusablePicture, Warned
+from tactile_depth.device.status import DeviceStatus, status_of
+from tactile_depth.device.tables import load_tables, require_same, wait_in_use, window_doubts
+from tactile_depth.pictures.doubts import Doubt, Warned, tell
 from tactile_depth.pictures.frames import GREY
 from tactile_depth.pictures.pictures import Picture, Pictures
-from tactile_depth.pictures.reference_check import check_reference
+from tactile_depth.sensor.sensor import TOO_DARK
 
-LIGHT = REGISTERS["LIGHT"]
-OF_CAMERA = "the reference that the device took from its camera"
+LIGHT, DARK_LEVEL = REGISTERS["LIGHT"], "DARK_LEVEL"
 CAPTURED = 8
 """Pictures of the device's camera that a capture takes the mean of."""
 
@@ -108,12 +106,15 @@ class Device(AbstractContextManager["Device"]):
         }
         self._settings = pipeline.settings(**self._thresholds_mm)
         self._tables = held.signatures_of(pipeline)  # that the device is to use
-        self._unseen: set[str] = set()  # those of a capture whose pictures this program did not send
-        self._is_closed = self._is_window_checked = False
+        self._loaded = self._tables.copy()  # of the pipeline at the last load, or capture in the device
+        self._unseen: dict[str, tuple[Doubt, ...]] = {}  # those of a capture whose pictures it did not send, doubts
+        self._is_closed = False
+        self._told = Warned()  # of the device's camera
         self._is_busy = False
         self._is_set = False  # the settings are those of this program
+        self._dark_level = TOO_DARK  # of the device's camera; 0 for pictures that are sent, which the host checks
         self._line: Channel | None = self._connect()
-        self._twin = pipeline.copy()  # with what the device holds, by what is known
+        self._use(pipeline.copy())
         try:
             self._accept_captures(self._line)
         except BaseException:
@@ -144,7 +145,9 @@ class Device(AbstractContextManager["Device"]):
         """
         with self._alone(), self._open_line() as line:
             require_same(line, self.pipeline)
-            self._twin, self._tables = self.pipeline.copy(), held.signatures_of(self.pipeline)
+            self._use(self.pipeline.copy())
+            self._tables = held.signatures_of(self.pipeline)
+            self._loaded = self._tables.copy()
             self._unseen.clear()
             with Exchange(line) as exchange:
 
@@ -198,7 +201,7 @@ class Device(AbstractContextManager["Device"]):
         if pictures is None:
             self._capture_of_camera("zero", frames, LARGEST_LOG2)
             return
-        self._require_seen(self._unseen - {"zero"})
+        self._require_seen(self._unseen.keys() - {"zero"})
         twin = self._twin.copy()
         twin.capture_zero(pictures)
         taken = np.stack([frame for _, frame in twin.reader.pictures(pictures, PICTURES)[0]])
@@ -279,20 +282,24 @@ class Device(AbstractContextManager["Device"]):
         Warns
         -----
         InputWarning
-            The heights of a picture are uncertain; of a stream once for each kind of doubt.
+            The heights of a picture are uncertain; of a stream once for each kind of doubt. The reference is not from
+            the device's own camera, once.
         """
         if stream is not None:
             require_flag(Argument("stream", stream))
         if pictures is None and stream is False:
             raise InputError(Argument("stream", stream), ": without pictures", remedy="give pictures")
         with self._alone(), self._open_line() as line:
+            held.require_same_pipeline(self.pipeline, self._loaded, self._tables, self._unseen)
             held.require_tables(line, self._tables)
             light = self._require_settings(line)
+            self._set_dark_level(line, is_camera=pictures is None)
             if pictures is None:
-                self._check_window(line)
-                warned = Warned()
+                doubts = [*window_doubts(line, self.pipeline), *held.reference_doubts(self.pipeline, self._unseen)]
+                tell(self._told.new(doubts))
+                warned, known = Warned(), (*self._twin.doubts, *chain(*self._unseen.values()))
                 for arrival in camera_frames(line):
-                    yield of_camera(self._frame(arrival), arrival.frame.shift, self._twin, warned)
+                    yield of_camera(self._frame(arrival), arrival.frame.shift, self._twin, known, self._dead, warned)
                 return
             self._require_seen(self._unseen)
             if stream or (stream is None and not sent.are_whole(pictures)):
@@ -315,7 +322,7 @@ class Device(AbstractContextManager["Device"]):
         with self._open_line() as line:
             held.require_tables(line, self._tables)
             self._require_seen(self._unseen)
-            dark_level = read_words(line, ["DARK_LEVEL"])["DARK_LEVEL"]
+            dark_level = read_words(line, [DARK_LEVEL])[DARK_LEVEL]
             shown, twin = signature_of(line), self._twin
         wanted = self_test(twin.config, twin.twin.tables, twin.zero_codes, dark_level)
         if shown != wanted:
@@ -327,17 +334,7 @@ class Device(AbstractContextManager["Device"]):
     def status(self) -> DeviceStatus:
         """Return the state of the device and of the link."""
         with self._open_line() as line:
-            status = line.ask()
-            words = read_words(line, [*COUNTERS, "STATUS"])
-            counts = line.bad_packets, line.delivered, line.lost
-            came = arrived(line)
-        levels = REGISTERS["STATUS"].unpack(words.pop("STATUS"))
-        *grid, _ = status.shape
-        sent = status.resets, status.sent, status.skipped, status.bad_packets
-        flags = bool(levels["touching"]), bool(levels["busy"]), came.hunting, came.stalled
-        return DeviceStatus._make(
-            (*grid, *sent, *counts, *words.values(), *flags, (came.rows, came.columns), came.line)
-        )
+            return status_of(line)
 
     # The line.
 
@@ -399,29 +396,19 @@ class Device(AbstractContextManager["Device"]):
         if count not in accepted:
             raise InputError(Argument("frames", count), accepted=[str(number) for number in accepted])
         with self._capturing(table) as line:
-            self._check_window(line)
+            tell(self._told.new(window_doubts(line, self.pipeline)))
 
             def untouched() -> None:
                 line.send(self._untouched)
 
             captures.capture_of_camera(line, table, count, untouched)
+            entries = captures.read_captured(line, table, untouched)
             if table == "reference":
-                self._check_captured(captures.read_captured(line, table, untouched))
+                doubts, self._dead = captures.check_reference_of_camera(self.pipeline, entries)
+            else:
+                doubts = captures.check_zero_of_camera(self.pipeline, entries)
             self._tables |= held.read_signatures(line, [table])
-        self._unseen.add(table)
-
-    def _check_captured(self, entries: np.ndarray) -> None:
-        """Refuse or doubt a reference that the device's camera gave, by the entries of its table."""
-        config, reader = self.pipeline.config, self.pipeline.reader
-        gains = entries.reshape(*config.reference_nodes, -1)[..., :3]
-        require_light(gains, config, OF_CAMERA)
-        try:
-            check_reference(reader.sensor, untouched_of(gains, config)[None], OF_CAMERA)
-        except UnusablePicture as error:
-            problem = str(error).removesuffix(f": {error.remedy}")
-            raise InputError(
-                problem, remedy="build the device for its camera (BAYER), and mount that as calibrated"
-            ) from error
+        self._unseen[table] = doubts
 
     @contextmanager
     def _capturing(self, table: str, twin: Pipeline | None = None) -> Iterator[Channel]:
@@ -430,11 +417,17 @@ class Device(AbstractContextManager["Device"]):
             others = {name: word for name, word in self._tables.items() if name != table}
             held.require_tables(line, others, is_settled=False)
             self._tables[table] = NOT_KNOWN  # until it has ended
+            self._set_dark_level(line, is_camera=twin is None)
             yield line
+        self._loaded[table] = held.signatures_of(self.pipeline)[table]
         if twin is not None:
-            self._twin = twin
+            self._use(twin)
             self._tables[table] = held.signatures_of(twin)[table]
-            self._unseen.discard(table)
+            self._unseen.pop(table, None)
+
+    def _use(self, twin: Pipeline) -> None:
+        """Take a pipeline for one with what the device holds."""
+        self._twin, self._dead = twin, dead_pixels(twin.twin.tables.gains)
 
     def _accept_captures(self, line: Channel) -> None:
         """Take tables of the device's own captures, such as of an earlier program, for right, and say so."""
@@ -443,7 +436,7 @@ class Device(AbstractContextManager["Device"]):
         words = held.read_signatures(line, names)
         names = [name for name in names if words[name] not in (NOT_KNOWN, self._tables[name])]
         self._tables |= {name: words[name] for name in names}
-        self._unseen |= {*names}
+        self._unseen |= dict.fromkeys(names, ())
         if names:
             problem = f"the {' and the '.join(names)} of the device comes from a capture before this program"
             warn(InputWarning(problem, remedy="call load() for those of the pipeline"))
@@ -476,13 +469,15 @@ class Device(AbstractContextManager["Device"]):
     def _words(self) -> dict[str, int]:
         """Words of the registers that depth, contact and flags depend on."""
         steepest = slope_limit(self.pipeline.sensor, self.pipeline.config)
-        return {**thresholds_of(self._settings), "SLOPE_LIMIT": steepest, "DARK_LEVEL": 0}
+        others = {"DEBOUNCE": self._settings.debounce, "SLOPE_LIMIT": steepest, DARK_LEVEL: self._dark_level}
+        return thresholds_of(self._settings) | others
 
-    def _check_window(self, line: Channel) -> None:
-        """Warn once if what the device takes of its camera's pictures is not what the calibration is for."""
-        if not self._is_window_checked and (doubt := window_doubt(line, self.pipeline)):
-            warn(doubt)
-        self._is_window_checked = True
+    def _set_dark_level(self, line: Channel, is_camera: bool) -> None:
+        """Let black pixels of the device's camera count as dark, and those of pictures that are sent as the host's."""
+        level = TOO_DARK * is_camera
+        if level != self._dark_level:
+            write_words(line, [(DARK_LEVEL, level)])
+            self._dark_level = level
 
     def _frame(self, arrival: Arrival, picture: int | None = None, result: Result | None = None) -> DeviceFrame:
         pipeline, frame = self.pipeline, arrival.frame

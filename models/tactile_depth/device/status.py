@@ -5,6 +5,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from tactile_depth.chip.registers.register_map import REGISTERS
+from tactile_depth.device.arrived import arrived
+from tactile_depth.device.channel import Channel
+from tactile_depth.device.registers import read_words
+
 
 class DeviceStatus(NamedTuple):
     """State of a device and of the link to it. Counters of the pipeline stay at all ones rather than wrap.
@@ -76,5 +81,34 @@ class DeviceStatus(NamedTuple):
     input: str
 
 
-COUNTERS = tuple(name.upper() for name in DeviceStatus._fields[10:19])
-"""Registers of the counters of the pipeline, in the order of the fields."""
+COUNTERS = (
+    *("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "DARK_PIXELS"),
+    *("DEPTH_DROPPED", "RECORDS_LOST", "FLIPS", "RESIDUALS"),
+)
+"""Registers of the counters of the pipeline; fields have the same names."""
+
+
+def status_of(line: Channel) -> DeviceStatus:
+    """Return the state of the device at the other end of a line. Raises DeviceError if it does not answer."""
+    status = line.ask()
+    words = read_words(line, [*COUNTERS, "STATUS"])
+    levels, came = REGISTERS["STATUS"].unpack(words["STATUS"]), arrived(line)
+    return DeviceStatus(
+        rows=status.rows,
+        columns=status.columns,
+        data_width=status.data_width,
+        resets=status.resets,
+        sent=status.sent,
+        skipped=status.skipped,
+        bad_packets_of_device=status.bad_packets,
+        bad_packets=line.bad_packets,
+        delivered=line.delivered,
+        lost=line.lost,
+        **{name.lower(): words[name] for name in COUNTERS},
+        touching=bool(levels["touching"]),
+        busy=bool(levels["busy"]),
+        hunting=came.hunting,
+        stalled=came.stalled,
+        arrived=(came.rows, came.columns),
+        input=came.line,
+    )

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tactile_depth.base.errors import InputError, InputWarning
+from tactile_depth.base.errors import InputError
 from tactile_depth.chip.camera_configuration import window_of
 from tactile_depth.chip.registers.axil_registers import Build
 from tactile_depth.chip.registers.register_map import CAMERA_REGISTERS, REGISTERS, TABLES, Field
@@ -19,6 +19,7 @@ from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.registers import read_words, write_words
+from tactile_depth.pictures.doubts import Doubt, doubt
 from tactile_depth.sensor.view import share_of
 
 ARITHMETIC = "ARITHMETIC"
@@ -61,27 +62,28 @@ def require_same(line: Channel, pipeline: Pipeline) -> None:
         raise InputError(problem, remedy="build the device for this calibration")
 
 
-def window_doubt(line: Channel, pipeline: Pipeline) -> InputWarning | None:
-    """Return a warning if a device cuts its camera's pictures to another part than the calibration's pictures show.
+def window_doubts(line: Channel, pipeline: Pipeline) -> list[Doubt]:
+    """Doubt a device that cuts its camera's pictures to another part than the calibration's pictures show.
 
-    The camera is taken to send the sensor's full picture. None too for a device without a camera front end, over `uio`,
+    The camera is taken to send the sensor's full picture. No doubt of a device without a camera front end, over `uio`,
     which does not reach its registers, and for a calibration whose view is unknown.
     """
     view, words = pipeline.sensor.view, line.read([CAMERA_REGISTERS[name].offset for name in CAMERA])
     if view is None or len(words) < len(CAMERA):
-        return None
+        return []
     picture, first, size = (CAMERA_REGISTERS[name].unpack(word) for name, word in zip(CAMERA, words, strict=True))
     window = np.array((first["x"], first["y"], size["columns"], size["rows"]))
     expected = np.array(window_of((picture["rows"], picture["columns"]), pipeline.grid, share_of(view)))
     differs = np.concatenate((window[2:] - expected[2:], (window - expected)[:2] + (window - expected)[2:] / 2))
     if (np.abs(differs) <= WINDOWS_AGREE * np.tile(expected[2:], 2)).all():
-        return None
+        return []
     shown, right = (",".join(map(str, each.tolist())) for each in (window, expected))
-    return InputWarning(
+    text = (
         f"CAMERA_WINDOW and CAMERA_WINDOW_SIZE of the device are {shown}, but {pipeline.sensor.name} is for {right} of "
-        f"a picture of {picture['columns']} x {picture['rows']}: heights are wrong",
-        remedy=f"build the device with WINDOW={right}, unless its camera sends less than the sensor's full picture",
+        f"a picture of {picture['columns']} x {picture['rows']}: heights are wrong"
     )
+    remedy = f"build the device with WINDOW={right}, unless its camera sends less than the sensor's full picture"
+    return [doubt("window", text, remedy=remedy)]
 
 
 def _shown(word: int, field: Field) -> str:

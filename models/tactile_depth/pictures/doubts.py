@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, warn
+from tactile_depth.sensor.verdict import BAD, Verdict
 
 COLOURS = ("red", "green", "blue")
 REFERENCE = Argument("reference")
@@ -29,6 +30,7 @@ CLIPPED_DOUBTFUL, CLIPPED_REFUSED = 0.005, 0.1
 
 LIGHT = "light"  # kind of the doubt that light gains may end
 VIEW = "view"  # kind of the doubt of a reference that shows more or less of the gel than it should
+TOUCHED = "contact in the zero offset"
 BY_VIEW = ("uneven light", "no surface", "pressed out")  # kinds that come of slopes and contacts of a wrong size
 SETTLING = 8  # pictures in a row after which the light gains of a stream have followed a change of the light
 
@@ -51,6 +53,14 @@ class Doubt:
 def doubt(kind: str, *parts: Part, remedy: str | Iterable[Part]) -> Doubt:
     """Return a doubt with a message of these parts."""
     return Doubt(kind, InputWarning(*parts, remedy=remedy))
+
+
+def of_verdict(verdict: Verdict | None) -> tuple[Doubt, ...]:
+    """Doubt all heights of a calibration whose verdict is bad."""
+    if verdict is None or verdict.grade != BAD:
+        return ()
+    problem = "the verdict of the calibration is bad: heights may be wrong"
+    return (doubt("verdict", problem, remedy="calibrate again"),)
 
 
 @dataclass
@@ -79,8 +89,8 @@ class Warned:
 
 
 def unexplained(doubts: Iterable[Doubt], of_reference: Iterable[Doubt]) -> tuple[Doubt, ...]:
-    """Return the doubts of a picture that are not due to the view of its reference, which has been told."""
-    is_told = any(each.kind == VIEW for each in of_reference)
+    """Return the doubts of a picture that do not come of the view of its reference or of a wrong zero offset."""
+    is_told = any(each.kind in (VIEW, TOUCHED) for each in of_reference)
     return tuple(each for each in doubts if not (is_told and each.kind in BY_VIEW))
 
 

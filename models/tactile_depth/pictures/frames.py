@@ -283,6 +283,8 @@ def read_pictures(
     accepted : str
         Lists in errors what the caller accepts.
     """
+    if not str(source):
+        raise InputError(f"{name or 'the path of pictures'} is empty: give a file or a folder")
     path = Path(source)
     try:
         folder = path.is_dir()

@@ -39,6 +39,8 @@ def array_of(given: object, name: Part) -> np.ndarray:
     mode = getattr(given, "mode", RGB)
     if isinstance(mode, str) and mode != RGB:
         raise InputError(name, f": a PIL image of mode {mode}", accepted=RGB, remedy='give it after .convert("RGB")')
+    if isinstance(given, np.ma.MaskedArray):
+        raise InputError(name, ": a masked array, whose mask would be lost", remedy="give it after .filled(..)")
     return np.asarray(given)
 
 

@@ -24,6 +24,15 @@ def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]
     return picture_grid((sensor.camera.rows, sensor.camera.columns), solver)
 
 
+def check_shape(grid: tuple[int, int], sensor: Sensor) -> None:
+    """Warn of a grid that is upright where pictures of a sensor are wide, or the other way round."""
+    rows, columns = default_grid(sensor)
+    if (grid[0] - grid[1]) * (rows - columns) < 0:
+        part, side = grid[1] / grid[0] * rows / columns, "width" if columns > rows else "height"
+        problem = f" is rows and columns, and shows {min(part, 1 / part):.2g} of the {side} of the pictures"
+        warn(InputWarning(Argument("grid", grid), problem, remedy=("to see more give ", Argument("grid", grid[::-1]))))
+
+
 class Reader:
     """Reads pictures of a sensor onto a grid.
 
@@ -39,6 +48,7 @@ class Reader:
     """
 
     def __init__(self, sensor: Sensor, grid: tuple[int, int], share: Share = WHOLE) -> None:
+        check_shape(grid, sensor)
         self.sensor, self.share, self._grid = sensor, share, grid
         self._samplers: dict[tuple[int, int], GridSampler] = {}
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, counted, warn
-from tactile_depth.base.npy import is_file, read_header
+from tactile_depth.base.npy import DIGEST, digest_of, is_file, read_header
 from tactile_depth.chip.limits import COEFFICIENTS, CUBIC, GRADIENT_LIMITS, MODELS
 from tactile_depth.sensor.sensor import (
     CORRECTIONS,
@@ -51,6 +51,7 @@ KEYS = (
     "corrections",
     "pixel_aspect",
     *(f"{what}_{model}" for what in ("fitted_slope", "cap_height") for model in MODELS),
+    DIGEST,
 )
 
 READ_VERSIONS = tuple(range(2, FORMAT_VERSION + 1))
@@ -69,7 +70,7 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
     if not is_file(path):
         problem = f"{path}: no such file" if path.suffix == ".npz" else f"unknown calibration {name}"
         raise InputError(f"{problem}: accepted are {', '.join(BUILT_IN)}, or the path of an .npz file")
-    arrays = _arrays(path)
+    arrays = _unchanged(path, _arrays(path))
     held = {model: key in arrays for model, key in zip(MODELS, ("gradient", "coefficients", "cubic"), strict=True)}
     has_polynomials = held["quadratic"] or held["cubic"]
     if not any(held.values()):
@@ -115,6 +116,14 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
         untouched=_untouched(path, arrays) if "untouched" in arrays else None,
         verdict=_verdict(path, arrays["verdict"]) if "verdict" in arrays else None,
     )
+
+
+def _unchanged(path: Path, arrays: Arrays) -> Arrays:
+    """Return what a file holds; of one that was changed since it was written, without its errors and verdict."""
+    if DIGEST not in arrays or str(arrays[DIGEST]) == digest_of(arrays):
+        return arrays
+    warn(InputWarning(f"{path} was changed after the fit: its error does not hold any more", remedy="calibrate again"))
+    return {key: array for key, array in arrays.items() if key != "verdict" and not key.startswith("cap_height_")}
 
 
 def _view(path: Path, arrays: Arrays) -> tuple[float, float]:

@@ -59,4 +59,5 @@ CHIP = replace(
 )
 """A real sensor with the shortest words that add a tenth to the error of its calibration, as `make tune TOLERANCE=auto
 TARGET=ecp5` chose them for 2 mm on 45 presses of a GelSight Mini."""
+THRESHOLD_MM, AREA_THRESHOLD_MM = 0.07, 0.3  # of a contact
 PRESETS = {"published": PUBLISHED, "sensor": SENSOR, "chip": CHIP}

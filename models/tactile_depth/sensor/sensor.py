@@ -13,7 +13,7 @@ import numpy as np
 
 from tactile_depth.base.by_value import ByValue
 from tactile_depth.base.errors import Argument, InputError, Part, is_number
-from tactile_depth.base.npy import Bytes, Floats
+from tactile_depth.base.npy import DIGEST, Bytes, Floats, digest_of
 from tactile_depth.chip.camera_configuration import FORMATS
 from tactile_depth.chip.limits import (
     COEFFICIENT_LIMITS,
@@ -424,7 +424,7 @@ class Sensor(ByValue):
             arrays[f"cap_height_{model}"] = np.array((error.mean, error.spread, error.presses))
         with files.workspace(path.parent, (path.name,), str(path), guarded=False) as work:
             held = {key: value for key, value in arrays.items() if value is not None}
-            np.savez_compressed(work / path.name, **held)
+            np.savez_compressed(work / path.name, **held | {DIGEST: digest_of(held)})
             files.replace(work, (path.name,), path.parent, guarded=False)
 
 
