@@ -199,10 +199,13 @@ def test_a_second_picture_of_one_name_does_not_replace_the_first(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, inputs: Any, arguments: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "press.png").write_bytes((inputs / "press.png").read_bytes())
-    for picture, status in (("press.png", 0), ("press.png", 0), (f"{inputs}/press.png", 2)):
-        assert main(["depth", picture, *arguments]) == status
-    assert "press-depth holds results of press.png: give another folder as --out" in capsys.readouterr().err
+    for name in ("1: press.png", "other/1: press.png", "pressed/a.png", "pressed/b.png"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_bytes((inputs / "press.png").read_bytes())
+    again = ("1: press.png", 0), ("./1: press.png", 0), ("pressed", 0), ("pressed/", 0)
+    for picture, status in (*again, ("other/1: press.png", 2)):
+        assert main(["depth", picture, *arguments]) == status, picture
+    assert "1: press-depth holds results of ./1: press.png: give another folder as --out" in capsys.readouterr().err
 
 
 def test_empty_paths_are_refused(inputs: Any, arguments: Any, capsys: pytest.CaptureFixture[str]) -> None:

@@ -109,8 +109,9 @@ def _keep_others(out: Path, first: str) -> None:
     """Raise InputError if a folder that no argument names holds results of another first picture or folder."""
     before = first
     with contextlib.suppress(OSError, ValueError, LookupError, TypeError):
-        before = str(json.loads((out / REPORT).read_text())["pictures"][0]["picture"]).partition(": ")[0]
-    if Path(before).resolve() != Path(first).resolve():
+        before = str(json.loads((out / REPORT).read_text())["pictures"][0]["picture"])
+    sources = (before, before.rpartition(": ")[0])  # a picture, or one of a folder or an .npy
+    if Path(first).resolve() not in (Path(source).resolve() for source in sources):
         raise InputError(f"{out} holds results of {before}: give another folder as --out, or delete it")
 
 
@@ -186,7 +187,7 @@ def _write_frame(folder: Path, suffix: str, label: str, image: np.ndarray, resul
 
 def _describe_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> dict[str, Any]:
     config, model = pipeline.config, pipeline.config.gradient_model
-    error = pipeline.sensor.height_errors.get(model)
+    error = None if pipeline.doubts else pipeline.sensor.height_errors.get(model)
     return {
         "calibration": pipeline.sensor.name,
         "calibration_named": options.calibration is not None,
