@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `tactile-depth depth` draws and prints of a picture: mesh, colours, line, overview."""
+"""Drawings and lines of `tactile-depth depth`: mesh, colours, the line of a picture, overview."""
 
 from dataclasses import replace
 from typing import Any

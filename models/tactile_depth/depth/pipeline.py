@@ -157,7 +157,7 @@ class Pipeline:
             self_check=self_check,
         )
         require_thresholds(threshold_mm, area_threshold_mm, self.config, self.pixel_pitch_mm)
-        self._format_doubts = (*of_verdict(sensor.verdict), *check_steps(self.config, self.pixel_pitch_mm, arithmetic))
+        self._fixed_doubts = (*of_verdict(sensor.verdict), *check_steps(self.config, self.pixel_pitch_mm, arithmetic))
         self._threshold_mm, self._area_threshold_mm = threshold_mm, area_threshold_mm
         self._zero, self._exact_zero = no_zero(self.config), np.zeros(self.grid)
         self._key, self._captures = secrets.token_hex(), 0  # of its streams
@@ -354,7 +354,7 @@ class Pipeline:
     @property
     def doubts(self) -> tuple[Doubt, ...]:
         """Why all heights are uncertain: by the calibration, word lengths, the reference and the zero offset."""
-        return (*self._format_doubts, *self._doubts, *self._zero_doubts)
+        return (*self._fixed_doubts, *self._doubts, *self._zero_doubts)
 
     def capture_reference(self, pictures: Pictures) -> None:
         """Take the mean of pictures without contact as the reference, as the hardware's capture does.
