@@ -8,10 +8,13 @@
    `hardware` is a folder of Pipeline.hardware. The picture has bytes of red, green and blue for each pixel of the grid,
    the file of heights a float; rows go from the top. With - for the port, standard input and output are the line. */
 
-#define _DEFAULT_SOURCE /* POSIX and cfmakeraw in spite of -std=c99 */
+#define _DEFAULT_SOURCE /* POSIX, flock and cfmakeraw in spite of -std=c99 */
+#include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 
 #include "tactile_depth_link.h"
@@ -20,9 +23,11 @@
 #define B3000000 3000000 /* where speeds are numbers */
 #endif
 
-enum { TRIES = 5 };
+enum { TRIES = 5, CAMERA_MS = 500 }; /* in which a camera gives a picture */
 enum { GAIN_OF_1 = 0x8000, LEAST_GAIN = 0x4000, LARGEST_GAIN = 0xFFFF }; /* of the light */
 enum { STILL = 4, MOST_PICTURES = 20 };  /* gains that move by less than 2^-13 have settled */
+
+#define CAMERA "the device has a camera of its own: stop the camera, or take its depth with td.Device in Python"
 
 static void open_line(struct link *l, const char *port)
 {
@@ -37,10 +42,16 @@ static void open_line(struct link *l, const char *port)
   l->repeat_ms = 50;
   l->repeats = 60;
   l->in = l->out = open(port, O_RDWR | O_NOCTTY);
+  if (l->in >= 0 && flock(l->in, LOCK_EX | LOCK_NB) < 0 && errno == EWOULDBLOCK) {
+    close(l->in);
+    l->in = -1;
+    errno = EBUSY;
+  }
   if (l->in < 0 || tcgetattr(l->in, &line) < 0) {
-    l->failure = "the port cannot be opened";
+    l->failure = errno == EBUSY ? "the port is in use by another program: close that one" : "the port cannot be opened";
     return;
   }
+  ioctl(l->in, TIOCEXCL); /* for programs that look at no lock */
   cfmakeraw(&line);
   line.c_cflag |= CLOCAL | CREAD;
   if (cfsetispeed(&line, B3000000) < 0 || cfsetospeed(&line, B3000000) < 0 || tcsetattr(l->in, TCSAFLUSH, &line) < 0)
@@ -56,15 +67,36 @@ static void begin(struct link *l)
     link_ask(l, select, sizeof select, LINK_STATUS, 10, LINK_WORDS);
 }
 
-/* Send a picture, again if need be, until a depth frame comes. */
+/* Refuse a device whose last frame has another number: a camera's frames would pass for those of the picture. */
+static void require_last(struct link *l, uint32_t number)
+{
+  if (link_read(l, TACTILE_DEPTH_RECORD_FRAME_ADDRESS) != number && !l->failure)
+    l->failure = CAMERA;
+}
+
+/* Refuse a device that makes frames before a picture is sent. */
+static void require_silence(struct link *l)
+{
+  uint32_t number = link_read(l, TACTILE_DEPTH_RECORD_FRAME_ADDRESS);
+  int64_t end_ms = link_now_ms() + CAMERA_MS;
+
+  while (link_packet(l, end_ms))
+    ;
+  require_last(l, number);
+}
+
+/* Send a picture, again if need be, until its depth frame comes: the one with the next number. */
 static void send_picture(struct link *l, const uint8_t *picture)
 {
-  uint32_t place, count, frames = l->frames, tries;
+  uint32_t place, count, frames, next, tries = 0;
   uint8_t body[LINK_HEADER + 3 * LINK_MOST_PIXELS] = {LINK_PICTURE};
 
-  for (tries = 0; tries < TRIES && l->frames == frames && !l->failure; tries++) {
-    int64_t begin_ms = link_now_ms();
+  do {
+    int64_t begin_ms;
 
+    next = link_read(l, TACTILE_DEPTH_RECORD_FRAME_ADDRESS) + 1;
+    frames = l->frames;
+    begin_ms = link_now_ms();
     link_put(body + 1, 4, (uint32_t)begin_ms); /* a number that the picture before did not have */
     for (place = 0; place < LINK_PIXELS; place += count) {
       count = LINK_PIXELS - place < LINK_MOST_PIXELS ? LINK_PIXELS - place : LINK_MOST_PIXELS;
@@ -75,9 +107,9 @@ static void send_picture(struct link *l, const uint8_t *picture)
     }
     while (l->frames == frames && link_packet(l, begin_ms + (int64_t)l->repeat_ms * l->repeats))
       ;
-  }
-  if (l->frames == frames && !l->failure)
-    l->failure = "no depth frame comes";
+  } while (l->frames == frames && ++tries < TRIES && !l->failure);
+  if (!l->failure)
+    l->failure = l->frames == frames ? "no depth frame comes" : l->frame != next ? CAMERA : NULL;
 }
 
 /* Load tables and thresholds; they are in use from the next picture on. */
@@ -189,10 +221,14 @@ int main(int count, char **words)
   }
   open_line(&l, words[1]);
   begin(&l);
+  require_silence(&l);
   load(&l, picture);
   settle(&l, picture);
   if (!l.failure && tactile_depth_holds(link_write, link_read, &l) != TACTILE_DEPTH_ALL_TABLES)
     l.failure = "the device uses other tables than were loaded: another program writes to it";
+  require_last(&l, l.frame);
+  if (l.in > 0)
+    ioctl(l.in, TIOCNXCL); /* which would last as long as anyone holds the port open */
   if (l.failure) {
     fprintf(stderr, "%s: %s\n", words[1], l.failure);
     return 1;

@@ -19,7 +19,7 @@ enum { LINK_ROWS = TACTILE_DEPTH_ROWS, LINK_COLUMNS = TACTILE_DEPTH_COLUMNS, LIN
 enum { LINK_ASK = 0x01, LINK_SELECT, LINK_READ, LINK_WRITE, LINK_PICTURE }; /* kinds of packets */
 enum { LINK_STATUS = 0x81, LINK_READ_REPLY = 0x83, LINK_WRITE_REPLY, LINK_DEPTH = 0x90, LINK_TRAILER = 0x98 };
 enum { LINK_VERSION = 2, LINK_WORDS = 1, LINK_HEADER = 9, LINK_MOST_ACCESSES = 128, LINK_MOST_PIXELS = 256 };
-enum { LINK_LONGEST_PIECE = 1398, LINK_LONGEST_BODY = 1388, LINK_FLAGS = 66, LINK_TRAILER_BYTES = 78 };
+enum { LINK_LONGEST_PIECE = 1398, LINK_LONGEST_BODY = 1388, LINK_FRAME = 22, LINK_FLAGS = 66, LINK_TRAILER_BYTES = 78 };
 
 struct link {
   int in, out;                                /* file descriptors of the line */
@@ -36,7 +36,7 @@ struct link {
   uint8_t values[4 * LINK_PIXELS];            /* bytes of the frame that comes, */
   size_t count;                               /* and their number */
   int32_t codes[LINK_PIXELS];                 /* of the last whole frame, rows from the top, */
-  uint32_t flags[3];                          /* and its RECORD_FLAGS, RECORD_LIGHT and RECORD_PIXELS */
+  uint32_t frame, flags[3];                   /* its RECORD_FRAME, and RECORD_FLAGS, RECORD_LIGHT and RECORD_PIXELS */
 };
 
 static inline int64_t link_now_ms(void)
@@ -150,6 +150,7 @@ static inline void link_take_depth(struct link *l, size_t length)
     row = l->bottom_first ? LINK_ROWS - 1 - row : row;
     l->codes[row * LINK_COLUMNS + place % LINK_COLUMNS] = (int32_t)((int64_t)value - sign);
   }
+  l->frame = link_get(body + LINK_FRAME, 4);
   for (place = 0; place < 3; place++)
     l->flags[place] = link_get(body + LINK_FLAGS + 4 * place, 4);
   l->frames++;

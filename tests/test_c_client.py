@@ -23,6 +23,7 @@ from tactile_depth.chip.link.framing import LONGEST_BODY, cobs_decode, to_line
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.registers.table_banks import COMMIT
 from tests.device.cable import Cable, setup_of
+from tests.device.model_device import ModelDevice
 from tests.test_c_header import compiled, tool
 
 SOURCE, HEADER = ROOT / "examples" / "link_client.c", ROOT / "examples" / "tactile_depth_link.h"
@@ -265,6 +266,28 @@ def test_what_fails_is_said(client: Client, plug: Callable[..., Cable], tmp_path
     }.items():
         ran = client.run(port)
         assert (ran.returncode, ran.stderr) == (1, f"{port}: {text}\n")
+
+
+@pytest.mark.parametrize("is_early", [True, False], ids=["before a picture", "after a picture"])
+def test_frames_of_a_camera_are_refused(
+    client: Client, plug: Callable[..., Cable], monkeypatch: pytest.MonkeyPatch, is_early: bool
+) -> None:
+    camera = {"camera": np.full((1, *GRID, 3), 128, np.uint8), "camera_s": 0.05} if is_early else {}
+    picture = ModelDevice._picture
+    if not is_early:
+        monkeypatch.setattr(ModelDevice, "_picture", lambda *given: [picture(*given) for _ in range(2)])
+    cable = plug(client.pipeline, **camera)
+    ran = client.run(str(cable.path))
+    text = "the device has a camera of its own: stop the camera, or take its depth with td.Device in Python"
+    assert (ran.returncode, ran.stderr) == (1, f"{cable.path}: {text}\n")
+
+
+def test_a_port_in_use_is_left_alone(client: Client, plug: Callable[..., Cable]) -> None:
+    cable = plug(client.pipeline)
+    with td.Device(cable.address, client.pipeline):
+        ran = client.run(str(cable.path))
+    text = "the port is in use by another program: close that one"
+    assert (ran.returncode, ran.stderr) == (1, f"{cable.path}: {text}\n")
 
 
 def test_a_line_that_ends(client: Client) -> None:

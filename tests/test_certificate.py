@@ -312,11 +312,11 @@ def test_a_certificate_that_is_wrong_is_found_out(tmp_path: Path) -> None:
     frames, attempts = certify.worst_frames(nodes, calibration, config)
     peaks = certify.Peaks({node.name: node.form.width for node in nodes}, len(frames))
     certify.tactile_depth(frames, calibration, config, peaks)
-    assert certify.check_model(frames, attempts, nodes, peaks) == []
+    assert certify.check_model(frames, attempts, nodes, peaks, config.coefficient_width) == []
     output = next(node for node in nodes if node.name == "column_inverse.output")
     peaks.peaks["spectral_divide"] //= 2
     peaks.clips["column_forward.input"][0] = True
-    faults = certify.check_model(frames, attempts, nodes, peaks)
+    faults = certify.check_model(frames, attempts, nodes, peaks, config.coefficient_width)
     assert any(fault.startswith("spectral_divide reached") for fault in faults)
     assert any(fault.startswith("column_forward.input saturated") for fault in faults)
     assert output.slopes_headroom_bits < 0

@@ -378,6 +378,14 @@ def test_real_presses_that_give_a_doubtful_depth_are_warned_of(real: Any, kind: 
         doubted(real[0], edit(picture), message.split(" 4 %")[0])
 
 
+def test_gains_of_a_real_press_do_not_exchange_colours(real: Any) -> None:
+    pipeline, background, presses = real
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        *_, released = pipeline.stream([background, *[presses[0]] * 4, background])
+    assert ["light gains that have not followed yet" in text for text in released.warnings] == [True]
+
+
 def test_a_real_press_is_no_reference(real: Any) -> None:
     _, background, presses = real
     for press in presses[::3]:

@@ -116,10 +116,11 @@ def test_a_calibration_made_through_a_camera_holds_in_the_rtl(where: str, form: 
     assert fit.sensor.camera is not None
     assert fit.sensor.camera.pixel_format == form
     views = [view for view in presses.views if view.is_whole][:8]
+    views.insert(0, views[0])  # light gains are those of the frame before
     sampler = grid_sampler("presses", presses.background.shape[:2], presses.grid, choice)
     pictures = {press.name: press.image for press in gather(folder).presses}
     words = np.stack([sampler.words(read_picture(Path(str(pictures[view.press.name])))) for view in views])
     config = real_sensor(fit.sensor, presses, FULL_WORDS)
     depth = depth_of("verilator", fit.sensor, config, presses, views, tmp_path / "run", words, choice)
     in_the_model = [score.cap_height for score in scores_of(fit.sensor, presses, views, "quadratic")]
-    np.testing.assert_allclose(heights(views, depth), in_the_model, atol=HEIGHT_BAR)
+    np.testing.assert_allclose(heights(views, depth)[1:], in_the_model[1:], atol=HEIGHT_BAR)

@@ -48,7 +48,7 @@ def test_presses_all_over_the_gel_are_good(presses: GridPresses) -> None:
 def test_a_pitch_that_nothing_checks_is_said(folder: Path) -> None:
     checked = verdict(changed(folder))
     assert checked.grade == "good"
-    assert [reason.split(":")[0] for reason in checked.reasons] == ["pitch not checked"]
+    assert [reason.split(":")[0] for reason in checked.reasons] == ["pitch and diameters not checked"]
 
 
 def shifted(number: int, circle: tuple[float, float, float]) -> tuple[float, float, float]:
@@ -213,7 +213,7 @@ def test_real_presses_are_good_and_any_half_of_them_is_usable() -> None:
         assert verdict(replace(presses, views=presses.views[first::2])).grade != "bad"
     found = verdict(presses)
     assert found.grade != "bad"
-    assert "pitch not checked" not in str(found)
+    assert "pitch and diameters not checked" not in str(found)
     assert all(touched(presses, number) for number in range(0, 45, 4))
     assert all(_background(beside(presses, number)) == ("good", "") for number in range(0, 45, 4))
 

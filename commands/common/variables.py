@@ -215,13 +215,13 @@ def named(argument: Argument) -> str:
     return str(argument if name is None else Argument(name, argument.typed))
 
 
-def show_warning(target: str) -> Callable[..., None]:
-    """Return what shows a warning about input as one line; other warnings show as Python shows them."""
+def show_warning(command: str) -> Callable[..., None]:
+    """Return what shows a warning about input of a command as one line; other warnings show as Python shows them."""
     python = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
         if isinstance(message, InputWarning):
-            print(f"make {target}: warning: {message.text(named)}", file=sys.stderr)
+            print(f"{command}: warning: {message.text(named)}", file=sys.stderr)
         else:
             python(message, category, *place, **more)
 
@@ -256,7 +256,7 @@ def reported(target: str, interrupted: str = "") -> Iterator[None]:
 
     try:
         with interruption.stoppable(signals.end_children), warnings.catch_warnings():
-            warnings.showwarning = show_warning(target)
+            warnings.showwarning = show_warning(f"make {target}")
             yield
     except InputError as error:
         message, status = error.text(named), BAD_INPUT

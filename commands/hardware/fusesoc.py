@@ -7,8 +7,10 @@ a folder <NAME>. It needs numpy, scipy, Pillow and yaml.
 """
 
 import sys
+import warnings
 from pathlib import Path
 
+NAME = "tables of tactile_depth"
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "models")]  # FuseSoC runs it by its path
 
@@ -20,25 +22,27 @@ try:
     from tactile_depth.base.errors import InputError
     from tactile_depth.chip.rom_files import table_files
 except ImportError as error:
-    sys.exit(f"tables of tactile_depth: {error} ({sys.executable}): run `make setup`, put {ROOT}/.venv/bin on PATH")
+    sys.exit(f"{NAME}: {error} ({sys.executable}): run `make setup`, put {ROOT}/.venv/bin on PATH")
 
-PATHS = ("CALIBRATION", "REFERENCE", "ZERO")  # relative ones count from the folder of the core that calls it
+PATHS = ("CALIBRATION", "REFERENCE", "ZERO", "CONFIG")  # relative ones count from the folder of the core that calls it
 
 
 def generate(description: Path, folder: Path) -> None:
     """Write the module, its tables and a core that holds both into a folder. Raises InputError."""
     wanted = yaml.safe_load(description.read_text())
     values = dict(wanted.get("parameters") or {})
-    module = str(values.pop("NAME", ""))
+    module, root = str(values.pop("NAME", "")), Path(wanted.get("files_root", "")).resolve()
     wrapped.check_name(module)
     for key, value in values.items():
         if key not in wrapped.CHOICES:
             raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(wrapped.CHOICES)}")
         if value is None:
             raise InputError(f"{key}: it has no value: omit it")
-        beside = Path(wanted.get("files_root", ""), str(value))
+        beside = root / str(value)
         if key in PATHS and beside.is_file():
             values[key] = beside
+        elif key in PATHS and beside.suffix:  # names of calibrations and scenes have none
+            raise InputError(f"{key}={value}: there is no such file: relative paths count from {root}")
     words = [f"{key}={value}" for key, value in values.items()]
     request = run_request.parse(words, wrapped.CHOICES, wrapped.PRESET, frames="")
     (path,) = wrapped.write(request, folder, module, f"{module}/").modules
@@ -57,10 +61,11 @@ def generate(description: Path, folder: Path) -> None:
 
 def main() -> None:
     """Run the generator with the arguments that FuseSoC gives."""
+    warnings.showwarning = variables.show_warning(NAME)
     try:
         generate(Path(sys.argv[1]), Path.cwd())
     except InputError as error:
-        print(f"tables of tactile_depth: {error.text(variables.named)}", file=sys.stderr)
+        print(f"{NAME}: {error.text(variables.named)}", file=sys.stderr)
         sys.exit(2)
 
 

@@ -14,12 +14,12 @@ import numpy as np
 from commands.common import run_request, wrapper
 from commands.common.zero_offset import untouched
 from commands.hardware import synthesis
-from tactile_depth.base.errors import InputError
+from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
 from tactile_depth.chip.hardware_files import write_files
 from tactile_depth.depth.make_words import make_words
 from tactile_depth.depth.result import settings_of, thresholds_of
 from tactile_depth.depth.twin import Twin
-from tactile_depth.pictures.frames import Frames
+from tactile_depth.pictures.frames import REST_SCENE, Frames
 from tactile_depth.sensor.presets import AREA_THRESHOLD_MM, THRESHOLD_MM
 
 PRESET = "chip"
@@ -47,7 +47,14 @@ def design(request: run_request.Request) -> tuple[Frames, Twin]:
 
 
 def announce(request: run_request.Request, twin: Twin) -> None:
-    """Print the preset, and all words with which any command writes the same hardware."""
+    """Print the preset, and all words with which any command writes the same hardware.
+
+    Warns where the reference of a real sensor is not a picture.
+    """
+    if request.reference in (None, REST_SCENE) and twin.sensor.camera is not None and twin.config.flat_field:
+        tables = "reference and zero offset" if twin.config.zero_offset else "reference"
+        remedy = f"capture {tables} on the device before its depth means anything"
+        warn(InputWarning("no ", Argument("reference"), remedy=remedy))
     run_request.announce(request, twin.config)
     print(f"make words: {make_words(twin.config, twin.sensor.pixel_pitch_mm, sources(request))}", flush=True)
 

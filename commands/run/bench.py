@@ -124,12 +124,12 @@ def build(
             {**wrapper.grid(parameters), "Camera": parameters["Camera"]},
             folder,
             fast=is_long,
-            program=program,
+            program=None if waves else program,  # cocotb's writes them
             waves=waves,
             log=folder / simulation.LOG,
         )
 
-    return simulation.built_once(values, [*sources, program], f"the {simulator} model", make)
+    return simulation.built_once(values, [*sources, *[program] * (not waves)], f"the {simulator} model", make)
 
 
 def play(

@@ -102,7 +102,9 @@ def _corners(codes: np.ndarray) -> np.ndarray:
         return bins
 
 
-def check_model(frames: np.ndarray, attempts: list[Attempt], nodes: list[Node], peaks: Peaks) -> list[str]:
+def check_model(
+    frames: np.ndarray, attempts: list[Attempt], nodes: list[Node], peaks: Peaks, coefficient_width: int
+) -> list[str]:
     """Compare the model's words for the frames with the certificate; return one line for each difference."""
     order = [node.name for node in nodes]
     # The solve amplifies the lowest mode by pixels / (2 pi^2).
@@ -118,7 +120,9 @@ def check_model(frames: np.ndarray, attempts: list[Attempt], nodes: list[Node], 
             continue  # the input of this frame did not reach the node
         peak, bound = int(peaks.peaks[name][frame]), attempt.node.slopes / attempt.node.form.lsb
         full = attempt.node.form.limit / attempt.node.form.lsb  # a recursion that clips goes on from there
-        if not min(attempt.expected, full) - rounding <= peak <= bound + rounding:
+        expected = min(attempt.expected, full)
+        near = rounding + expected / 2**coefficient_width  # a coefficient is rounded too
+        if not expected - near <= peak <= bound + near:
             faults.append(f"{name} reached {peak:,}, expected {attempt.expected:,.1f} of {bound:,.1f}")
     for node in nodes:
         for frame in np.flatnonzero(peaks.clips[node.name]).tolist():
@@ -226,7 +230,7 @@ def run(request: Annotated[run_request.Request, run_request.chosen()], rtl: Flag
     for first in progress_bar(range(0, len(frames), BATCH), desc="model", delay=3):
         peaks.first = first
         tactile_depth(frames[first : first + BATCH], calibration, config, peaks)
-    faults = check_model(frames, attempts, nodes, peaks)
+    faults = check_model(frames, attempts, nodes, peaks, config.coefficient_width)
     clipping = sorted(node for node, clips in peaks.clips.items() if clips.any())
     if rtl:
         twin = Twin(calibration, config)

@@ -42,7 +42,7 @@ STRUCTURES = (
     built(CHOICES | {"columns": 32, "rows": 11, "lanes": 8}, on=VERILATOR),
     built(CHOICES | {"lanes": 8, "rows": 9, "neumann": True}, on=ICARUS),
     built(CHOICES | {"columns": 32, "rows": 11}, PACKED, on=ICARUS),
-    built(CHOICES | {"lanes": 4, "data_width": 12, "coefficient_width": 10}, mutants=BOTH),
+    built(CHOICES | {"lanes": 4, "rows": 9, "data_width": 12, "coefficient_width": 10}, mutants=BOTH),
     built(CHOICES | {"data_width": 32, "coefficient_width": 24, "neumann": True, "depth_range_px": 5.3}),
     built(CHOICES | {"columns": 64, "rows": 8, "lanes": 32}),
     built(CHOICES | {"columns": 32, "rows": 8, "lanes": 16, "data_width": 32, "coefficient_width": 24}),

@@ -246,6 +246,11 @@ class Pipeline:
         self.forget()
         return checked
 
+    async def play(self, *streams: Stream) -> None:
+        """Send streams and compare what leaves with the models."""
+        await self.send(*streams)
+        await self.check()
+
     async def clear_status(self, **bits: int) -> None:
         """Clear bits of STATUS by writing ones to them."""
         await self.write("STATUS", STATUS.pack(**bits))

@@ -63,11 +63,9 @@ async def reference(dut: Any) -> None:
     await pipeline.check()
     colours = unpack(shades).reshape(2, pipeline.rows, columns, 3)
     pipeline.tables.use("reference", reference_entries(captured_gains(colours, pipeline.config)))
-    await pipeline.send(pipeline.pressed(), still[0])
-    await pipeline.check()
+    await pipeline.play(pipeline.pressed(), still[0])
     await pipeline.reset(2)
-    await pipeline.send(pipeline.pressed())
-    await pipeline.check()
+    await pipeline.play(pipeline.pressed())
 
 
 @case(Level.FORMATS, needs=lambda config: config.zero_offset)
@@ -114,8 +112,7 @@ async def zero(dut: Any) -> None:
     assert 3 < later.count(False) < len(later), "the test is void: no frame has one of the zero offsets"
     await pipeline.check(contents=used)
     tables.use("zero", measured(*frames[:2]))
-    await pipeline.send(frames[0], frames[1])
-    await pipeline.check()
+    await pipeline.play(frames[0], frames[1])
     # One capture after another, the second as soon as it is accepted.
     start = ZERO_CAPTURE.pack(start=1)
     for frame in frames[1:]:
@@ -130,8 +127,7 @@ async def zero(dut: Any) -> None:
         tables.use("zero", measured(frame))
         await pipeline.check()
     await pipeline.reset(2)
-    await pipeline.send(frames[2])
-    await pipeline.check()
+    await pipeline.play(frames[2])
 
 
 @case(Level.FORMATS, needs=lambda config: config.flat_field)
@@ -146,5 +142,4 @@ async def dark_pixels_are_held(dut: Any) -> None:
                 words[row * pipeline.columns + column] = int(pack(colour))
     await pipeline.write("DARK_LEVEL", DARK_LEVEL)
     pipeline.scoreboard.dark_level = DARK_LEVEL
-    await pipeline.send(*ahead(pipeline), video(words, pipeline.columns), pipeline.frame())
-    await pipeline.check()
+    await pipeline.play(*ahead(pipeline), video(words, pipeline.columns), pipeline.frame())

@@ -22,14 +22,10 @@ async def contact(dut: Any, accepts: str) -> None:
     flat_peak, peak = int(codes[1].max()), int(codes[0].max())
     assert flat_peak < peak, "the test is void: the press is not deeper than the frame without contact"
 
-    await pipeline.send(pressed)
-    await pipeline.check()
-    assert not pipeline.contact.comparator.contact, "contact was set with the threshold after reset"
-
-    await pipeline.write("THRESHOLD", peak)
-    await pipeline.send(pressed)
-    await pipeline.check()
-    assert not pipeline.contact.comparator.contact, "contact was set by a depth equal to the threshold"
+    for level in ("its value after reset", "the peak"):
+        await pipeline.play(pressed)
+        assert not pipeline.contact.comparator.contact, f"contact was set with the threshold at {level}"
+        await pipeline.write("THRESHOLD", peak)
 
     await pipeline.write("THRESHOLD", peak - 1)
     await pipeline.send(pressed)
@@ -41,23 +37,19 @@ async def contact(dut: Any, accepts: str) -> None:
     await pipeline.check()
     assert dut.contact.value
 
-    await pipeline.send(flat)
-    await pipeline.check()
+    await pipeline.play(flat)
     assert not dut.contact.value
 
     await pipeline.write("CONTROL", CONTROL.pack(hold_contact=1))
-    await pipeline.send(pressed, flat, flat)
-    await pipeline.check()
+    await pipeline.play(pressed, flat, flat)
     assert dut.contact.value, "not held"
     await pipeline.write("CONTROL", 0)
     await ClockCycles(dut.clk, 2)
     assert not dut.contact.value, "contact is still held after hold_contact was cleared"
-    await pipeline.send(flat)
-    await pipeline.check()
+    await pipeline.play(flat)
     assert not dut.contact.value
 
-    await pipeline.send(pressed, flat, pressed)
-    await pipeline.check()
+    await pipeline.play(pressed, flat, pressed)
     assert dut.contact.value
 
 
@@ -81,15 +73,24 @@ async def records_at_the_limits(dut: Any) -> None:
                 await pipeline.write(name, code)
                 await pipeline.send(pressed, pressed)
                 await pipeline.check(counters=False)
-    # Most depths are below 0, then all: first the sum is negative, at last the peak too.
-    for name in ("THRESHOLD", "OFF_THRESHOLD"):
-        await pipeline.write(name, -(1 << pipeline.config.data_width - 1))
-    await pipeline.send(pipeline.pressed(-0.5))
-    await pipeline.check(counters=False)
-    assert pipeline.contact.events.touching
-    await pipeline.send(pipeline.frame_of(np.full((pipeline.rows, pipeline.columns, 2), 0.5)))
-    assert (await pipeline.check(counters=False)).codes.max() < 0
-    await pipeline.write("THRESHOLD", chosen[0])
+    # Most depths are below 0, then all: first the sum is negative, at last the peak and the thresholds too.
+    sunk = pipeline.frame_of(np.full((pipeline.rows, pipeline.columns, 2), 0.5))
+    peak = int(pipeline.depth_of(sunk).max())
+    assert peak < 0
+    lowest = -(1 << pipeline.config.data_width - 1)
+    for frame, threshold, of_area in (
+        (pipeline.pressed(-0.5), lowest, lowest),
+        (sunk, peak, lowest),
+        (sunk, peak - 1, lowest),
+        (sunk, lowest, peak - 1),
+    ):
+        await pipeline.write("THRESHOLD", threshold)
+        await pipeline.write("OFF_THRESHOLD", threshold)
+        await pipeline.write("AREA_THRESHOLD", of_area)
+        await pipeline.send(frame)
+        await pipeline.check(counters=False)
+        assert pipeline.contact.events.touching == (threshold != peak)
+    await pipeline.write("AREA_THRESHOLD", lowest)
     area = int((codes > chosen[0]).sum())
     for least, debounce in ((area, 1), (area + 1, 1), (area, 3), (area + 1, 2), (area, 2), (0, 0)):
         await pipeline.write("OFF_THRESHOLD", chosen[0])
@@ -98,7 +99,9 @@ async def records_at_the_limits(dut: Any) -> None:
         for _ in range(debounce + 1):
             await pipeline.send(pressed)
             await pipeline.check(counters=False)
-    for level in (*chosen, int(depths[-1]) // 2 - 1, (1 << 31) - 1, -(1 << 31)):
-        await pipeline.write("AREA_THRESHOLD", level)
-        await pipeline.send(pressed, pressed)
-        await pipeline.check(counters=False)
+    beyond = [1 << bit for bit in range(pipeline.config.data_width - 1, 31)]
+    for level in (*chosen, int(depths[-1]) // 2 - 1, *sample([*beyond, (1 << 31) - 1])):
+        for code in (level, ~level):
+            await pipeline.write("AREA_THRESHOLD", code)
+            await pipeline.send(pressed, pressed)
+            await pipeline.check(counters=False)

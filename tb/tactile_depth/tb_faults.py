@@ -46,8 +46,7 @@ async def malformed(dut: Any, fault: str, accepts: str) -> None:
     pipeline.scoreboard.sticky.clear()
     await pipeline.write("CONTROL", CONTROL.pack(clear_counters=1))
     pipeline.scoreboard.counters, pipeline.scoreboard.largest = dict.fromkeys(pipeline.scoreboard.counters, 0), 0
-    await pipeline.send(a)
-    await pipeline.check()
+    await pipeline.play(a)
 
 
 @case()
@@ -138,8 +137,7 @@ async def sources_that_do_not_fit(dut: Any) -> None:
         assert await pipeline.read("ARRIVED") == ARRIVED.pack(rows=height, columns=width)
         hunts = STATUS.unpack(await pipeline.read("STATUS"))["hunting"]
         assert hunts == ((height, width) != (rows - 1, columns)), f"hunting is {hunts} behind {height} x {width}"
-        await pipeline.send(pipeline.frame(), pipeline.frame())
-        await pipeline.check()
+        await pipeline.play(pipeline.frame(), pipeline.frame())
         assert await pipeline.read("ARRIVED") == await pipeline.read("GRID")
 
 

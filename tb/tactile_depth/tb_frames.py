@@ -51,8 +51,7 @@ async def the_configuration_is_that_of_the_models(dut: Any) -> None:
 async def one_frame(dut: Any) -> None:
     """Send one frame: it drains without a successor, with the latencies of tactile_depth.chip.latency."""
     pipeline = await started(dut)
-    await pipeline.send(pipeline.frame())
-    await pipeline.check()
+    await pipeline.play(pipeline.frame())
     assert pipeline.scoreboard.latency == first_depth_latency(pipeline.config)
     await pipeline.idle()
 
@@ -134,8 +133,7 @@ async def a_sink_that_waits_for_long(dut: Any) -> None:
     await frames
     await pipeline.check()
     pipeline.stalled = False
-    await pipeline.send(pipeline.frame())
-    await pipeline.check()
+    await pipeline.play(pipeline.frame())
     assert pipeline.scoreboard.latency == first_depth_latency(pipeline.config)
 
 
@@ -143,8 +141,7 @@ async def a_sink_that_waits_for_long(dut: Any) -> None:
 async def many_frames(dut: Any) -> None:
     """Reach ties of every rounding, and clip every value that can clip, with random colours."""
     pipeline = await started(dut)
-    await pipeline.send(*(pipeline.frame() for _ in range(MANY)))
-    await pipeline.check()
+    await pipeline.play(*(pipeline.frame() for _ in range(MANY)))
 
 
 @case(Level.FORMATS, whole_rows=True)
@@ -160,8 +157,7 @@ async def saturation(dut: Any, accepts: str) -> None:
     limit = 1 << pipeline.config.data_width - 1
     assert codes.max() == limit - 1 or codes.min() == -limit, "no depth at full scale"
     await pipeline.clear_status(**dict.fromkeys(pipeline.scoreboard.sticky, 1))
-    await pipeline.send(pipeline.plain())
-    await pipeline.check()
+    await pipeline.play(pipeline.plain())
     assert not pipeline.scoreboard.sticky
 
 

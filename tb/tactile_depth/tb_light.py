@@ -39,8 +39,7 @@ async def light_gains_follow_a_stream(dut: Any) -> None:
     for light in ((0.9, 1.0, 1.05), (0.7, 0.75, 0.8), (1.1, 1.2, 1.0)):
         faulty = broken(lit(pipeline, pipeline.frame(), light), "row_short", 1, pipeline.columns)
         frames = [lit(pipeline, pipeline.pressed(), light) for _ in range(3)]
-        await pipeline.send(*frames[:2], faulty, *frames[2:])
-        await pipeline.check()
+        await pipeline.play(*frames[:2], faulty, *frames[2:])
         await check_gains(pipeline)
     assert pipeline.scoreboard.light is not None
     light_gains = pipeline.scoreboard.light
@@ -59,12 +58,10 @@ async def light_gains_of_single_pictures_are_written(dut: Any) -> None:
             assert await pipeline.write(name, gain) == Response.OKAY
         stream.gains = stream.light.limited(np.array(gains))
         await check_gains(pipeline)
-        await pipeline.send(pipeline.pressed(), pipeline.frame())
-        await pipeline.check()
+        await pipeline.play(pipeline.pressed(), pipeline.frame())
     await pipeline.write("LIGHT", LIGHT.pack(follow=1, rate=2))
     stream.follow, stream.rate = True, 2
-    await pipeline.send(pipeline.pressed(), pipeline.frame())
-    await pipeline.check()
+    await pipeline.play(pipeline.pressed(), pipeline.frame())
     await check_gains(pipeline)
     await pipeline.reset(2)
     await check_gains(pipeline)
@@ -77,5 +74,4 @@ async def a_build_without_light_gains_ignores_them(dut: Any) -> None:
     for name in GAINS:
         assert await pipeline.write(name, 0x7000) == Response.OKAY
         assert await pipeline.read(name) == 0
-    await pipeline.send(pipeline.pressed())
-    await pipeline.check()
+    await pipeline.play(pipeline.pressed())

@@ -11,6 +11,7 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.frame_marks import NO_LIMIT
 from tactile_depth.chip.registers.axil_port import Response
 from tactile_depth.chip.registers.register_map import MAP, REGISTERS, TABLES
+from tb import structs
 from tb.axil import OFFSET, check_waits, present, take
 from tb.axis import broken, video
 from tb.pixels import pack
@@ -22,6 +23,7 @@ from tb.tactile_depth.scoreboard import STATUS
 REFERENCE_CAPTURE, ZERO_CAPTURE, INTERRUPT = (
     REGISTERS[name] for name in ("REFERENCE_CAPTURE", "ZERO_CAPTURE", "INTERRUPT_STATUS")
 )
+FULL = (1 << 32) - 1
 WRITABLE = [register.name for register in MAP if register.writable]
 TABLE_REGISTERS = ("TABLE_SELECT", "TABLE_INDEX", "TABLE_HIGH", "TABLE_LOW")
 
@@ -128,8 +130,7 @@ async def interrupts(dut: Any) -> None:
             ((good,), INTERRUPT.pack(record=1)),
             ((malformed, good), INTERRUPT.pack(record=1, frame_dropped=1)),
         ):
-            await pipeline.send(*stream)
-            await pipeline.check()
+            await pipeline.play(*stream)
             assert await status() == (bits, bool(bits & mask)), f"INTERRUPT_MASK {mask:#x}"
             assert await status(cleared=bits & ~mask) == (bits & mask, bool(bits & mask))
             assert await status(cleared=bits) == (0, False)
@@ -142,8 +143,13 @@ async def the_register_port_waits(dut: Any) -> None:
     pipeline = await started(dut)
     await check_waits(dut, pipeline.random)
     dut.s_axil_bready.value = dut.s_axil_rready.value = 1
-    await pipeline.send(pipeline.frame())
-    await pipeline.check()
+    for word in (0, FULL):
+        writing = cocotb.start_soon(pipeline.write("TIMEOUT", word))
+        await pipeline.until(lambda: structs.of(dut.register_command, "register_command_t")["write"])
+        command = {"write": 1, "write_offset": OFFSET["TIMEOUT"], "write_ones": word, "write_mask": FULL}
+        assert structs.of(dut.register_command, "register_command_t").items() >= command.items()
+        await writing
+    await pipeline.play(pipeline.frame())
 
 
 @case(whole_rows=True)

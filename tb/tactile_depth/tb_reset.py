@@ -71,8 +71,7 @@ async def resets(dut: Any, clocks: int, phase: str) -> None:
             assert value == (field.reset or 0), f"{register.name}.{field.name} is {value:#x} after a reset"
     await ClockCycles(dut.clk, pipeline.pixels)
     assert not pipeline.out.words, "a depth left that belongs to a frame from before the reset"
-    await pipeline.send(pipeline.frame(), pipeline.frame())
-    await pipeline.check()
+    await pipeline.play(pipeline.frame(), pipeline.frame())
     assert pipeline.scoreboard.latency == first_depth_latency(pipeline.config)
 
 
@@ -93,13 +92,10 @@ async def a_cold_reset_takes_the_first_bank(dut: Any) -> None:
     first, second = (built // divisor for divisor in (2, -3))
     await tables.write("gradient", second)
     await tables.commit("gradient", second)
-    await pipeline.send(frame)
-    await pipeline.check()
+    await pipeline.play(frame)
     await tables.write("gradient", first)  # in the bank of the cold reset
     await pipeline.reset(2)
-    await pipeline.send(frame)
-    await pipeline.check()
+    await pipeline.play(frame)
     await cold_reset()
     tables.use("gradient", first)
-    await pipeline.send(frame)
-    await pipeline.check()
+    await pipeline.play(frame)

@@ -83,8 +83,7 @@ async def records_while_their_sink_stalls(dut: Any) -> None:
         await pipeline.drain()
     await pipeline.reset(1)
     watch.takes = repeat(True)
-    await pipeline.send(pipeline.frame())
-    await pipeline.check()
+    await pipeline.play(pipeline.frame())
 
 
 @case(Level.FORMATS)
@@ -110,5 +109,4 @@ async def committed_inside_a_frame(dut: Any, name: str, accepts: str) -> None:
     await pipeline.check(contents=[old, new, new])
     assert await pipeline.write("TABLE_COMMIT", COMMIT.pack(**{name: 1})) == Response.OKAY
     await pipeline.reset(1)
-    await pipeline.send(pipeline.frame())
-    await pipeline.check()
+    await pipeline.play(pipeline.frame())

@@ -88,12 +88,10 @@ async def a_zero_at_full_scale(dut: Any) -> None:
     zero = one_word(np.random.default_rng(cocotb.RANDOM_SEED).choice([-limit, limit - 1], count))
     await pipeline.tables.write("zero", zero)
     await pipeline.tables.commit("zero", zero)
-    await pipeline.send(pipeline.pressed(), pipeline.frame())
-    await pipeline.check()
+    await pipeline.play(pipeline.pressed(), pipeline.frame())
     assert "saturation" in pipeline.scoreboard.sticky
     await pipeline.reset(1)
-    await pipeline.send(pipeline.pressed(0.25))
-    await pipeline.check()
+    await pipeline.play(pipeline.pressed(0.25))
 
 
 @case(needs=looks_up_pixels)
@@ -185,5 +183,4 @@ async def many_frames_of_any_slopes(dut: Any, fraction: int) -> None:
     entries = random_slopes(pipeline, np.random.default_rng(cocotb.RANDOM_SEED), fraction)
     await pipeline.tables.write("gradient", entries)
     await pipeline.tables.commit("gradient", entries)
-    await pipeline.send(*(pipeline.frame() for _ in range(MANY)))
-    await pipeline.check()
+    await pipeline.play(*(pipeline.frame() for _ in range(MANY)))

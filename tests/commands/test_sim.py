@@ -72,7 +72,7 @@ def test_rectangles(tmp_path: Path, rows: int, columns: int, boundary: str, chos
     assert report["grid"] == [rows, columns]
     assert only(report["frame_interval_cycles"][1:]) == rows * columns
     assert np.load(tmp_path / "out" / "depth.npy").shape == (8, rows, columns)
-    assert max(error for error in report["rms_percent_of_peak"] if error is not None) <= 0.06
+    assert max(error for error in report["rms_percent_of_peak"] if error is not None) <= 0.075  # of 22 bits
 
 
 def test_rows_are_in_the_order_of_the_input(tmp_path: Path) -> None:

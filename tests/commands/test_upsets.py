@@ -135,8 +135,10 @@ def test_no_flip_of_a_stored_word_changes_a_depth_unseen(model: Model, populatio
 def test_copy_cannot_be_flipped(model: Model) -> None:
     """A flip of what follows a register by combinational logic would be harmless for the wrong reason."""
     lines = simulated(model.built, model.folder, [model.start])
-    number = next(number for number, line in enumerate(lines) if " td_delay_line out " in line and line.endswith(" 0"))
-    copy = Place(number, "out", ("td_delay_line",), 1, 1, 1)
+    number = next(
+        number for number, line in enumerate(lines) if " td_delay_line flipped " in line and line.endswith(" 0")
+    )
+    copy = Place(number, "flipped", ("td_delay_line",), 1, 1, 1)
     with pytest.raises(RuntimeError, match="a flip does not stay"):
         model.run([(copy, 0, 0)])
 

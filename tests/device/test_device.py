@@ -234,6 +234,19 @@ def test_thresholds(device: td.Device, sample: td.Sample) -> None:
     assert device.registers["THRESHOLD"] == round(0.08 / expected.depth_lsb_mm)
 
 
+def test_a_hysteresis_does_not_count_for_pictures_by_themselves(device: td.Device, sample: td.Sample) -> None:
+    mild = np.rint(sample.reference + 0.25 * (sample.image.astype(float) - sample.reference)).astype(np.uint8)
+    (frame,) = device.depth([mild])
+    device.set_thresholds(1.3 * frame.contact.peak_mm, release_mm=0.5 * frame.contact.peak_mm)
+    off = device.registers["OFF_THRESHOLD"]
+    touching = [[frame.contact.touching for frame in device.depth(each)] for each in ([sample.image, mild], [mild])]
+    assert touching == [[True, False], [False]]
+    for _ in device.depth([sample.image, mild]):
+        assert device.registers["OFF_THRESHOLD"] == off
+        break
+    assert [frame.contact.touching for frame in device.depth(iter([sample.image, mild]))] == [True, True]
+
+
 @pytest.mark.parametrize(
     ("wanted", "message"),
     [

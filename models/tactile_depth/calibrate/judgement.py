@@ -54,7 +54,10 @@ DARK_SPOT, SPOT_PX, COLUMNS, MOST_SPOTS = 0.8, 31, 320, 0.02
 # the excess is 0.009.
 FEWEST_UNTOUCHED, KNOWN_AREAS = 4, 0.6
 NAMED = 4  # presses in a reason
-NOT_CHECKED = "pitch not checked: balls fit any, and neither ball_radius_px nor the view of a known sensor says more"
+NOT_CHECKED = (
+    "pitch and diameters not checked: heights are as wrong as they are, and neither ball_radius_px nor the view of a "
+    "known sensor says more"
+)
 PITCH_AGREES = 0.1  # largest relative difference to the pitch of a built-in calibration of the same kind of sensor
 SAME_PICTURE = 0.02  # RMS of log(picture / picture), colour by colour. Drawn specimens: 0.046 and more
 

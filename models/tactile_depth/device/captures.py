@@ -5,14 +5,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
-from tactile_depth.base.errors import InputError
+from tactile_depth.base.errors import InputError, InputWarning, warn
 from tactile_depth.base.npy import Bytes
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.flat_field import captured_gains, pixel_gains, require_light, untouched_of
+from tactile_depth.chip.gradient.light_gains import ROUNDS
+from tactile_depth.chip.limits import LIGHT_GAIN
 from tactile_depth.chip.registers.axil_registers import GAINS
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
@@ -22,7 +26,7 @@ from tactile_depth.device.camera_frame import dead_pixels
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import CAMERA_S, Exchange
-from tactile_depth.device.registers import read_words, write_words
+from tactile_depth.device.registers import meanwhile, read_words, write_words
 from tactile_depth.device.tables import select, wait_in_use
 from tactile_depth.pictures.doubts import Doubt, UnusablePicture
 from tactile_depth.pictures.reader import Reader
@@ -31,7 +35,24 @@ from tactile_depth.sensor.sensor import Sensor, equal_areas
 
 ATTEMPTS = 3
 LIGHT = REGISTERS["LIGHT"]
+STILL = (1 << LIGHT_GAIN.fraction) // 512
+"""Move of a light gain that changes the brightest pixel by half a level."""
+STEADY_LIGHT = "switch lamps that flicker off, then call capture_zero() again"
 OF_CAMERA = "the reference that the device took from its camera"
+
+
+class Unseen(NamedTuple):
+    """What is known of a table from a capture whose pictures this program did not send.
+
+    Attributes
+    ----------
+    doubts : tuple of Doubt
+    entries : int64 array (entries,), or None
+        Lower words; None for a capture of before this program.
+    """
+
+    doubts: tuple[Doubt, ...] = ()
+    entries: np.ndarray | None = None
 
 
 def write_gains(line: Channel, gains: Sequence[int]) -> None:
@@ -39,19 +60,18 @@ def write_gains(line: Channel, gains: Sequence[int]) -> None:
     write_words(line, list(zip(GAINS, gains, strict=True)))
 
 
-@contextmanager
-def held_light(line: Channel) -> Iterator[None]:
+def held_light(line: Channel) -> AbstractContextManager[None]:
     """Keep light gains as they are written, until the end of the context."""
-    light, failed = read_words(line, [LIGHT.name])[LIGHT.name], False
-    write_words(line, [(LIGHT.name, light & ~LIGHT.field("follow").mask)])
-    try:
+    light = read_words(line, [LIGHT.name])[LIGHT.name]
+    return meanwhile(line, LIGHT.name, light & ~LIGHT.field("follow").mask, light)
+
+
+@contextmanager
+def unity_light(line: Channel) -> Iterator[None]:
+    """Keep light gains of 1, until the end of the context: those for another reference are far from right."""
+    with held_light(line):
+        write_gains(line, [1 << LIGHT_GAIN.fraction] * len(GAINS))
         yield
-    except BaseException:  # also the end of a loop that was left, when the line may be closed
-        failed = True
-        raise
-    finally:
-        with suppress(DeviceError) if failed else nullcontext():  # the first error says what happened
-            write_words(line, [(LIGHT.name, light)])
 
 
 def capture_of_pictures(line: Channel, table: str, frames: Bytes, gains: Sequence[Sequence[int]] | None = None) -> None:
@@ -112,19 +132,19 @@ def capture_of_camera(line: Channel, table: str, count: int, give_picture: Calla
     ------
     DeviceError
         The camera gives no pictures, or the device does not answer.
+
+    Warns
+    -----
+    InputWarning
+        The light moves, so a zero offset depends on it.
     """
     wait_in_use(line, give_picture)
+    if table == "zero":
+        _settle_light(line)
     _start(line, table, count)
-    last, came = time.monotonic(), -1
-    while _busy(line, table):
-        taken = read_words(line, ["FRAMES_IN"])["FRAMES_IN"]
-        if taken != came:
-            last, came = time.monotonic(), taken
-        elif time.monotonic() - last > line.limit_s + CAMERA_S:
-            came_in = arrived(line, is_awaited=True)
-            reason = f", {came_in.problem}" if came_in.problem else ""
-            problem = f"no picture came from the camera of the device in {line.limit_s + CAMERA_S:.1f} s{reason}"
-            raise DeviceError(problem, remedy=came_in.remedy or "let it send pictures of the grid, or give pictures")
+    for _ in _looks(line):
+        if not _busy(line, table):
+            break
     wait_in_use(line, give_picture)
 
 
@@ -151,7 +171,7 @@ def read_captured(line: Channel, table: str, give_picture: Callable[[], None]) -
 def check_reference_of_camera(pipeline: Pipeline, entries: np.ndarray) -> tuple[tuple[Doubt, ...], int]:
     """Refuse or doubt a reference by the entries of its table; return the doubts and the number of its dead pixels."""
     config, sensor = pipeline.config, _as_captured(pipeline)
-    gains = entries.reshape(*config.reference_nodes, -1)[..., :3]
+    gains = gains_at_nodes(entries, config)
     require_light(gains, config, OF_CAMERA)
     try:
         doubts = check_reference(sensor, untouched_of(gains, config)[None], OF_CAMERA)
@@ -160,6 +180,17 @@ def check_reference_of_camera(pipeline: Pipeline, entries: np.ndarray) -> tuple[
         remedy = "build the device for its camera (BAYER), and mount that as calibrated"
         raise InputError(problem, remedy=remedy) from error
     return doubts, dead_pixels(pixel_gains(gains, config))
+
+
+def gains_at_nodes(entries: np.ndarray, config: Configuration) -> np.ndarray:
+    """Return the gains (node rows, node columns, 3) of the entries of a reference."""
+    return entries.reshape(*config.reference_nodes, -1)[..., :3]
+
+
+def codes_at_nodes(entries: np.ndarray, config: Configuration) -> np.ndarray:
+    """Return the depth codes (node rows, node columns) of the entries of a zero offset."""
+    sign = 1 << config.depth.width - 1
+    return (entries.reshape(config.reference_nodes) & 2 * sign - 1 ^ sign) - sign
 
 
 def _as_captured(pipeline: Pipeline) -> Sensor:
@@ -174,9 +205,40 @@ def _as_captured(pipeline: Pipeline) -> Sensor:
 
 def check_zero_of_camera(pipeline: Pipeline, entries: np.ndarray) -> tuple[Doubt, ...]:
     """Doubt a zero offset by the entries of its table."""
-    sign = 1 << pipeline.config.depth.width - 1
-    codes = (entries.reshape(pipeline.config.reference_nodes) & 2 * sign - 1 ^ sign) - sign
+    codes = codes_at_nodes(entries, pipeline.config)
     return check_zero_depth(codes * pipeline.depth_lsb_mm, "the zero offset that the device took from its camera")
+
+
+def _settle_light(line: Channel) -> None:
+    """Wait until the light gains stand still; warn if they do not within `ROUNDS` pictures of the camera."""
+    light = read_words(line, [LIGHT.name])[LIGHT.name]
+    fastest = light & ~LIGHT.field("rate").mask
+    with meanwhile(line, LIGHT.name, fastest, then=light):
+        pictures = filter(None, _looks(line))
+        gains, still = np.zeros(len(GAINS)), 0
+        for _ in range(ROUNDS):
+            next(pictures)
+            before, gains = gains, np.array(list(read_words(line, GAINS).values()))
+            still = still + 1 if np.abs(gains - before).max() < STILL else 0
+            if still == 2:  # the gains may come a little later than the count of the picture that moves them
+                return
+    warn(InputWarning("the light of the device's camera does not stand still", remedy=STEADY_LIGHT))
+
+
+def _looks(line: Channel) -> Iterator[bool]:
+    """Look for pictures of the camera, without end: give True if one has come. Raises DeviceError if none comes."""
+    last, came = time.monotonic(), -1
+    while True:
+        taken = read_words(line, ["FRAMES_IN"])["FRAMES_IN"]
+        is_new = taken != came
+        if is_new:
+            last, came = time.monotonic(), taken
+        elif time.monotonic() - last > line.limit_s + CAMERA_S:
+            came_in = arrived(line, is_awaited=True)
+            reason = f", {came_in.problem}" if came_in.problem else ""
+            problem = f"no picture came from the camera of the device in {line.limit_s + CAMERA_S:.1f} s{reason}"
+            raise DeviceError(problem, remedy=came_in.remedy or "let it send pictures of the grid, or give pictures")
+        yield is_new
 
 
 def _start(line: Channel, table: str, count: int) -> None:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, MutableMapping
-from contextlib import AbstractContextManager, closing, contextmanager
+from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
 from itertools import chain
 
 import numpy as np
@@ -17,7 +17,6 @@ from tactile_depth.chip.gradient.reference_capture import largest_log2_frames
 from tactile_depth.chip.link.depth_formats import FORMATS, DepthFormatName, span_of
 from tactile_depth.chip.registers.register_map import REGISTERS
 from tactile_depth.chip.registers.table_signatures import NOT_KNOWN
-from tactile_depth.chip.self_test import self_test
 from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.depth.result import Recorder, Result, thresholds_of
 from tactile_depth.depth.twin import PICTURES, require_flat_field, require_zero_offset
@@ -26,13 +25,13 @@ from tactile_depth.device.addresses import open_channel
 from tactile_depth.device.camera_frame import dead_pixels, of_camera
 from tactile_depth.device.channel import Arrival, Channel
 from tactile_depth.device.errors import DeviceError
-from tactile_depth.device.exchange import Exchange, camera_frames
+from tactile_depth.device.exchange import Exchange, camera_frames, last_begun
 from tactile_depth.device.frame import DeviceFrame, seen_as
 from tactile_depth.device.registers import Registers, read_words, write_words
-from tactile_depth.device.self_test import signature_of
+from tactile_depth.device.self_test import expected_signature, signature_of
 from tactile_depth.device.status import DeviceStatus, status_of
 from tactile_depth.device.tables import load_tables, require_same, wait_in_use, window_doubts
-from tactile_depth.pictures.doubts import Doubt, Warned, tell
+from tactile_depth.pictures.doubts import Warned, tell
 from tactile_depth.pictures.frames import GREY
 from tactile_depth.pictures.pictures import Picture, Pictures
 from tactile_depth.sensor.sensor import TOO_DARK
@@ -107,10 +106,10 @@ class Device(AbstractContextManager["Device"]):
         self._settings = pipeline.settings(**self._thresholds_mm)
         self._tables = held.signatures_of(pipeline)  # that the device is to use
         self._loaded = self._tables.copy()  # of the pipeline at the last load, or capture in the device
-        self._unseen: dict[str, tuple[Doubt, ...]] = {}  # those of a capture whose pictures it did not send, doubts
-        self._is_closed = False
+        self._unseen: dict[str, captures.Unseen] = {}  # those of a capture whose pictures it did not send
         self._told = Warned()  # of the device's camera
-        self._is_busy = False
+        self._is_closed = self._is_busy = False
+        self._last_old = 0  # number of the last frame of the device's camera that may have other tables or thresholds
         self._is_set = False  # the settings are those of this program
         self._dark_level = TOO_DARK  # of the device's camera; 0 for pictures that are sent, which the host checks
         self._line: Channel | None = self._connect()
@@ -149,14 +148,15 @@ class Device(AbstractContextManager["Device"]):
             self._tables = held.signatures_of(self.pipeline)
             self._loaded = self._tables.copy()
             self._unseen.clear()
-            with Exchange(line) as exchange:
+            write_words(line, [(LIGHT.name, LIGHT.pack(follow=1))])
+            with Exchange(line) as exchange, captures.unity_light(line):
 
                 def untouched() -> None:
                     exchange.depth_of(self._untouched)
 
                 load_tables(line, self.pipeline, untouched)
                 self._settings = self.pipeline.settings(**self._thresholds_mm)
-                write_words(line, [*self._words.items(), (LIGHT.name, LIGHT.pack(follow=1))])
+                write_words(line, list(self._words.items()))
                 wait_in_use(line, untouched)
             self._is_set = True
             held.require_tables(line, self._tables)
@@ -195,7 +195,8 @@ class Device(AbstractContextManager["Device"]):
     def capture_zero(self, pictures: Pictures | None = None, *, frames: int = CAPTURED) -> None:
         """Take the depth of pictures without contact as the zero offset, in the device.
 
-        For parameters and errors see `capture_reference`.
+        Those of the device's camera are taken once its light gains stand still. For parameters and errors see
+        `capture_reference`.
         """
         require_zero_offset(self.pipeline.config)
         if pictures is None:
@@ -247,6 +248,7 @@ class Device(AbstractContextManager["Device"]):
             raise InputError(Argument("release_mm", release_mm), accepted=f"at most touch_mm, {touch:.3g}")
         with self._open_line() as line:
             write_words(line, list(thresholds_of(settings).items()))
+            self._last_old = last_begun(line)
         self._thresholds_mm, self._settings = thresholds_mm, settings
 
     def depth(
@@ -261,7 +263,7 @@ class Device(AbstractContextManager["Device"]):
 
         A picture whose depth gets lost on the line gives no frame and is counted in `lost`; `DeviceFrame.picture` tells
         which one is missing. The frames of a camera do not end; their warnings are those that the flags of the device
-        and the depth give.
+        and the depth give. Those of before the call, or `set_thresholds`, are left out, and do not count in `lost`.
 
         Parameters
         ----------
@@ -277,7 +279,7 @@ class Device(AbstractContextManager["Device"]):
             is refused once one was accepted.
         DeviceError
             The device has other tables or settings than the pipeline, or computes another depth: it needs `load`; or it
-        does not answer.
+            does not answer.
 
         Warns
         -----
@@ -297,8 +299,9 @@ class Device(AbstractContextManager["Device"]):
             if pictures is None:
                 doubts = [*window_doubts(line, self.pipeline), *held.reference_doubts(self.pipeline, self._unseen)]
                 tell(self._told.new(doubts))
-                warned, known = Warned(), (*self._twin.doubts, *chain(*self._unseen.values()))
-                for arrival in camera_frames(line):
+                warned, known = Warned(), (*self._twin.doubts, *chain(*(each.doubts for each in self._unseen.values())))
+                self._last_old = last_begun(line)
+                for arrival in camera_frames(line, lambda: self._last_old):
                     yield of_camera(self._frame(arrival), arrival.frame.shift, self._twin, known, self._dead, warned)
                 return
             self._require_seen(self._unseen)
@@ -321,10 +324,10 @@ class Device(AbstractContextManager["Device"]):
         """
         with self._open_line() as line:
             held.require_tables(line, self._tables)
-            self._require_seen(self._unseen)
+            self._require_seen(name for name, each in self._unseen.items() if each.entries is None)
             dark_level = read_words(line, [DARK_LEVEL])[DARK_LEVEL]
-            shown, twin = signature_of(line), self._twin
-        wanted = self_test(twin.config, twin.twin.tables, twin.zero_codes, dark_level)
+            shown = signature_of(line)
+        wanted = expected_signature(self._twin, self._unseen, dark_level)
         if shown != wanted:
             problem = (
                 f"the device computes something else than the pipeline: SELF_TEST is {shown:#010x}, not {wanted:#010x}"
@@ -408,7 +411,7 @@ class Device(AbstractContextManager["Device"]):
             else:
                 doubts = captures.check_zero_of_camera(self.pipeline, entries)
             self._tables |= held.read_signatures(line, [table])
-        self._unseen[table] = doubts
+        self._unseen[table] = captures.Unseen(doubts, entries)
 
     @contextmanager
     def _capturing(self, table: str, twin: Pipeline | None = None) -> Iterator[Channel]:
@@ -418,7 +421,8 @@ class Device(AbstractContextManager["Device"]):
             held.require_tables(line, others, is_settled=False)
             self._tables[table] = NOT_KNOWN  # until it has ended
             self._set_dark_level(line, is_camera=twin is None)
-            yield line
+            with captures.unity_light(line) if table == "reference" else nullcontext():
+                yield line
         self._loaded[table] = held.signatures_of(self.pipeline)[table]
         if twin is not None:
             self._use(twin)
@@ -436,7 +440,7 @@ class Device(AbstractContextManager["Device"]):
         words = held.read_signatures(line, names)
         names = [name for name in names if words[name] not in (NOT_KNOWN, self._tables[name])]
         self._tables |= {name: words[name] for name in names}
-        self._unseen |= dict.fromkeys(names, ())
+        self._unseen |= dict.fromkeys(names, captures.Unseen())
         if names:
             problem = f"the {' and the '.join(names)} of the device comes from a capture before this program"
             warn(InputWarning(problem, remedy="call load() for those of the pipeline"))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 
 from tactile_depth.base.errors import counted
@@ -16,6 +16,7 @@ from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.registers import read_words
 
 MISSED = 5  # pictures without depth in a row after which the line is given up
+MOST_INSIDE = 4  # whole frames in the pipeline; more are counted if counters were cleared meanwhile
 CAMERA_S = 2.0  # the slowest camera gives a picture in this time
 
 
@@ -93,8 +94,25 @@ class Exchange(AbstractContextManager["Exchange"]):
         return words["RECORD_FRAME"], words["FRAMES_IN"]
 
 
-def camera_frames(line: Channel) -> Iterator[Arrival]:
+def last_begun(line: Channel) -> int:
+    """Return the number of the last frame whose tables or thresholds may be those of before this call.
+
+    Depth leaves after the last pixel of its picture. So it is a frame that came in whole: it has its record, or is on
+    its way through the pipeline.
+    """
+    counts = read_words(line, ["FRAMES_IN", "FRAMES_OUT", "DEPTH_DROPPED"])
+    number = read_words(line, ["RECORD_FRAME"])["RECORD_FRAME"]  # later: a record follows its frame
+    inside = counts["FRAMES_IN"] - counts["FRAMES_OUT"] - counts["DEPTH_DROPPED"]
+    return (number + min(inside % NUMBERS, MOST_INSIDE)) % NUMBERS
+
+
+def camera_frames(line: Channel, last_old: Callable[[], int]) -> Iterator[Arrival]:
     """Give the depth frames of the device's camera as they come.
+
+    Parameters
+    ----------
+    last_old : function
+        Gives the number of a frame. Frames up to that are left out, and do not count as lost.
 
     Raises
     ------
@@ -109,7 +127,8 @@ def camera_frames(line: Channel) -> Iterator[Arrival]:
             line.check()
             arrival = line.frame(patience_s, line.lost)
             if arrival is not None:
-                yield arrival
+                if 0 < (arrival.frame.record.frame - last_old()) % NUMBERS < NUMBERS // 2:
+                    yield arrival
                 last, bad = time.monotonic(), line.bad_packets
             elif time.monotonic() - last > patience_s:
                 line.ask()

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Iterator, MutableMapping, Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 
 from tactile_depth.base.errors import Argument, InputError, counted
 from tactile_depth.chip.registers.register_map import REGISTERS, WORD, Field, Register
@@ -33,6 +33,21 @@ def write_words(line: Channel, pairs: Sequence[tuple[str, int]]) -> None:
     if done < len(pairs):
         problem = f"the device refuses to write {pairs[done][0]} ({done} of {counted(len(pairs), 'access')} done)"
         raise DeviceError(problem, remedy=REMEDY)
+
+
+@contextmanager
+def meanwhile(line: Channel, name: str, word: int, then: int) -> Iterator[None]:
+    """Write a word to a register, and `then` at the end of the context. Raises DeviceError as `write_words`."""
+    failed = False
+    write_words(line, [(name, word)])
+    try:
+        yield
+    except BaseException:  # also the end of a loop that was left, when the line may be closed
+        failed = True
+        raise
+    finally:
+        with suppress(DeviceError) if failed else nullcontext():  # the first error says what happened
+            write_words(line, [(name, then)])
 
 
 class Registers(MutableMapping[str, int]):

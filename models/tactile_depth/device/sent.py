@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Iterator, Sequence
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import NamedTuple, cast
 
@@ -22,11 +22,12 @@ from tactile_depth.device import captures
 from tactile_depth.device.channel import Arrival, Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.exchange import Exchange
-from tactile_depth.device.registers import read_words, write_words
+from tactile_depth.device.registers import meanwhile, read_words, write_words
 from tactile_depth.pictures.picture_check import check_picture
 from tactile_depth.pictures.pictures import Picture, Pictures, each_of, is_array
 from tactile_depth.pictures.reader import Reader
 
+THRESHOLDS = ("THRESHOLD", "OFF_THRESHOLD")
 REMEDY = "call load() first; if that was done, build the device for this calibration"
 
 
@@ -56,7 +57,8 @@ def are_whole(pictures: Pictures | Iterable[Picture]) -> bool:
 def single(line: Channel, twin: Pipeline, pictures: Pictures | Iterable[Picture]) -> Generator[Sent, None, None]:
     """Send pictures that stand for themselves.
 
-    The host sets the light gains of each, and sends it twice: then its contact does not depend on the picture before.
+    The host sets the light gains of each, and sends it twice, without hysteresis: then its contact does not depend on
+    the picture before.
 
     Parameters
     ----------
@@ -69,10 +71,17 @@ def single(line: Channel, twin: Pipeline, pictures: Pictures | Iterable[Picture]
             result = twin.result_of(frame[None], [check_picture(frame, twin.rest, name)], None)[0]
             if result.light_gains is not None:
                 captures.write_gains(line, np.rint(result.light_gains / LIGHT_GAIN.lsb).astype(int).tolist())
-            arrival = exchange.depth_of(frame) and exchange.depth_of(frame)
+            with _without_hysteresis(line):
+                arrival = exchange.depth_of(frame) and exchange.depth_of(frame)
             if arrival is not None:
                 _require_equal(arrival, result, name)
                 yield Sent(index, arrival, result)
+
+
+def _without_hysteresis(line: Channel) -> AbstractContextManager[None]:
+    """Let what counts as touched not depend on whether something touches, until the end of the context."""
+    on, off = read_words(line, THRESHOLDS).values()
+    return meanwhile(line, THRESHOLDS[1], on, then=off) if off != on else nullcontext()
 
 
 def streamed(

@@ -26,6 +26,11 @@ GROSS, GROSS_NEAR_SHARE = 0.27, 0.4
 # of 3 grey levels 0.014, as JPEG of quality 75 0.034; presses 0.25 and more. Plane, right: 0.0016, as JPEG 0.0034;
 # 0.5 % up at one side and down at the other: 0.0089 and more. Quadratic: 0.0029, as JPEG 0.0058.
 UNTOUCHED, SLIGHT_PLANE, SLIGHT_QUADRATIC = 0.05, 0.0045, 0.01
+# A slope changes the three colours apart, a shadow or a lamp alike: logarithm of the change of a block, and largest
+# share of it by which the colours may differ. Share of such blocks, right, also with noise of 3 grey levels, as JPEG of
+# quality 75, or presses enlarged: Mini 0.005, DIGIT 0.012 at most. A strip of a tenth at the right, times 0.9: Mini
+# 0.042 and more, without contact 0.094; times 0.8: DIGIT 0.035 and more.
+SHADE, ALIKE, SHADED = 0.05, 0.5, 0.02
 # Pictures for the zero offset, in which nothing touches: largest change of a plane and of a quadratic. Right, with
 # noise of 3 grey levels or as JPEG of quality 75: 0.0034 and 0.0058, of quality 50 0.0196. 1 % up at one side and down
 # at the other: 0.023; moved by 2 of 320 pixels: 0.042; a vignette of 5 %: 0.036; zoomed by 0.98: 0.031; gamma of 1.1:
@@ -74,6 +79,9 @@ def doubts_of(
     if peak - lowest > 2 * threshold_mm:
         if slopes_mm is not None and not clipped:
             doubts += _no_surface(depth_mm, slopes_mm, name)
+            if doubts and checked.ratios is not None and _far(checked.ratios).max() < UNTOUCHED:
+                text = ": nothing touches, its depth is of light gains that have not followed yet"
+                doubts = [doubt(LIGHT, name, text, remedy="leave it out: they follow within some pictures")]
         if not doubts:
             doubts += pressed_out(depth_mm, _at_rest(depth_mm, checked.ratios), threshold_mm, name)
     if clipped and not doubts:
@@ -111,8 +119,13 @@ def _at_rest(depth_mm: np.ndarray, ratios: np.ndarray | None) -> float:
     rows, columns = ((np.arange(n) + 0.5) / n for n in ratios.shape[:2])
     height, width = depth_mm.shape
     middles = depth_mm[(rows * height).astype(int)[:, None], (columns * width).astype(int)]
-    near = largest(np.abs(ratios / medians(ratios) - 1)) < NEAR
+    near = _far(ratios) < NEAR
     return float(np.median(middles[near] if near.any() else middles))
+
+
+def _far(ratios: np.ndarray) -> np.ndarray:
+    """Return how far blocks are from the colour of the reference, after a gain for each colour: the largest."""
+    return largest(np.abs(ratios / medians(ratios) - 1))
 
 
 def pressed_out(depth_mm: np.ndarray, at_rest_mm: float, threshold_mm: float, name: Part) -> list[Doubt]:
@@ -141,6 +154,9 @@ def _other_light(ratios: np.ndarray, gains: np.ndarray | None, touches: bool, na
     if change is not None:
         text = f": its light changes across it by {percents(change, '')} against the reference"
         return [doubt("uneven light", name, text, remedy=TAKE_ANOTHER)]
+    if (share := shaded(ratios)) > SHADED:
+        text = f": {100 * share:.0f} % of it is darker or brighter than its reference in all colours alike"
+        return [doubt("uneven light", name, text, remedy=("keep shadows and lamps away, or ", *TAKE_ANOTHER))]
     if np.abs(light * (1 if gains is None else gains) - 1).max() > UNCOMPENSATED:
         why = "there are no light gains" if gains is None else "the light gains do not undo it"
         text = f": its light differs from that of the reference by {percents(light - 1)}, and {why}"
@@ -154,6 +170,13 @@ def _difference(ratios: np.ndarray) -> np.ndarray:
     coarse = (ratios[:rows:2] + ratios[1:rows:2])[:, :columns]
     coarse = (coarse[:, ::2] + coarse[:, 1::2]) / (4 * medians(ratios))
     return np.log(np.maximum(coarse, 0.05))
+
+
+def shaded(ratios: np.ndarray) -> float:
+    """Return the share of blocks whose colours change alike, as in a shadow."""
+    change = np.log(np.maximum(ratios / medians(ratios), 0.01))
+    mean, apart = change.mean(axis=-1), change.max(axis=-1) - change.min(axis=-1)
+    return float((np.abs(mean) > np.maximum(SHADE, apart / ALIKE)).mean())
 
 
 def changed_at_rest(ratios: np.ndarray) -> np.ndarray | None:
