@@ -38,7 +38,7 @@ TEXT = """<!-- SPDX-License-Identifier: Apache-2.0 -->
 
 Each row has the newest results of a core: whether its proofs hold (`make formal`, [formal.md](../formal.md)), how many
 mutants its testbench kills (`make mutate`, [mutation.md](../mutation.md)), and the commit of each run, with + where
-sources were not committed. 32a97ff is version 0.1.0.
+sources were not committed.
 
 A result has a fingerprint of all that it depends on. That of a proof: the RTL of the core and of the parts below it,
 what they use of packages, its bench and what that uses of `formal/`, PROOFS. That of mutants: the same RTL, the
