@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Loads a calibration into a device whose registers are mapped to memory, and sets its thresholds and the least area of
-   a contact. The header is in a folder of Pipeline.hardware. For another bus write the two functions that access a
+/* Loads a calibration into a device whose registers are mapped to memory, and sets its thresholds, the least area of a
+   contact and DEBOUNCE. The header is in a folder of Pipeline.hardware. For another bus write the two functions that access a
    register. */
 
 #include "tactile_depth_tables.h"
@@ -24,6 +24,7 @@ int load_calibration(void *base)
     write_register(base, TACTILE_DEPTH_OFF_THRESHOLD_ADDRESS, TACTILE_DEPTH_OFF_THRESHOLD);
     write_register(base, TACTILE_DEPTH_AREA_THRESHOLD_ADDRESS, TACTILE_DEPTH_AREA_THRESHOLD);
     write_register(base, TACTILE_DEPTH_MINIMUM_AREA_ADDRESS, TACTILE_DEPTH_MINIMUM_AREA);
+    write_register(base, TACTILE_DEPTH_DEBOUNCE_ADDRESS, TACTILE_DEPTH_DEBOUNCE);
   }
   return result;
 }

@@ -357,7 +357,8 @@ def test_the_example_writes_every_register_that_contacts_depend_on(tmp_path: Pat
     ball = td.sample("ball")
     pipeline = td.Pipeline(ball.sensor, ball.reference, grid=(24, 32))
     wanted = json.loads(pipeline.hardware(tmp_path).read_text())["registers"]
-    assert wanted.keys() == {"THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "SLOPE_LIMIT"}
+    contact = {"THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE"}
+    assert wanted.keys() == contact | {"SLOPE_LIMIT"}
     text = EXAMPLE.read_text()
     for own, other in ACCESSES.items():
         assert text.count(own) == 1

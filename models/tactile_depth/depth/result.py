@@ -105,7 +105,8 @@ def check_steps(config: Configuration, pitch_mm: float, arithmetic: str) -> tupl
 
 def thresholds_of(settings: Settings) -> dict[str, int]:
     """Return the words of the registers that hold settings."""
-    return dict(zip(("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA"), settings[:-1], strict=True))
+    registers = "THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE"
+    return dict(zip(registers, settings, strict=True))
 
 
 def steeper(slopes: np.ndarray, fitted_slope: float, dark: np.ndarray) -> Flags:

@@ -473,8 +473,7 @@ class Device(AbstractContextManager["Device"]):
     def _words(self) -> dict[str, int]:
         """Words of the registers that depth, contact and flags depend on."""
         steepest = slope_limit(self.pipeline.sensor, self.pipeline.config)
-        others = {"DEBOUNCE": self._settings.debounce, "SLOPE_LIMIT": steepest, DARK_LEVEL: self._dark_level}
-        return thresholds_of(self._settings) | others
+        return thresholds_of(self._settings) | {"SLOPE_LIMIT": steepest, DARK_LEVEL: self._dark_level}
 
     def _set_dark_level(self, line: Channel, is_camera: bool) -> None:
         """Let black pixels of the device's camera count as dark, and those of pictures that are sent as the host's."""
