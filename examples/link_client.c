@@ -23,7 +23,7 @@
 #define B3000000 3000000 /* where speeds are numbers */
 #endif
 
-enum { TRIES = 5, CAMERA_MS = 500 }; /* in which a camera gives a picture */
+enum { TRIES = 5, CAMERA_MS = 2000 }; /* in which the slowest camera gives a picture */
 enum { GAIN_OF_1 = 0x8000, LEAST_GAIN = 0x4000, LARGEST_GAIN = 0xFFFF }; /* of the light */
 enum { STILL = 4, MOST_PICTURES = 20 };  /* gains that move by less than 2^-13 have settled */
 
@@ -140,7 +140,8 @@ static void load(struct link *l, const uint8_t *picture)
 /* Say how far the heights of the last frame hold: by its flags, and by STATUS. */
 static void say(const struct link *l, uint32_t pictures, const uint32_t *gains, int moved, uint32_t status)
 {
-  uint32_t flags = l->flags[0], dark = l->flags[2] & TACTILE_DEPTH_RECORD_PIXELS_DARK, steep = l->flags[2] >> 16, colour;
+  uint32_t flags = l->flags[0], dark = l->flags[2] & TACTILE_DEPTH_RECORD_PIXELS_DARK, steep = l->flags[2] >> 16;
+  uint32_t colour;
   int is_clipped = (flags & (TACTILE_DEPTH_RECORD_FLAGS_COLOURS_CLIPPED | TACTILE_DEPTH_RECORD_FLAGS_DEPTH_CLIPPED |
                              TACTILE_DEPTH_RECORD_FLAGS_ZERO_CLIPPED)) != 0;
   int has_resumed = (flags & TACTILE_DEPTH_RECORD_FLAGS_RESUMED) != 0, is_limited = 0;

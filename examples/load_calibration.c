@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Loads a calibration into a device whose registers are mapped to memory, and sets its thresholds, the least area of a
-   contact and DEBOUNCE. The header is in a folder of Pipeline.hardware. For another bus write the two functions that access a
-   register. */
+   contact and DEBOUNCE. The header is in a folder of Pipeline.hardware. For another bus write the two functions that
+   access a register. */
 
 #include "tactile_depth_tables.h"
 

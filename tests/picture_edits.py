@@ -105,7 +105,7 @@ DOUBTED: dict[str, tuple[Edit, str]] = {
     "lower side brighter": (in_light(1 + 0.02 * Y), "changes across it by"),
     "one lamp": (in_light(1 + 0.03 * X * (1, 0, 0)), "changes across it by [56] % in red, 0 % in green, 0 % in blue"),
     "vignette": (in_light(1 - 0.06 * (X * X + Y * Y)), "changes across it by"),
-    "shadow": (in_light(1 - 0.12 / (1 + np.exp(-30 * (X - 0.7)))), "in all colours alike|changes across it by"),
+    "a lamp's shadow": (in_light(np.where(X > 0.85, 0.9, 1)), "in all colours alike"),
     "saturated": (saturated(1.3), "changes across it by"),
     "30 % across": (in_light(1 + 0.3 * X), "changes across it by"),
     "a quarter of the light": (in_light(0.25), "differs from that of the reference by -75 % in red, -75 % in green"),

@@ -39,7 +39,7 @@ def generate(description: Path, folder: Path) -> None:
         if value is None:
             raise InputError(f"{key}: it has no value: omit it")
         beside = root / str(value)
-        if key in PATHS and beside.is_file():
+        if key in PATHS and beside.exists():
             values[key] = beside
         elif key in PATHS and beside.suffix:  # names of calibrations and scenes have none
             raise InputError(f"{key}={value}: there is no such file: relative paths count from {root}")

@@ -129,7 +129,7 @@ def build(
             log=folder / simulation.LOG,
         )
 
-    return simulation.built_once(values, [*sources, *[program] * (not waves)], f"the {simulator} model", make)
+    return simulation.built_once(values, sources if waves else [*sources, program], f"the {simulator} model", make)
 
 
 def play(

@@ -50,13 +50,13 @@ COLOURED = [form for form in FORMATS if not FORMATS[form].bayer]
 PATTERNS = [(form, phase) for form in FORMATS if FORMATS[form].bayer for phase in PHASES]
 
 
-def every_format_phase_and_ratio(each: int) -> list[dict[str, Any]]:
-    """Return structures: each format, with each phase and order of bytes or bits, with `each` ratios in turn."""
+def every_format_phase_and_ratio() -> list[dict[str, Any]]:
+    """Return structures: each format, with each phase and order of bytes or bits, and the ratios in turn."""
     sizes = [(math.ceil(GRID[0] * ratio) + 1, int(GRID[1] * ratio)) for ratio in RATIOS]
     pictures = itertools.cycle(sizes)
-    coloured = [arguments(form, next(pictures)) for form in COLOURED for _ in range(max(each, 2))]
+    coloured = [arguments(form, next(pictures)) for form in COLOURED for _ in range(2)]
     pictures = itertools.cycle(sizes[RATIOS.index(Fraction(2)) :])
-    patterns = [arguments(form, next(pictures), phase=phase) for form, phase in PATTERNS for _ in range(each)]
+    patterns = [arguments(form, next(pictures), phase=phase) for form, phase in PATTERNS]
     return [*coloured, *patterns]
 
 
@@ -70,8 +70,7 @@ STRUCTURES = (
     built(arguments("raw8", (9, 17), phase="grbg"), on=ICARUS, mutants=ICARUS),
     built(arguments("yuyv_bytes", (10, 16)), on=VERILATOR, mutants=ICARUS),
     built(arguments("rgb888", (4, 9)), on=ICARUS),
-    *(built(choices) for choices in every_format_phase_and_ratio(3)),
-    *(built(choices) for choices in every_format_phase_and_ratio(1)),
+    *(built(choices) for choices in every_format_phase_and_ratio()),
     built(arguments("yuyv", (7, 18), window=[3, 1, 10, 5])),
     built(arguments("yuyv", (7, 18), window=[4, 1, 9, 5])),
 )

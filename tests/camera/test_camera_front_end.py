@@ -36,10 +36,8 @@ def test_verilator_has_no_warning_at_any_ratio(form: str, ratio: Fraction) -> No
     assert result.returncode == 0, result.stdout + result.stderr
 
 
-@pytest.mark.parametrize("each", [1, 3])
-def test_every_format_phase_and_ratio_is_among_the_structures(each: int) -> None:
-    """On Verilator, and on Icarus."""
-    cameras = [CameraConfiguration(**choices) for choices in every_format_phase_and_ratio(each)]
+def test_every_format_phase_and_ratio_is_among_the_structures() -> None:
+    cameras = [CameraConfiguration(**choices) for choices in every_format_phase_and_ratio()]
     assert {(camera.pixel_format, camera.phase) for camera in cameras if camera.format.bayer} == set(PATTERNS)
     assert {camera.pixel_format for camera in cameras} == set(FORMATS)
     assert {camera.ratio for camera in cameras if not camera.format.bayer} == set(RATIOS)

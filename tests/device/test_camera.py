@@ -12,7 +12,8 @@ import pytest
 
 import tactile_depth as td
 from tactile_depth.chip.registers.axil_registers import GAINS
-from tactile_depth.device import exchange
+from tactile_depth.device import exchange, self_test
+from tactile_depth.device.line import Line
 from tests.device.cable import Cable
 from tests.device.conftest import Plug
 from tests.device.zynq import on_grid
@@ -62,7 +63,7 @@ def test_a_zero_offset_waits_for_the_light(pipeline: td.Pipeline, sample: td.Sam
         device.capture_zero(frames=1)
         zero_mm = cable.serving.device._zero() * pipeline.depth_lsb_mm
         assert np.abs(zero_mm).max() < 0.02
-        film(cable, pipeline, *(in_light(sample.reference, light) for light in (0.9, 1, 1, 0.9)))
+        film(cable, pipeline, *(in_light(sample.reference, light) for light in np.linspace(0.8, 1, 50)))
         with pytest.warns(td.InputWarning, match="light of the device's camera does not stand still: switch lamps"):
             device.capture_zero(frames=2)
 
@@ -134,3 +135,22 @@ def test_a_self_test_knows_captures_of_the_camera(pipeline: td.Pipeline, sample:
         device._unseen["reference"].entries[0] ^= 1 << 6
         with pytest.raises(td.DeviceError, match="computes something else"):
             device.self_test()
+
+
+def test_settings_that_a_failure_leaves_are_written_anew(
+    device: td.Device, sample: td.Sample, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The answer of a self-test gets lost, and so does the write that lets light gains follow again."""
+    device.load()
+    with monkeypatch.context() as patch:
+
+        def fails(*_: object) -> Any:
+            patch.setattr(Line, "write", fails)
+            raise td.DeviceError("no answer", remedy="check the cable")
+
+        patch.setattr(self_test, "_awaited", fails)
+        with pytest.raises(td.DeviceError, match="no answer"):
+            device.self_test()
+    assert device.registers["LIGHT"] == 0
+    next(iter(device.depth([sample.image])))
+    assert device.registers["LIGHT"] == 1

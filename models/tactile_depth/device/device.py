@@ -236,11 +236,11 @@ class Device(AbstractContextManager["Device"]):
         release_mm = touch_mm if release_mm is None else release_mm
         given = {"touch_mm": touch_mm, "release_mm": release_mm, "area_mm": area_mm}
         lsb_mm = self.pipeline.depth_lsb_mm
+        limit_mm = ((1 << self.pipeline.config.depth.width - 1) - 1) * lsb_mm
         for name, depth_mm in given.items():
             lowest_mm, least = (lsb_mm, "above 0, up") if name == "touch_mm" else (0.0, "of 0")
-            if depth_mm is not None and not (is_number(depth_mm) and lowest_mm <= depth_mm < self._limit_mm):
-                accepted = f"a depth {least} to {self._limit_mm:.3g} mm"
-                raise InputError(Argument(name, depth_mm), accepted=accepted)
+            if depth_mm is not None and not (is_number(depth_mm) and lowest_mm <= depth_mm < limit_mm):
+                raise InputError(Argument(name, depth_mm), accepted=f"a depth {least} to {limit_mm:.3g} mm")
         thresholds_mm = self._thresholds_mm | {name: depth for name, depth in given.items() if depth is not None}
         settings = self.pipeline.settings(**thresholds_mm)
         if settings.off_threshold > settings.on_threshold:
@@ -248,8 +248,8 @@ class Device(AbstractContextManager["Device"]):
             raise InputError(Argument("release_mm", release_mm), accepted=f"at most touch_mm, {touch:.3g}")
         with self._open_line() as line:
             write_words(line, list(thresholds_of(settings).items()))
+            self._thresholds_mm, self._settings = thresholds_mm, settings
             self._last_old = last_begun(line)
-        self._thresholds_mm, self._settings = thresholds_mm, settings
 
     def depth(
         self, pictures: Pictures | Iterable[Picture] | None = None, *, stream: bool | None = None
@@ -263,7 +263,7 @@ class Device(AbstractContextManager["Device"]):
 
         A picture whose depth gets lost on the line gives no frame and is counted in `lost`; `DeviceFrame.picture` tells
         which one is missing. The frames of a camera do not end; their warnings are those that the flags of the device
-        and the depth give. Those of before the call, or `set_thresholds`, are left out, and do not count in `lost`.
+        and the depth give. Those of before the call, or `set_thresholds`, are left out.
 
         Parameters
         ----------
@@ -278,8 +278,7 @@ class Device(AbstractContextManager["Device"]):
             A picture is not accepted, or another `depth` has not ended. A stream leaves out and counts a picture that
             is refused once one was accepted.
         DeviceError
-            The device has other tables or settings than the pipeline, or computes another depth: it needs `load`; or it
-            does not answer.
+            The device needs `load`: it has other tables or settings, or computes another depth. Or it does not answer.
 
         Warns
         -----
@@ -309,7 +308,7 @@ class Device(AbstractContextManager["Device"]):
                 frames = sent.streamed(line, self._twin, pictures, light)
             else:
                 frames = sent.single(line, self._twin, pictures)
-            with closing(frames):
+            with closing(frames), self._restoring():
                 yield from (self._frame(arrival, index, result) for index, arrival, result in frames)
 
     def self_test(self) -> None:
@@ -326,12 +325,11 @@ class Device(AbstractContextManager["Device"]):
             held.require_tables(line, self._tables)
             self._require_seen(name for name, each in self._unseen.items() if each.entries is None)
             dark_level = read_words(line, [DARK_LEVEL])[DARK_LEVEL]
-            shown = signature_of(line)
+            with self._restoring():
+                shown = signature_of(line)
         wanted = expected_signature(self._twin, self._unseen, dark_level)
         if shown != wanted:
-            problem = (
-                f"the device computes something else than the pipeline: SELF_TEST is {shown:#010x}, not {wanted:#010x}"
-            )
+            problem = f"the device computes something else: SELF_TEST is {shown:#010x}, not {wanted:#010x}"
             raise DeviceError(problem, remedy="call load(); if it stays, the device is built differently or faulty")
 
     def status(self) -> DeviceStatus:
@@ -421,13 +419,22 @@ class Device(AbstractContextManager["Device"]):
             held.require_tables(line, others, is_settled=False)
             self._tables[table] = NOT_KNOWN  # until it has ended
             self._set_dark_level(line, is_camera=twin is None)
-            with captures.unity_light(line) if table == "reference" else nullcontext():
+            with self._restoring(), captures.unity_light(line) if table == "reference" else nullcontext():
                 yield line
         self._loaded[table] = held.signatures_of(self.pipeline)[table]
         if twin is not None:
             self._use(twin)
             self._tables[table] = held.signatures_of(twin)[table]
             self._unseen.pop(table, None)
+
+    @contextmanager
+    def _restoring(self) -> Iterator[None]:
+        """Let the next call write the settings anew if the device fails in the context, which changes some."""
+        try:
+            yield
+        except (DeviceError, KeyboardInterrupt):
+            self._is_set = False
+            raise
 
     def _use(self, twin: Pipeline) -> None:
         """Take a pipeline for one with what the device holds."""
@@ -491,8 +498,3 @@ class Device(AbstractContextManager["Device"]):
         form = self.depth_format, (pipeline.config.rows, pipeline.config.columns)
         made = DeviceFrame(frame.codes, frame.record, *counts, picture, recorder, *units, *form)
         return made if result is None else seen_as(made, result)
-
-    @property
-    def _limit_mm(self) -> float:
-        """Largest depth code in mm."""
-        return ((1 << self.pipeline.config.depth.width - 1) - 1) * self.pipeline.depth_lsb_mm

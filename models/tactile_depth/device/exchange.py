@@ -16,7 +16,7 @@ from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.registers import read_words
 
 MISSED = 5  # pictures without depth in a row after which the line is given up
-MOST_INSIDE = 4  # whole frames in the pipeline; more are counted if counters were cleared meanwhile
+MOST_INSIDE = 4  # whole frames in the pipeline; counters that were cleared with frames inside give fewer than 0
 CAMERA_S = 2.0  # the slowest camera gives a picture in this time
 
 
@@ -95,7 +95,7 @@ class Exchange(AbstractContextManager["Exchange"]):
 
 
 def last_begun(line: Channel) -> int:
-    """Return the number of the last frame whose tables or thresholds may be those of before this call.
+    """Return the number of the last frame that may still have the tables or thresholds of before this call.
 
     Depth leaves after the last pixel of its picture. So it is a frame that came in whole: it has its record, or is on
     its way through the pipeline.
@@ -112,7 +112,7 @@ def camera_frames(line: Channel, last_old: Callable[[], int]) -> Iterator[Arriva
     Parameters
     ----------
     last_old : function
-        Gives the number of a frame. Frames up to that are left out, and do not count as lost.
+        Returns the number of a frame. Frames up to it are left out, and do not count as lost.
 
     Raises
     ------

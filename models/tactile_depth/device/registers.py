@@ -39,8 +39,8 @@ def write_words(line: Channel, pairs: Sequence[tuple[str, int]]) -> None:
 def meanwhile(line: Channel, name: str, word: int, then: int) -> Iterator[None]:
     """Write a word to a register, and `then` at the end of the context. Raises DeviceError as `write_words`."""
     failed = False
-    write_words(line, [(name, word)])
     try:
+        write_words(line, [(name, word)])
         yield
     except BaseException:  # also the end of a loop that was left, when the line may be closed
         failed = True

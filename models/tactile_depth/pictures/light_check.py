@@ -79,7 +79,7 @@ def doubts_of(
     if peak - lowest > 2 * threshold_mm:
         if slopes_mm is not None and not clipped:
             doubts += _no_surface(depth_mm, slopes_mm, name)
-            if doubts and checked.ratios is not None and _far(checked.ratios).max() < UNTOUCHED:
+            if doubts and gains is not None and checked.ratios is not None and _far(checked.ratios).max() < UNTOUCHED:
                 text = ": nothing touches, its depth is of light gains that have not followed yet"
                 doubts = [doubt(LIGHT, name, text, remedy="leave it out: they follow within some pictures")]
         if not doubts:
