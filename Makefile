@@ -133,7 +133,7 @@ registers: $(TOOLS)
 # Test what differs from BASE=<commit>, by default origin/main, and run the whole once: 2 minutes.
 quick: $(TOOLS)
 
-# Run in full what `make test` samples, and print a table: under an hour. PARTS=a,b JOBS=2
+# Run in full what `make test` samples, and print a table: some hours. PARTS=a,b JOBS=2
 regress: $(HARDWARE)
 
 # Check cores with Verilator, slang, Yosys, verible and Icarus, and Python with ruff and mypy. CORE=a,b
