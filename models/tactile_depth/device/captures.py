@@ -42,7 +42,7 @@ OF_CAMERA = "the reference that the device took from its camera"
 
 
 class Unseen(NamedTuple):
-    """What is known of a table from a capture whose pictures this program did not send.
+    """Table of a capture whose pictures this program did not send, as far as it is known.
 
     Attributes
     ----------
