@@ -20,7 +20,7 @@ from tactile_depth.chip.registers.table_signatures import TableSignatures
 from tactile_depth.chip.tactile_depth import config_value, default_parameters, top_parameters
 from tb.axil import CLIENT
 from tb.lockstep import CLOCKS, WORD, Pins, play
-from tb.registers.bus import CHANNELS, NAME_AT, OFFSET, PINS
+from tb.registers.bus import CHANNELS, NAME_AT, OFFSET, PINS, begin_low
 from tb.registers.tb_table_signatures import advance, captured_words
 from tb.structs import members, pack, unpack
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
@@ -289,4 +289,5 @@ async def registers(dut: Any) -> None:
             host.drive(registers, pins)
         pins["table_in_use"] ^= registers.model.banks.bank
 
+    begin_low(dut)
     await play(dut, model, pins, legal, CHANNELS, clocks=max(CLOCKS, 20_000))

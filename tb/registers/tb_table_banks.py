@@ -9,7 +9,7 @@ from formal.entries import Proof
 from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT, TableBanks
 from tb import structs
 from tb.lockstep import Pins, play
-from tb.registers.bus import NAME_AT, Bus
+from tb.registers.bus import NAME_AT, Bus, begin_low
 from tb.structures import BOTH, ICARUS, of_parameters
 
 built = of_parameters("Present")
@@ -70,4 +70,5 @@ async def banks(dut: Any) -> None:
         bus.drive(pins)
         pins["table_in_use"] ^= banks.model.bank
 
+    begin_low(dut)
     await play(dut, Banks(int(dut.Present.value)), pins, legal)

@@ -16,7 +16,7 @@ from tactile_depth.chip.registers.table_signatures import GRADIENT, REFERENCE, Z
 from tactile_depth.chip.rom_files import write_words
 from tb import structs
 from tb.lockstep import CLOCKS, Pins, play
-from tb.registers.bus import OFFSET, STROBES
+from tb.registers.bus import OFFSET, STROBES, begin_low
 from tb.structures import ICARUS, VERILATOR, Structure
 
 FILE, WORDS = "signatures.hex", [0x11111111 * n for n in range(8)]
@@ -150,4 +150,5 @@ async def signatures(dut: Any) -> None:
         **{f"{name}_captured": writers.words for name in CAPTURES},
     }
     model = TableSignatures(WORDS if dut.File.value else [0] * 8, int(dut.Side.value))
+    begin_low(dut)
     await play(dut, Signatures(model), pins, writers.drive, clocks=6 * CLOCKS)
