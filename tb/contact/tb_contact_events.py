@@ -19,14 +19,14 @@ from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
 FRAME_START = depth_position(True, False, False)
 
 built = of_parameters(" ".join(NAMES))
-STRUCTURES = (
+STRUCTURES = (  # a frame has at least as many beats as its record takes cycles
     built(24, 5, 8, 1, 0, on=VERILATOR),
     built(6, 5, 8, 1, 1, on=ICARUS, mutants=BOTH),
     built(32, 5, 16, 1, 1),
     built(12, 9, 4, 1, 0),
     built(24, 8, 16, 1, 0),
     built(24, 5, 32, 4, 1),
-    built(16, 8, 32, 8, 0),
+    built(16, 10, 32, 8, 0),
     built(12, 4, 16, 2, 0),
 )
 PROTOCOL = {
