@@ -6,8 +6,9 @@ from typing import Any
 import cocotb
 
 from formal.entries import Proof
+from tactile_depth.chip.common.signature import START
 from tactile_depth.chip.depth.depth_signature import DepthSignature
-from tb.lockstep import WORD, play
+from tb.lockstep import WORD, Pins, play
 from tb.stream import parameters
 from tb.structures import BOTH, ICARUS, of_parameters
 
@@ -23,4 +24,9 @@ PROOFS = tuple(
 async def frames(dut: Any) -> None:
     marks = {"in_valid": 1.0, "in_frame_start": 0.1, "in_frame_end": 0.1}
     choices = {"en": 1.0, "clear": 0.02, **marks, "in_data": WORD}
-    await play(dut, DepthSignature(*parameters(dut, "Width", "Lanes")), choices)
+
+    def legal(model: DepthSignature, pins: Pins) -> None:
+        """Let the first beat of all begin a frame."""
+        pins["in_frame_start"] |= model.sum == START
+
+    await play(dut, DepthSignature(*parameters(dut, "Width", "Lanes")), choices, legal)
