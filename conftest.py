@@ -106,18 +106,12 @@ def begins_at_random(item: Any) -> bool:
     return device and "run_tb" in item.fixturenames and item.get_closest_marker("verilator") is not None
 
 
-def has_random_frames(item: Any) -> bool:
-    """Return whether `make regress` plays a test of RTL with another seed: each on Icarus, and a solver on both."""
-    structure = item.callspec.params.get("structure")
-    return item.get_closest_marker("icarus") is not None or (structure is not None and bool(structure.device))
-
-
 def pytest_collection_modifyitems(items: Any) -> None:
     """Mark the tests of RTL, before `-m` selects by mark; put the long ones first."""
     for item in items:
         if "simulator" in getattr(item, "fixturenames", ()):
             item.add_marker(item.callspec.params["simulator"])
-        if "run_tb" in getattr(item, "fixturenames", ()) and has_random_frames(item):
+        if "run_tb" in getattr(item, "fixturenames", ()):
             item.add_marker("seeds")
         if begins_at_random(item):
             item.add_marker("power_ups")
@@ -177,7 +171,8 @@ def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
             built.write_text(state)
         if structure.roms:
             structure.roms(folder)
-        wanted = replace(RUN, device=structure.device, level=structure.level)
+        full = RUN.full and simulator == "verilator"  # Icarus takes up to ten times as long
+        wanted = replace(RUN, device=structure.device, level=structure.level, full=full)
         environment = replace(wanted, **settings).environment
         bench = test_module or repository.testbench(toplevel)
         if not test_module and "," in bench:  # of several files: no test of them depends on an earlier one

@@ -16,13 +16,13 @@ def level_of(structure: Structure, simulator: str) -> str:
     """Return the last level of a run of a structure.
 
     `make test` runs every test on the tridiagonal solver, and each pair of gaps and stalls on one of the solvers; a
-    build of several lanes on Icarus up to the streams, because Verilator runs the others. `make regress` runs each test
-    of the spectral solver on Icarus under one disturbance only.
+    build of several lanes on Icarus up to the streams, because Verilator runs the others. `make regress` runs the rest
+    on Verilator.
     """
     choices = structure.device["configuration"]
     if structure.level == WHOLE and "solver" not in choices:
-        return ("whole" if simulator == "icarus" else WHOLE) if RUN.full else "disturbed"
-    if "lanes" in choices and simulator == "icarus" and not RUN.full:
+        return WHOLE if RUN.full and simulator == "verilator" else "disturbed"
+    if "lanes" in choices and simulator == "icarus":
         return "stream"
     return structure.level
 
