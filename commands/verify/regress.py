@@ -3,8 +3,8 @@
 
 Parts, chosen with PARTS=a,b: `faults` (tests/test_faults.py, the full product), `codes` (tests/test_codes.py: RTL
 against model in bulk), `power_ups` (the quick tests of every core and of the top from 100 random states), `seeds`
-(every test of RTL with another seed, in full on Verilator, and all tests that are too long for `make test`). JOBS is the
-number of processes, 2 by default.
+(every test of RTL with another seed, in full on Verilator, and all tests that are too long for `make test`). JOBS is
+the number of processes, 2 by default.
 """
 
 import resource
