@@ -435,7 +435,7 @@ def main(request: Annotated[BoardRun, variables.Several(VARIABLES, request_of)])
     out = design.out or ROOT / "build" / flow / f"{name}-{run_request.words_of(config)}"
     written = f"{flow}.json"
     with synthesis.workspace(out, [written]) as work:
-        wrapped.announce(design, twin)
+        wrapped.announce(design, twin, frames.camera)
         report = {**build(request, work), "command": " ".join(["make", *sys.argv])}
         save(work / written, report)
         earlier = [path.name for path in out.glob("*.bit")]

@@ -24,8 +24,8 @@ SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
 def design(request: run_request.Request, frames: Frames | None = None) -> tuple[Frames, Sensor, Configuration]:
     """Return frames, by default those of a request, calibration on their grid and configuration.
 
-    Without FRAMES the reference is the frame, and shows all that the calibration's pictures show. Without a picture at
-    all, what CAMERA sends is taken to be the sensor's full picture, unless CROP says what else.
+    Without FRAMES the reference is the frame, and shows all that the calibration's pictures show. What CAMERA sends is
+    taken to be the sensor's full picture without FRAMES, and so is its reference, unless CROP says what else.
 
     Raises InputError.
     """
@@ -36,7 +36,7 @@ def design(request: run_request.Request, frames: Frames | None = None) -> tuple[
     named = frames is not None or bool(request.frames)
     without_picture = frames is None and not request.frames and flat and calibration.camera is not None
     crop = request.crop
-    if crop is None and without_picture and request.camera is not None and calibration.view is not None:
+    if crop is None and not named and request.camera is not None and calibration.view is not None:
         crop = "none"
     calibration, share = shown(calibration, crop)
     if without_picture:

@@ -23,6 +23,8 @@ from tactile_depth.chip import c_header
 from tactile_depth.chip.hardware_files import PARAMETERS
 from tactile_depth.chip.rom_files import table_files
 
+TOPS = ("tactile_depth", "tactile_sensor")
+
 
 def main(
     request: Annotated[run_request.Request, run_request.chosen((*wrapped.CHOICES, "OUT"), wrapped.PRESET, "")],
@@ -31,9 +33,15 @@ def main(
     shell: Annotated[str, one(("verilog",))] = "",
 ) -> None:
     wrapped.check_name(name)
-    if not tables.endswith("/") or '"' in tables:
-        raise InputError(f"TABLES={tables}: accepted is the folder of the table files, with a / at its end")
+    if not tables.endswith("/") or '"' in tables or "\\" in tables:
+        raise InputError(
+            f"TABLES={tables}: accepted is the folder of the table files, with / between names and at its end"
+        )
     out = request.out or repository.ROOT / "build" / "wrap" / name
+    if others := {path.name for top in TOPS for path in out.glob(f"{top}_*.sv")} - earlier(out, name):
+        raise InputError(
+            f"OUT={out}: the tables there are those of {min(others)}", remedy="give each NAME its own folder"
+        )
     with files.workspace(out, (PARAMETERS,)) as work:
         written = wrapped.write(request, work, name, tables, with_shell=bool(shell))
         component = described(written, work, out, tables)
@@ -46,8 +54,7 @@ def main(
 
 def earlier(out: Path, name: str) -> set[str]:
     """Return the names of files that an earlier run for NAME may have left in a folder."""
-    tops = ("tactile_depth", "tactile_sensor")
-    own = {f"{top}_{name}{end}" for top in tops for end in (".sv", ".xml", "_shell.v", "_shell.xml")}
+    own = {f"{top}_{name}{end}" for top in TOPS for end in (".sv", ".xml", "_shell.v", "_shell.xml")}
     return own | files.listed(out / PARAMETERS, "tables")
 
 

@@ -15,6 +15,7 @@ from commands.common import run_request, wrapper
 from commands.common.zero_offset import untouched
 from commands.hardware import synthesis
 from tactile_depth.base.errors import Argument, InputError, InputWarning, warn
+from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.hardware_files import write_files
 from tactile_depth.depth.make_words import make_words
 from tactile_depth.depth.result import settings_of, thresholds_of
@@ -46,8 +47,8 @@ def design(request: run_request.Request) -> tuple[Frames, Twin]:
     return frames, Twin(sensor, config, untouched(request, frames))
 
 
-def announce(request: run_request.Request, twin: Twin) -> None:
-    """Print the preset, and all words with which any command writes the same hardware.
+def announce(request: run_request.Request, twin: Twin, camera: CameraConfiguration | None = None) -> None:
+    """Print the preset, all words with which any command writes the same hardware, and the part that a camera shows.
 
     Warns where the reference of a real sensor is not a picture.
     """
@@ -57,6 +58,10 @@ def announce(request: run_request.Request, twin: Twin) -> None:
         warn(InputWarning("no ", Argument("reference"), remedy=remedy))
     run_request.announce(request, twin.config)
     print(f"make words: {make_words(twin.config, twin.sensor.pixel_pitch_mm, sources(request))}", flush=True)
+    if camera is not None:
+        rows, columns = camera.picture
+        shown = f"WINDOW={','.join(map(str, camera.crop))}, {twin.sensor.pixel_pitch_mm:.4f} mm a pixel of the grid"
+        print(f"pictures of {columns} x {rows} from the camera, {shown}", flush=True)
 
 
 def write(
@@ -76,7 +81,7 @@ def write(
     modules = [wrapper.write(folder, name, fields, tables)]
     if with_shell:
         modules.append(wrapper.write_shell(folder, name, fields, tables))
-    announce(request, twin)
+    announce(request, twin, frames.camera)
     return Written(tuple(modules), fields)
 
 

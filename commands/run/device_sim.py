@@ -63,10 +63,15 @@ def _verilate(folder: Path, top: str, files: list[Path], fields: Mapping[str, in
 
 
 def main() -> None:
-    folder, *options = sys.argv[1:]
+    folder, *options = sys.argv[1:] or [""]
+    if not folder or folder.startswith("-") or options not in ([], ["--pins"]):
+        sys.exit("usage: python -m commands.run.device_sim FOLDER [--pins]")
+    path = Path(folder) / PARAMETERS
     try:
-        fields = json.loads((Path(folder) / PARAMETERS).read_text())["fields"]
-        fields["TablesCrc"] = 0  # one executable for all tables
+        fields = {**json.loads(path.read_text())["fields"], "TablesCrc": 0}  # one executable for all tables
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        sys.exit(f"device_sim: {path} is not what Pipeline.hardware writes ({error!r})")
+    try:
         built = build(fields, "--pins" in options)
     except (InputError, RuntimeError) as error:
         sys.exit(f"device_sim: {error}")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -108,7 +109,11 @@ class TactileDepthNode(Node):
 def main() -> None:
     """Run the node until it is interrupted."""
     rclpy.init()
-    node = TactileDepthNode()
+    try:
+        node = TactileDepthNode()
+    except td.InputError as error:
+        rclpy.try_shutdown()
+        sys.exit(f"tactile_depth: {error}")
     try:
         rclpy.spin(node)
     except KeyboardInterrupt:
