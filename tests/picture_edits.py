@@ -114,6 +114,10 @@ DOUBTED: dict[str, tuple[Edit, str]] = {
         lambda p: np.minimum(in_light(1.5)(p), 235),
         "of its pixels are clipped, heights there are too small",
     ),
+    "rows of a damaged file": (
+        lambda p: np.vstack((p[:-32], np.clip(p[-32:] * (0.5, 1.1, 0.7), 0, 255).astype(np.uint8))),
+        "its lowest 12 % have other colours along the whole width",
+    ),
     "noise": (
         lambda p: np.random.default_rng(1).integers(0, 256, p.shape, np.uint8),
         "differs by .* % from its",

@@ -14,8 +14,10 @@ import pytest
 
 from tactile_depth.base.errors import InputError, InputWarning
 from tactile_depth.chip.configuration import Configuration
+from tactile_depth.depth.pipeline import Pipeline
 from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.calibration_file import BUILT_IN, CAMERA_KEYS, FOLDER
+from tactile_depth.sensor.samples import sample
 from tactile_depth.sensor.scenes import GAIN, LIGHTS, REST
 from tactile_depth.sensor.sensor import FORMAT_VERSION, TABLE_BITS, Camera, Sensor
 from tactile_depth.sensor.synthetic import synthetic
@@ -120,6 +122,16 @@ def test_cubics_are_read_as_written(tmp_path: Path, version: Any) -> None:
         np.testing.assert_array_equal(read.cubic, changed["cubic"])
         np.testing.assert_array_equal(read.corrections, changed["corrections"])
         assert (read.model, read.models, read.fitted_slope) == ("cubic", ("lut", "cubic"), {"cubic": 0.6})
+
+
+def test_the_sensor_of_a_pipeline_is_no_calibration(tmp_path: Path) -> None:
+    """Its pitch is that of the grid: heights would be as many times too large as the grid is coarser."""
+    drawn = sample()
+    sensor = Pipeline(drawn.sensor, drawn.reference).sensor
+    uses: list[Any] = [lambda: Pipeline(sensor, drawn.reference), lambda: sensor.save(tmp_path / "sensor.npz")]
+    for use in uses:
+        with pytest.raises(InputError, match="give the sensor that the pipeline was made from"):
+            use()
 
 
 def test_a_file_says_nothing_of_its_model_and_has_the_one_it_holds(tmp_path: Path) -> None:

@@ -292,6 +292,14 @@ def claiming(path: Path, *shape: int) -> Path:
     return path
 
 
+def twice(path: Path) -> Path:
+    """Return an .npy with two arrays, one behind the other."""
+    with path.open("wb") as file:
+        for _ in range(2):
+            np.save(file, np.zeros((16, 16, 3), np.uint8))
+    return path
+
+
 def drawn(path: Path, *size: Any, mode: str = "RGB", **options: Any) -> Path:
     Image.new(mode, size or (24, 16)).save(path, **options)
     return path
@@ -328,12 +336,17 @@ BAD: dict[str, Any] = {
     "TIFF": (lambda t: drawn(t / "p.tif"), "p.tif: not a readable picture (it does not begin as a PNG or a JPEG does)"),
     "a JPEG that viewers rotate": (lambda t: drawn(t / "p.jpg", exif=rotated()), "asks viewers to rotate it"),
     "a PNG that viewers rotate": (lambda t: drawn(t / "p.png", exif=rotated()), "asks viewers to rotate it"),
-    "a palette": (lambda t: written(t / "p.png", 20, 20, 8, 3, bytes(20)), "8 bits, palette", "save it as 8-bit RGB"),
+    "a palette": (
+        lambda t: written(t / "p.png", 20, 20, 8, 3, bytes(20)),
+        "8 bits, palette",
+        "take it again in full colour",
+    ),
     "a JPEG without colour": (lambda t: drawn(t / "p.jpg", mode="L"), "a JPEG of mode L"),
     "a large JPEG": (lambda t: drawn(t / "p.jpg", LARGEST_CAMERA + 1, 16), f"{LARGEST_CAMERA + 1}"),
     "an animation": (lambda t: drawn(t / "p.png", **ANIMATION), "an animation"),
     "a wide claim": (lambda t: written(t / "p.png", 16, 10**6, 8, 2, b""), f"frames of 16 x 1000000: {TOO_LARGE}"),
     "a large claim": (lambda t: written(t / "p.png", 9000, 9000, 8, 2, b""), f"frames of 9000 x 9000: {TOO_LARGE}"),
+    "two arrays": (lambda t: twice(t / "f.npy"), "more follows the first array"),
     "2^40 frames": (lambda t: claiming(t / "f.npy", 1 << 40, 16, 16, 3), "f.npy"),
     "a large frame": (lambda t: claiming(t / "f.npy", 1, 4000, 4000, 3), "f.npy"),
     "-1 frames": (lambda t: claiming(t / "f.npy", -1, 16, 16, 3), "f.npy"),

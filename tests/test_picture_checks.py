@@ -132,6 +132,13 @@ def test_light_gains_that_are_off_compensate_nothing(mini: td.Sensor, reference:
     doubted(pipeline, in_light(1.1)(press), r"by \+10 % in red, .* and there are no light gains")
 
 
+def test_no_contact_of_slightly_other_light_is_silent_without_light_gains(real: Any) -> None:
+    _, background, _ = real
+    pipeline = td.Pipeline(td.load("gelsight-mini"), background, light_gains=False)
+    assert doubted(pipeline, in_light(0.98)(background), "there are no light gains").contact.touching
+    certain(pipeline, background)
+
+
 def test_square_pictures_can_be_rotated_by_90_degrees(mini: td.Sensor) -> None:
     square = no_contact(mini)[:, :240]
     for turns, angle in ((1, 270), (3, 90)):
@@ -220,6 +227,8 @@ def test_a_captured_reference_is_checked(mini: td.Sensor, reference: np.ndarray,
         pipeline.capture_reference(press)
     assert pipeline(press).warnings
     pipeline.capture_reference(reference)
+    assert "the zero offset is of the reference before" in pipeline(press).warnings[0]
+    pipeline.capture_zero(reference)
     certain(pipeline, press)
 
 

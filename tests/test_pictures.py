@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures and streams that a pipeline takes, and those that it refuses with a remedy."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,24 @@ def test_pil_images_of_another_mode_are_refused(pipeline: td.Pipeline, drawn: td
     for refused in refusals:
         with pytest.raises(td.InputError, match=message):
             refused()
+
+
+def test_pil_images_of_damaged_files_or_several_frames_are_refused(
+    tmp_path: Path, pipeline: td.Pipeline, drawn: td.Sample
+) -> None:
+    image, path = Image.fromarray(drawn.image), tmp_path / "press.jpg"
+    image.save(path)
+    path.write_bytes(path.read_bytes()[:-500])
+    with pytest.raises(td.InputError, match=r"not a readable picture \(.*truncated"):
+        pipeline(Image.open(path))
+    with pytest.warns(td.InputWarning, match="truncated"):
+        assert len(list(pipeline.stream([image, Image.open(path), image]))) == 2
+    image.save(tmp_path / "two.tif", save_all=True, append_images=[image])
+    with Image.open(tmp_path / "two.tif") as two, pytest.raises(td.InputError, match="a PIL image of several frames"):
+        pipeline(two)
+    image.save(tmp_path / "two.jpg", "MPO", save_all=True, append_images=[image])
+    with pytest.warns(td.InputWarning, match="the first of its pictures alone counts"):
+        pipeline(tmp_path / "two.jpg")
 
 
 def test_a_mask_is_not_lost(pipeline: td.Pipeline, drawn: td.Sample) -> None:

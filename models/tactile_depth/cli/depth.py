@@ -47,7 +47,7 @@ UNITS = {
     "light_gains": "light of the reference over that of the picture, of red, green and blue; null without light gains",
     "peak_px, centroid_px": "row, column on the grid",
     "view": "shares of the width and height of the sensor's full picture that the grid is cut from; null: unknown",
-    "peak_position_mm, centroid_mm": "row, column from the upper left corner of that view; null without contact",
+    "peak_position_mm, centroid_mm": "row, column from the upper left corner of the grid; null without contact",
     "least_area_mm2": "least area above threshold_mm that is a contact",
     "area_threshold_mm": "depth above which a pixel is in the area: the one chosen, or half the contact's peak if that "
     "is less, at least threshold_mm",
@@ -139,8 +139,9 @@ def _captured_at(path: Path) -> float | None:
         exif = picture.getexif().get_ifd(ExifTags.IFD.Exif)
     tags = ExifTags.Base
     day, zone, part = map(exif.get, (tags.DateTimeOriginal, tags.OffsetTimeOriginal, tags.SubsecTimeOriginal))
+    part = part if str(part).isdecimal() else 0
     with contextlib.suppress(ValueError):
-        return datetime.strptime(f"{day} {zone}", "%Y:%m:%d %H:%M:%S %z").timestamp() + float(f"0.{part or 0}")
+        return datetime.strptime(f"{day} {zone}", "%Y:%m:%d %H:%M:%S %z").timestamp() + float(f"0.{part}")
     return None
 
 

@@ -13,7 +13,7 @@ def vertices_mm(
 ) -> np.ndarray:
     """Return the points of a surface, float32 (rows * columns, 3): x to the right, y up the picture, z the height.
 
-    x and y count from the upper left corner of the picture: depth (i, j) lies half a pixel up and to the left of the
+    x and y count from the upper left corner of the grid: depth (i, j) lies half a pixel up and to the left of the
     centre of pixel (i, j). `origin_mm` is the row and the column of the first value, in mm.
     """
     rows, columns = height_mm.shape

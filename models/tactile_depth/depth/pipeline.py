@@ -36,7 +36,7 @@ from tactile_depth.pictures.light_check import doubts_of, least_clipped
 from tactile_depth.pictures.picture_check import Checked, check_picture
 from tactile_depth.pictures.pictures import Picture, Pictures, each_of
 from tactile_depth.pictures.reader import Reader, default_grid, power_of_two_of
-from tactile_depth.pictures.reference_check import check_reference, check_zero
+from tactile_depth.pictures.reference_check import check_reference, check_zero, earlier_zero
 from tactile_depth.sensor.presets import AREA_THRESHOLD_MM, SENSOR, THRESHOLD_MM
 from tactile_depth.sensor.sensor import Sensor
 from tactile_depth.sensor.view import Crop, shown
@@ -359,7 +359,7 @@ class Pipeline:
     def capture_reference(self, pictures: Pictures) -> None:
         """Take the mean of pictures without contact as the reference, as the hardware's capture does.
 
-        The zero offset does not change: call `capture_zero` next.
+        The zero offset does not change, and heights are doubted: call `capture_zero` next.
 
         Parameters
         ----------
@@ -373,6 +373,7 @@ class Pipeline:
         """
         require_flat_field(self.config)
         self._use_reference(*self._rest_of(pictures, PICTURES, largest_log2_frames(self.config)))
+        self._zero_doubts = earlier_zero(self.config)
         self._sources.take_reference(pictures)
         self._settle(self.sensor.reference)
 

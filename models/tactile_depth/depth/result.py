@@ -198,19 +198,19 @@ class Contact(ByValue):
 
     @property
     def peak_position_mm(self) -> tuple[float, float] | None:
-        """Row and column of the peak from the upper left corner of the picture, in mm; None without contact."""
+        """Row and column of the peak from the upper left corner of the grid, in mm; None without contact."""
         return self._from_the_corner(self.peak_px)
 
     @property
     def centroid_mm(self) -> tuple[float, float] | None:
-        """Row and column of the centroid from the upper left corner of the picture, in mm; None without contact."""
+        """Row and column of the centroid from the upper left corner of the grid, in mm; None without contact."""
         return self._from_the_corner(self.centroid_px)
 
     def _from_the_corner(self, index: tuple[float, float]) -> tuple[float, float] | None:
         """Return a position on the depth map in mm.
 
         The centre of a pixel is half a pixel from its corner, and depth lies half a pixel up and to the left of it: so
-        index 0 is on the edge of the picture.
+        index 0 is on the edge of the grid.
         """
         if not self.touching:
             return None

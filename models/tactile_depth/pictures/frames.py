@@ -38,8 +38,10 @@ OTHER_SUFFIXES = (  # of pictures that are not read in a folder
     *(".avif", ".bmp", ".dng", ".gif", ".heic", ".heif", ".j2k", ".jfif", ".jp2", ".jpe", ".jxl", ".npy", ".pgm"),
     *(".pnm", ".ppm", ".raw", ".tga", ".tif", ".tiff", ".webp"),
 )
+SAVE_RGB = "save it as 8-bit RGB"
 EXIF_ORIENTATION, UPRIGHT = 0x0112, 1
-PNG_COLOURS = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with transparency", 6: "RGB with transparency"}
+PALETTE = 3
+PNG_COLOURS = {0: "grey", 2: "RGB", PALETTE: "palette", 4: "grey with transparency", 6: "RGB with transparency"}
 REST_SCENE = "flat"  # the scene without contact
 GREY = 128  # level of a picture that stands for one without contact
 SCENE_PICTURE = (480, 640)  # rows and columns of a scene in front of a camera
@@ -115,9 +117,10 @@ def read_picture(path: Path) -> np.ndarray:
             width, height, bits, colour = struct.unpack(">IIBB", head[16:])
             # The header is checked first: the reader converts 16 bits to 8, and allocates memory before it reads.
             if (bits, colour) not in ((8, 2), (8, 6)):
+                remedy = "take it again in full colour" if colour == PALETTE else SAVE_RGB
                 raise InputError(
                     f"{path}: a PNG of {bits} bits, {PNG_COLOURS.get(colour, f'colour type {colour}')}, {height} x "
-                    f"{width}: save it as 8-bit RGB"
+                    f"{width}: {remedy}"
                 )
             _check_camera(str(path), height, width)
             file.seek(0)
@@ -137,8 +140,10 @@ def _read_jpeg(path: Path, file: BinaryIO) -> np.ndarray:
     with Image.open(file, formats=["JPEG"]) as picture:  # reads the header only
         _check_camera(str(path), picture.height, picture.width)
         if picture.mode != "RGB":
-            raise InputError(f"{path}: a JPEG of mode {picture.mode}: save it as 8-bit RGB")
+            raise InputError(f"{path}: a JPEG of mode {picture.mode}: {SAVE_RGB}")
         _require_upright(path, picture)
+        if getattr(picture, "n_frames", 1) > 1:
+            warn(InputWarning(f"{path}: the first of its pictures alone counts", remedy="save each by itself"))
         return np.array(picture)
 
 
@@ -418,6 +423,8 @@ def _read_array(path: Path) -> np.ndarray:
             present = path.stat().st_size - file.tell()
             if math.prod(shape) > present:  # checked before memory is allocated
                 raise ValueError(f"{counted(present, 'byte')} of data for {shape}")
+            if math.prod(shape) < present:
+                raise InputError(f"{path}: more follows the first array: save one (frames, rows, cols, 3)")
             file.seek(0)
             return np.lib.format.read_array(file, allow_pickle=False)
     except InputError:

@@ -50,6 +50,9 @@ ZOOM_ROUNDS, ZOOM_SCALE = 6, 0.012  # of weights, and the distance from which a 
 # Step from a row of blocks to the second next, of the most different colour, exceeded in three quarters of the columns.
 # Right: 0.014 at most, with light that changes by 30 % 0.012; torn by 20 pixels 0.059 and more, by 40 0.097 and more.
 SEAM = 0.04
+# The same from which the rows below may be those of a damaged file: JPEG with a flipped bit, peaks 2 to 5 times too
+# large: 0.5 and more.
+CAST = 0.1
 
 COMPLETE = "give frames that are complete"
 OTHER_SENSOR = "touch less of the gel, or take the reference with the same sensor"
@@ -169,6 +172,9 @@ def _other_pattern(blocks: np.ndarray, rest: np.ndarray, name: Part) -> list[Dou
     if differs > PATTERN_DOUBTFUL and median(np.abs(difference - smooth(difference, 2, rounds=6))) > PATTERN_DIFFERS:
         text = f": it differs by {100 * differs:.0f} % from its reference in more than half of its area"
         return [doubt("pattern", name, text, remedy=OTHER_SENSOR)]
+    if (row := _cast_from(difference)) is not None:
+        text = f": its lowest {100 * (1 - row / len(blocks)):.0f} % have other colours along the whole width"
+        return [doubt("pattern", name, text, remedy=COMPLETE)]
     return []
 
 
@@ -201,10 +207,23 @@ def _bands(difference: np.ndarray) -> np.ndarray:
     return np.partition(means, middle)[:, middle]
 
 
+def _steps(difference: np.ndarray) -> np.ndarray:
+    """Return the step from each row of blocks to the second next that three quarters of the columns exceed."""
+    steps = largest(np.abs(difference[2:] - difference[:-2]))
+    return np.sort(steps, axis=1)[:, steps.shape[1] // 4]
+
+
+def _cast_from(difference: np.ndarray) -> int | None:
+    """Return the row of blocks from which on all have another colour; None if they come back to the reference's."""
+    places = np.flatnonzero(_steps(difference) > CAST)
+    if not len(places) or median(np.abs(difference[places[-1] + 2 :])) < BAND_DIFFERS:
+        return None
+    return int(places[-1]) + 1
+
+
 def _is_torn(blocks: np.ndarray, rest: np.ndarray, difference: np.ndarray, bands: np.ndarray) -> bool:
     """Return True if below a seam bands of rows agree with the reference once they are shifted, or rows are rolled."""
-    steps = largest(np.abs(difference[2:] - difference[:-2]))
-    if np.sort(steps, axis=1)[:, steps.shape[1] // 4].max() < SEAM:
+    if _steps(difference).max() < SEAM:
         return False
     left = [_bands(differences(np.roll(blocks, shift, axis=1), rest)) for shift in range(blocks.shape[1])]
     if np.any((bands > BAND_DIFFERS) & (np.min(left, axis=0) < EXCHANGE_LEAVES * bands)):

@@ -30,8 +30,8 @@ class HasInterface(Protocol):
 
 
 def is_array(value: object) -> bool:
-    """Return True if numpy takes an object as an array."""
-    return hasattr(value, "__array__") or hasattr(value, "__array_interface__")
+    """Return True if numpy takes an object as an array, or would if its file were whole."""
+    return hasattr(type(value), "__array__") or hasattr(type(value), "__array_interface__")
 
 
 def array_of(given: object, name: Part) -> np.ndarray:
@@ -41,7 +41,12 @@ def array_of(given: object, name: Part) -> np.ndarray:
         raise InputError(name, f": a PIL image of mode {mode}", accepted=RGB, remedy='give it after .convert("RGB")')
     if isinstance(given, np.ma.MaskedArray):
         raise InputError(name, ": a masked array, whose mask would be lost", remedy="give it after .filled(..)")
-    return np.asarray(given)
+    if getattr(given, "n_frames", 1) != 1:
+        raise InputError(name, ": a PIL image of several frames", remedy="give each by itself")
+    try:
+        return np.asarray(given)
+    except Exception as error:  # PIL raises many kinds of errors for a damaged or closed file
+        raise InputError(name, f": not a readable picture ({error})", remedy="give an intact one") from error
 
 
 ROTATIONS = (0, 90, 180, 270)  # degrees, counter-clockwise

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter
 
 from tactile_depth.base.errors import Argument, Part
+from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.resampling import WHOLE, Share
 from tactile_depth.pictures.blocks import Rest, block_means, differences, largest, medians, smooth
 from tactile_depth.pictures.doubts import (
@@ -98,6 +99,12 @@ def _contact(sensor: Sensor, rest: np.ndarray, blocks: np.ndarray, name: Part) -
         return []
     text = f": it is not smooth (differences of {100 * differs:.0f} %{of}), as if something touched the gel"
     return [doubt("contact in the reference", name, text, remedy=TAKE_ANOTHER)]
+
+
+def earlier_zero(config: Configuration) -> tuple[Doubt, ...]:
+    """Doubt a zero offset, if there is one, that was measured with another reference than the one in use."""
+    remedy = "with the gel untouched call capture_zero()"
+    return (doubt("earlier zero", "the zero offset is of the reference before", remedy=remedy),) * config.zero_offset
 
 
 def check_zero(frames: np.ndarray, rest: Rest | None, name: Part) -> tuple[Doubt, ...]:

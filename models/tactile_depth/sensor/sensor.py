@@ -243,6 +243,12 @@ class Sensor(ByValue):
             remedy = ("omit the ", Argument("reference"), ", or calibrate again with one")
             raise InputError(f"{self.name} was fitted to colours as sent", remedy=remedy)
 
+    def require_no_grid(self) -> None:
+        """Raise InputError if the pitch is that of a grid, with the reference on it."""
+        if self.reference is not None:
+            problem = f"{self.name}: it has the pitch of a grid and a reference, as Pipeline.sensor"
+            raise InputError(problem, remedy="give the sensor that the pipeline was made from")
+
     def lighting_difference(self, reference: np.ndarray) -> float:
         """Return the RMS difference of lighting to a picture without contact; infinite if it is unknown."""
         if self.lighting is None:
@@ -384,7 +390,7 @@ class Sensor(ByValue):
         Raises
         ------
         InputError
-            The sensor has no camera, or the path cannot be written.
+            The sensor has no camera or is that of a pipeline, or the path cannot be written.
         OSError
             The machine failed, with a full disk for example.
         """
@@ -393,6 +399,7 @@ class Sensor(ByValue):
         if not isinstance(path, str | Path):
             raise InputError(Argument("path"), f" is a {type(path).__name__}", accepted="the path of an .npz file")
         path = Path(path)
+        self.require_no_grid()
         if self.camera is None:
             raise InputError(f"{self.name}: no camera in it: a calibration file names the camera that it holds for")
         if path.suffix != ".npz":

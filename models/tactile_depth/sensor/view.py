@@ -111,7 +111,9 @@ def shown(sensor: Sensor, crop: Crop | None) -> tuple[Sensor, Share]:
     Raises
     ------
     InputError
+        The crop is not accepted, or the sensor is that of a pipeline.
     """
+    sensor.require_no_grid()
     if crop is None:
         return sensor, WHOLE
     if sensor.view is None or sensor.camera is None:
