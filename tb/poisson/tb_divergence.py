@@ -88,7 +88,7 @@ async def limits(dut: Any) -> None:
 async def reset_in_mid_frame(dut: Any) -> None:
     """Reset at each of the first words, and in the second row."""
     width, columns = parameters(dut, "Width", "Columns")
-    await check(dut, uniform((2, 4, columns, 2), width), interrupts=[1, 2, 3, 4, columns, 5 * columns // 4])
+    await check(dut, uniform((2, 4, columns, 2), width), interrupts=[1, 2, 3, 4, columns, 3 * columns // 2])
 
 
 @cocotb.test

@@ -2,6 +2,7 @@
 """Wrappers with a configuration inside, and the package of default parameters."""
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Any
 import numpy as np
 import pyslang
 import pytest
+from PIL import Image
 
 from commands.common import repository, wrapper
 from commands.common import simulator as simulation
@@ -138,6 +140,28 @@ def test_with_a_camera_the_module_is_a_tactile_sensor(
     simulation.build("icarus", "tactile_sensor_finger", files, {}, build, log=build / "build.log")
 
 
+def test_a_reference_is_a_picture_of_the_camera(run_command: Callable[..., Any], tmp_path: Path) -> None:
+    """The window shows what the calibration's pictures show, as without a reference."""
+    levels = np.linspace(60, 140, 480 * 640 * 3).reshape(480, 640, 3) * (0.8, 1, 1.2)
+    Image.fromarray(levels.astype(np.uint8)).save(tmp_path / "background.png")
+    shown = []
+    for reference in (tmp_path / "background.png", "flat"):
+        choices = ("NAME=finger", f"OUT={tmp_path / 'finger'}", "CAMERA=raw8", f"REFERENCE={reference}")
+        output = run_command("wrap", *choices, "CALIBRATION=gelsight-mini").output
+        shown += re.findall("pictures of 640 x 480 from the camera, (WINDOW=91,.*)", output)
+    assert len(shown) == 2
+    assert shown[0] == shown[1]
+
+
+def test_a_folder_holds_one_module(
+    run_command: Callable[..., Any], refused: Callable[..., str], tmp_path: Path
+) -> None:
+    common = (f"OUT={tmp_path}", "PRESET=published", "N=16")
+    assert run_command("wrap", "NAME=left", *common).status == 0
+    assert "the tables there are those of tactile_depth_left.sv" in refused("wrap", "NAME=right", *common)
+    assert run_command("wrap", "NAME=left", *common).status == 0
+
+
 def test_what_an_earlier_run_for_the_name_has_left_goes(run_command: Callable[..., Any], tmp_path: Path) -> None:
     common = ("NAME=finger", f"OUT={tmp_path}", "PRESET=published", "N=16")
     assert run_command("wrap", *common, "SHELL=verilog").status == 0
@@ -153,7 +177,8 @@ def test_what_an_earlier_run_for_the_name_has_left_goes(run_command: Callable[..
     [
         ((), "NAME=: accepted are small letters, digits and _, beginning with a letter, as NAME=finger"),
         (("NAME=Finger",), "NAME=Finger: accepted are small letters"),
-        (("NAME=finger", "TABLES=finger"), "with a / at its end"),
+        (("NAME=finger", "TABLES=finger"), "with / between names and at its end"),
+        (("NAME=finger", "TABLES=new\\tables/"), "with / between names and at its end"),
         (("NAME=finger", "LANES=2", "SOLVER=spectral"), "LANES"),
         (("NAME=finger", "SHELL=vhdl"), "SHELL=vhdl is unknown: accepted is verilog"),
         (("NAME=finger", "CAMERA=raw9"), "CAMERA=raw9 is unknown: accepted are"),
