@@ -21,10 +21,12 @@ from tactile_depth.chip.depth.zero_capture import captured_zero
 from tactile_depth.chip.hardware_files import PARAMETERS
 from tactile_depth.chip.tactile_depth import default_parameters, tactile_depth, top_parameters, write_roms
 from tactile_depth.pictures.reader import SYNTHETIC_GRID
+from tactile_depth.sensor.built_in import load
 from tactile_depth.sensor.scenes import render
 from tactile_depth.sensor.synthetic import synthetic
 from tb.structures import Structure
 from tb.tb_two_pipelines import calibration
+from tests.drawn_light import no_contact
 
 CONFIGURATIONS: dict[str, dict[str, Any]] = {
     "left": {"columns": 16, "rows": 8, "solver": "tridiagonal", "bits_per_channel": 2},
@@ -142,8 +144,8 @@ def test_with_a_camera_the_module_is_a_tactile_sensor(
 
 def test_a_reference_is_a_picture_of_the_camera(run_command: Callable[..., Any], tmp_path: Path) -> None:
     """The window shows what the calibration's pictures show, as without a reference."""
-    levels = np.linspace(60, 140, 480 * 640 * 3).reshape(480, 640, 3) * (0.8, 1, 1.2)
-    Image.fromarray(levels.astype(np.uint8)).save(tmp_path / "background.png")
+    full = Image.fromarray(no_contact(load("gelsight-mini"))).resize((640, 480))
+    full.save(tmp_path / "background.png")
     shown = []
     for reference in (tmp_path / "background.png", "flat"):
         choices = ("NAME=finger", f"OUT={tmp_path / 'finger'}", "CAMERA=raw8", f"REFERENCE={reference}")
