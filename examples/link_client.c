@@ -6,7 +6,10 @@
      ./link_client /dev/ttyUSB0 picture.rgb heights.f32
 
    `hardware` is a folder of Pipeline.hardware. The picture has bytes of red, green and blue for each pixel of the grid,
-   the file of heights a float; rows go from the top. With - for the port, standard input and output are the line. */
+   the file of heights a float; rows go from the top. With - for the port, standard input and output are the line.
+
+   It does not look at the picture itself: td.Device in Python does, and refuses one that is black, or warns of clipped
+   or exchanged colours. */
 
 #define _DEFAULT_SOURCE /* POSIX, flock and cfmakeraw in spite of -std=c99 */
 #include <errno.h>
@@ -119,7 +122,8 @@ static void load(struct link *l, const uint8_t *picture)
       NULL, "no tactile_depth answers", "the device has another grid", "the device has other formats",
       "the device is another build", "the device has other units",
       "the device computes with other numbers: build it for this calibration",
-      "the device has a table of another size", "tables stay pending", "the device did not take every entry"};
+      "the device has a table of another size", "tables stay pending", "the device did not take every entry",
+      "the device has another camera window: set CAMERA_PICTURE and CAMERA_WINDOW, or build it for these tables"};
   int result = tactile_depth_load(link_write, link_read, l, TACTILE_DEPTH_ALL_TABLES);
 
   if (result == TACTILE_DEPTH_STAYS_PENDING && !l->failure) { /* of a program before, until a frame takes them */
@@ -145,6 +149,8 @@ static void say(const struct link *l, uint32_t pictures, const uint32_t *gains, 
   int is_clipped = (flags & (TACTILE_DEPTH_RECORD_FLAGS_COLOURS_CLIPPED | TACTILE_DEPTH_RECORD_FLAGS_DEPTH_CLIPPED |
                              TACTILE_DEPTH_RECORD_FLAGS_ZERO_CLIPPED)) != 0;
   int has_resumed = (flags & TACTILE_DEPTH_RECORD_FLAGS_RESUMED) != 0, is_limited = 0;
+  int has_flipped = (flags & TACTILE_DEPTH_RECORD_FLAGS_FLIPPED) != 0;
+  int has_residual = (flags & TACTILE_DEPTH_RECORD_FLAGS_RESIDUAL) != 0;
   int has_faults = (status & (TACTILE_DEPTH_STATUS_OUT_OF_STEP | TACTILE_DEPTH_STATUS_DEPTH_DROPPED)) != 0;
 
   fprintf(stderr, "picture sent %u times", pictures);
@@ -154,11 +160,13 @@ static void say(const struct link *l, uint32_t pictures, const uint32_t *gains, 
   fprintf(stderr, "\n");
   for (colour = 0; colour < 3; colour++)
     is_limited |= gains[colour] && (gains[colour] <= LEAST_GAIN || gains[colour] >= LARGEST_GAIN);
-  if (moved || is_limited || is_clipped || has_resumed || has_faults || dark || steep)
-    fprintf(stderr, "heights are uncertain:%s%s%s%s%s %u dark pixels, %u steeper than the calibration's\n",
+  if (moved || is_limited || is_clipped || has_resumed || has_flipped || has_residual || has_faults || dark || steep)
+    fprintf(stderr, "heights are uncertain:%s%s%s%s%s%s%s %u dark pixels, %u steeper than the calibration's\n",
             moved ? " the light gains have not settled," : "", is_limited ? " the light is beyond the light gains," : "",
             is_clipped ? " values were clipped," : "", has_resumed ? " pixels before it were dropped," : "",
-            has_faults ? " STATUS has faults," : "", dark, steep);
+            has_flipped ? " a bit of the device had flipped," : "",
+            has_residual ? " the depth does not fit its slopes," : "", has_faults ? " STATUS has faults," : "", dark,
+            steep);
 }
 
 /* Send a picture until its light gains, which begin at 1, have settled: the frame has those that it moves on. */

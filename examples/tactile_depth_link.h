@@ -164,8 +164,13 @@ static inline void link_take_status(struct link *l)
 
   if (body[1] != LINK_VERSION)
     l->failure = "the device speaks another version of the link";
-  else if (link_get(body + 4, 2) != LINK_ROWS || link_get(body + 6, 2) != LINK_COLUMNS || body[8] > 32)
+  else if (link_get(body + 4, 2) != LINK_ROWS || link_get(body + 6, 2) != LINK_COLUMNS)
     l->failure = "the device has another grid than the tables";
+  else if (body[8] != (TACTILE_DEPTH_FORMAT & TACTILE_DEPTH_FORMAT_DATA_WIDTH))
+    l->failure = "link_unit has another width of codes than the tables: set its DataWidth, or take this build's tables";
+  else if ((body[9] & 1) != (TACTILE_DEPTH_DEVICE & TACTILE_DEPTH_DEVICE_SOLVER))
+    l->failure = "link_unit has another order of rows than the tables: set its BottomFirst to 1 for the tridiagonal "
+                 "solver, to 0 for the spectral one, or take this build's tables";
   else if (l->width && l->resets != resets)
     l->failure = "the device was reset";
   if (l->failure)

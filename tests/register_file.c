@@ -12,7 +12,7 @@
 
 #define AT(register) offsetof(tactile_depth_t, register)
 
-enum { TABLES = 4, REFERENCE = 2, ENTRIES = 1 << 15 };
+enum { TABLES = 4, REFERENCE = 2, ENTRIES = 1 << 15, ADDRESSES = 1 << 10 };
 
 struct entry {
   uint32_t high, low;
@@ -21,7 +21,7 @@ struct entry {
 struct device {
   union {
     tactile_depth_t registers;
-    uint32_t words[sizeof(tactile_depth_t) / sizeof(uint32_t)];
+    uint32_t words[ADDRESSES / sizeof(uint32_t)];
   };
   uint32_t sizes[TABLES], in_use[TABLES];
   uint32_t frame_at;       // read of TABLE_COMMIT at which a frame begins; 0: none does

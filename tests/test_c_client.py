@@ -31,6 +31,8 @@ FLAGS = ("-std=c99", "-Wall", "-Werror")
 GRID = (24, 32)
 STATUS = link.Status(0, *GRID, 24, True, False, link.DepthFormat.WORDS, 8, 0, 0, 0)
 LIMIT_S = 60
+OF_BUILD = "or take this build's tables"
+HARMS = {"flipped": "a bit of the device had flipped", "residual": "the depth does not fit its slopes"}
 STILL, MOST_PICTURES = 4, 20  # of the program
 LIBRARY = """
 #define _DEFAULT_SOURCE
@@ -252,6 +254,9 @@ def test_what_fails_is_said(client: Client, plug: Callable[..., Cable], tmp_path
     other_build = td.Pipeline(ball.sensor, ball.reference, grid=GRID, light_gains=False)
     resets = itertools.count()
     older, newer, restless = plug(None), plug(None), plug(None)
+    wide, upside_down = plug(None), plug(None)
+    wide.answer(lambda _: to_line(STATUS._replace(data_width=20).pack()))
+    upside_down.answer(lambda _: to_line(STATUS._replace(bottom_first=False).pack()))
     older.answer(lambda _: to_line(bytes((link.Kind.STATUS, link.VERSION - 1))))
     newer.answer(lambda _: to_line(bytes((link.Kind.STATUS, link.VERSION + 1))))
     restless.answer(lambda asked: to_line(STATUS._replace(resets=next(resets)).pack()) if asked else b"")
@@ -261,11 +266,21 @@ def test_what_fails_is_said(client: Client, plug: Callable[..., Cable], tmp_path
         str(older.path): "the device speaks another version of the link",
         str(newer.path): "the device speaks another version of the link",
         str(restless.path): "the device was reset",
+        str(wide.path): f"link_unit has another width of codes than the tables: set its DataWidth, {OF_BUILD}",
+        str(upside_down.path): "link_unit has another order of rows than the tables: set its BottomFirst to 1 for the "
+        f"tridiagonal solver, to 0 for the spectral one, {OF_BUILD}",
         str(plug(None).path): "the device does not answer",
         str(tmp_path / "none"): "the port cannot be opened",
     }.items():
         ran = client.run(port)
         assert (ran.returncode, ran.stderr) == (1, f"{port}: {text}\n")
+
+
+@pytest.mark.parametrize("harm", HARMS)
+def test_a_frame_that_the_device_doubts_is_named(client: Client, plug: Callable[..., Cable], harm: str) -> None:
+    cable = plug(client.pipeline)
+    cable.serving.device.harms = (harm,)
+    assert re.search(f"\nheights are uncertain: .*{HARMS[harm]}, ", client.run(str(cable.path)).stderr)
 
 
 @pytest.mark.parametrize("is_early", [True, False], ids=["before a picture", "after a picture"])

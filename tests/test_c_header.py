@@ -17,12 +17,14 @@ import tactile_depth as td
 from commands.common.repository import ROOT
 from commands.hardware import registers
 from tactile_depth.chip.c_header import FILE, c_header
+from tactile_depth.chip.camera.camera_registers import WINDOW, CameraRegisters, camera_registers_parameters
+from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.hardware_files import write_hardware
 from tactile_depth.chip.limits import CORRECTION_WIDTH, CUBIC, POLYNOMIAL
 from tactile_depth.chip.registers.axil_port import Response
 from tactile_depth.chip.registers.axil_registers import AxilRegisters, Build, Events
-from tactile_depth.chip.registers.register_map import REGISTERS, TABLES
+from tactile_depth.chip.registers.register_map import CAMERA_REGISTERS, REGISTERS, TABLES
 from tactile_depth.chip.registers.table_banks import COMMIT
 from tactile_depth.chip.tactile_depth import hdl_parameters, top_parameters, write_roms
 from tactile_depth.sensor.synthetic import synthetic
@@ -56,7 +58,7 @@ int main(int count, char **words)
 }
 """
 RESULTS = ["LOADED", "NO_DEVICE", "OTHER_GRID", "OTHER_FORMAT", "OTHER_BUILD", "OTHER_UNIT", "OTHER_NUMBERS"]
-RESULTS += ["OTHER_SIZE", "STAYS_PENDING", "REFUSED"]
+RESULTS += ["OTHER_SIZE", "STAYS_PENDING", "REFUSED", "OTHER_WINDOW"]
 GRADIENT_MODELS = ("cubic", "quadratic", "lut")
 
 
@@ -123,7 +125,8 @@ class Program:
             See `device_begin` in tests/register_file.c.
         """
         device = AxilRegisters(self.build).values | dict(words)
-        arguments = {f"{REGISTERS[name].offset:#x}": word for name, word in device.items() if word}
+        named = REGISTERS | CAMERA_REGISTERS
+        arguments = {f"{named[name].offset:#x}": word for name, word in device.items() if word}
         arguments |= {f"size{table}": size for table, size in self.build.table_sizes.items()} | chances
         command = [str(self.path), str(commit), *(f"{name}={value}" for name, value in arguments.items())]
         text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
@@ -379,6 +382,19 @@ def test_a_name_that_ends_a_string_or_a_comment(tmp_path: Path) -> None:
     loaded = program_of(tmp_path, config, sensor.pixel_pitch_mm).run()
     assert loaded.result == "LOADED"
     assert_same(masked(loaded.tables, config), of_memories(tmp_path, config))
+
+
+def test_a_device_with_another_camera_window_is_left_as_it_is(tmp_path: Path) -> None:
+    config = Configuration(columns=16, rows=8, solver="tridiagonal", bits_per_channel=2)
+    camera = CameraConfiguration((48, 64), (8, 16), "raw8", window=(4, 8, 48, 24))
+    (tmp_path / FILE).write_text(c_header(synthetic(2), config, camera=camera))
+    program = program_of(tmp_path, config, synthetic(2).pixel_pitch_mm)
+    words = CameraRegisters(camera_registers_parameters(camera)).values
+    assert program.run(words=words).result == "LOADED"
+    for name in WINDOW:
+        loaded = program.run(words=words | {name: words[name] + 1})
+        assert loaded.result == "OTHER_WINDOW"
+        assert {address for address, _ in loaded.writes} == {REGISTERS["TABLE_SELECT"].offset}
 
 
 OF_POLYNOMIALS: dict[str, Any] = {"columns": 16, "rows": 9, "solver": "tridiagonal", "lanes": 4, "neumann": True}

@@ -136,6 +136,7 @@ def test_with_a_camera_the_module_is_a_tactile_sensor(
     assert run_command("wrap", "NAME=finger", f"OUT={tmp_path}", *choices).status == 0
     path = tmp_path / "tactile_sensor_finger.sv"
     assert "frames_lost" in path.read_text()
+    assert "#define TACTILE_DEPTH_CAMERA_WINDOW_SIZE 0x" in (tmp_path / FILE).read_text()
     assert [file.name for file in tmp_path.glob("*.xml")] == ["tactile_sensor_finger.xml"]
     files, build = [*repository.sources(), path], tmp_path / "build"
     build.mkdir()

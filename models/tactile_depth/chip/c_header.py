@@ -12,11 +12,13 @@ import numpy as np
 
 from tactile_depth.chip import registers
 from tactile_depth.chip.calibration import Calibration
+from tactile_depth.chip.camera.camera_registers import WINDOW, CameraRegisters, camera_registers_parameters
+from tactile_depth.chip.camera_configuration import CameraConfiguration
 from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.gradient.frame_marks import slope_limit
 from tactile_depth.chip.registers.axil_registers import Build
 from tactile_depth.chip.registers.event_registers import SELF_TEST
-from tactile_depth.chip.registers.register_map import MAP, REGISTERS, TABLES, WORD
+from tactile_depth.chip.registers.register_map import CAMERA_REGISTERS, MAP, REGISTERS, TABLES, WORD
 from tactile_depth.chip.registers.table_banks import COMMIT
 from tactile_depth.chip.registers.table_signatures import table_signatures
 from tactile_depth.chip.self_test import built_in
@@ -44,6 +46,7 @@ def c_header(
     zero: np.ndarray | None = None,
     gains: np.ndarray | None = None,
     thresholds: Mapping[str, int] = NO_THRESHOLDS,
+    camera: CameraConfiguration | None = None,
 ) -> str:
     """Return the text of `FILE`.
 
@@ -53,6 +56,8 @@ def c_header(
         See `table_entries`.
     thresholds : mapping
         Depth code of each register of a threshold, by the name of the register.
+    camera : CameraConfiguration, optional
+        Camera of the device, if it is a `tactile_sensor`.
     """
     tables = table_entries(calibration, config, zero, gains)
     loader = resources.files(registers).joinpath("load_tables.h").read_text().partition("\n")[2]
@@ -60,6 +65,7 @@ def c_header(
         "#ifndef TACTILE_DEPTH_TABLES_H\n#define TACTILE_DEPTH_TABLES_H\n\n#include <stdint.h>\n",
         _units(calibration, config),
         _device(calibration, config),
+        _window(camera),
         _thresholds(thresholds),
         _self_test(built_in(calibration, config, zero, gains)),
         _registers(),
@@ -111,6 +117,17 @@ def _device(calibration: Calibration, config: Configuration) -> str:
         + "".join(define(name, word(words[name])) for name in (*SHOWN, "PITCH", "SLOPE_LIMIT"))
         + define("DEVICE_MASK", word(mask))
     )
+
+
+def _window(camera: CameraConfiguration | None) -> str:
+    """Return words and addresses of the registers of the window that the pitch is for."""
+    if camera is None:
+        return ""
+    words = CameraRegisters(camera_registers_parameters(camera)).values
+    text = "/* Words of the camera's registers that a device that fits shows, as after a reset; their addresses. */\n"
+    for name in WINDOW:
+        text += define(name, word(words[name])) + define(f"{name}_ADDRESS", f"0x{CAMERA_REGISTERS[name].offset:02x}u")
+    return text
 
 
 def _thresholds(thresholds: Mapping[str, int]) -> str:

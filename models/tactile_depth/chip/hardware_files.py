@@ -58,6 +58,8 @@ def write_files(
         See `tactile_depth.chip.tactile_depth`.
     thresholds : mapping
         Depth code of each register of a threshold, by the name of the register.
+    camera : CameraConfiguration, optional
+        Camera of the device, if it is a `tactile_sensor`.
     """
     crc = write_roms(folder, sensor, config, zero, gains)
     fields = top_parameters(config, sensor.pixel_pitch_mm, camera, crc)
@@ -77,5 +79,5 @@ def write_files(
         "c_header": c_header.FILE,
     }
     (folder / PARAMETERS).write_text(json.dumps(description, indent=1) + "\n")
-    (folder / c_header.FILE).write_text(c_header.c_header(sensor, config, zero, gains, thresholds))
+    (folder / c_header.FILE).write_text(c_header.c_header(sensor, config, zero, gains, thresholds, camera))
     return fields

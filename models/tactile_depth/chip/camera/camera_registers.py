@@ -20,6 +20,8 @@ from tactile_depth.chip.registers.setting_registers import SettingRegisters
 STATUS, CONTROL = CAMERA_REGISTERS["CAMERA_STATUS"], CAMERA_REGISTERS["CAMERA_CONTROL"]
 ARRIVED = CAMERA_REGISTERS["CAMERA_ARRIVED"]
 COUNTERS = ("CAMERA_DROPPED", "CAMERA_LOST")
+WINDOW = ("CAMERA_PICTURE", "CAMERA_WINDOW", "CAMERA_WINDOW_SIZE")
+"""Registers of the part of a picture that the grid shows."""
 NUMBERS = ("black_level", "red_gain", "green_gain", "blue_gain")
 """Settings that are registers of their own."""
 

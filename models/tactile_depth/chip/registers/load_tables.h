@@ -10,7 +10,8 @@ enum tactile_depth_result {
   TACTILE_DEPTH_OTHER_NUMBERS, /* ARITHMETIC: the device computes with other numbers */
   TACTILE_DEPTH_OTHER_SIZE,    /* TABLE_SIZE: a table of the device has another number of entries */
   TACTILE_DEPTH_STAYS_PENDING, /* TABLE_COMMIT: no frame took an earlier table, or a capture has not ended */
-  TACTILE_DEPTH_REFUSED        /* TABLE_INDEX: the device did not take every entry of a table */
+  TACTILE_DEPTH_REFUSED,       /* TABLE_INDEX: the device did not take every entry of a table */
+  TACTILE_DEPTH_OTHER_WINDOW   /* CAMERA_PICTURE, CAMERA_WINDOW, CAMERA_WINDOW_SIZE: the pitch is of another window */
 };
 
 /* Reads of TABLE_COMMIT before TACTILE_DEPTH_STAYS_PENDING. The bits read 0 at the latest when the next frame begins. */
@@ -45,6 +46,12 @@ static inline int tactile_depth_check(tactile_depth_write write, tactile_depth_r
     if (read(context, TACTILE_DEPTH_TABLE_SIZE_ADDRESS) != tactile_depth_tables[place].entries)
       return TACTILE_DEPTH_OTHER_SIZE;
   }
+#ifdef TACTILE_DEPTH_CAMERA_PICTURE
+  if (read(context, TACTILE_DEPTH_CAMERA_PICTURE_ADDRESS) != TACTILE_DEPTH_CAMERA_PICTURE ||
+      read(context, TACTILE_DEPTH_CAMERA_WINDOW_ADDRESS) != TACTILE_DEPTH_CAMERA_WINDOW ||
+      read(context, TACTILE_DEPTH_CAMERA_WINDOW_SIZE_ADDRESS) != TACTILE_DEPTH_CAMERA_WINDOW_SIZE)
+    return TACTILE_DEPTH_OTHER_WINDOW;
+#endif
   return TACTILE_DEPTH_LOADED;
 }
 
