@@ -14,7 +14,7 @@ from tactile_depth.chip.configuration import Configuration
 from tactile_depth.chip.registers.axil_registers import AxilRegisters, Build, Live
 from tactile_depth.chip.registers.register_map import CAMERA_MAP
 from tactile_depth.chip.tactile_depth import top_parameters
-from tactile_depth.device.arrived import arrived
+from tactile_depth.device.arrived import arrived, size_doubts
 
 CAMERA = CameraConfiguration((480, 640), (96, 128), "raw8")
 
@@ -57,3 +57,5 @@ def test_what_arrives_is_named(levels: dict[str, int], live: dict[str, Any], mes
     came = arrived(line, is_awaited=True)
     assert message in came.problem
     assert bool(came.problem) == bool(came.remedy) == bool(message)
+    doubts = [f"{came.problem}: heights are wrong: {came.remedy}"] * ("CAMERA_PICTURE" in message)
+    assert [str(doubt) for doubt in size_doubts(line)] == doubts

@@ -8,6 +8,7 @@ import re
 import textwrap
 import time
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -388,6 +389,18 @@ def test_pipelines_that_are_refused(sample: td.Sample, cable: Cable) -> None:
         td.Device(cable.address, exact)
     with pytest.raises(td.InputError, match="pipeline is a str"):
         td.Device(cable.address, "gelsight-mini")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("name", "shown", "right"), [("BottomFirst", 0, 1), ("DataWidth", 20, 24)])
+def test_a_link_that_is_not_built_for_its_device(
+    name: str, shown: int, right: int, cable: Cable, pipeline: td.Pipeline
+) -> None:
+    link = cable.serving.device.link
+    own: Any = {"BottomFirst": {"bottom_first": False}, "DataWidth": {"data_width": shown}}[name]
+    link.build = replace(link.build, **own)
+    message = f"has {name}={shown}, its depth needs {right}: build link_unit with {name}={right}"
+    with pytest.raises(td.InputError, match=message):
+        td.Device(cable.address, pipeline)
 
 
 @pytest.mark.parametrize(

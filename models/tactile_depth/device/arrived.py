@@ -8,10 +8,12 @@ from typing import NamedTuple
 from tactile_depth.chip.registers.register_map import CAMERA_REGISTERS, REGISTERS
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.registers import read_words
+from tactile_depth.pictures.doubts import Doubt, doubt
 
 NAMES = ("STATUS", "ARRIVED", "GRID", "FRAMES_DROPPED")
 CAMERA = ("CAMERA_STATUS", "CAMERA_ARRIVED", "CAMERA_PICTURE")
 PAGE = "docs/integrate.md, 5"
+SET_SIZE = "set CAMERA_PICTURE or the camera: docs/camera.md"
 
 
 class Arrived(NamedTuple):
@@ -67,16 +69,36 @@ def arrived(line: Channel, is_awaited: bool = False) -> Arrived:
     return Arrived(rows, columns, bool(status["hunting"]), bool(status["stalled"]), problem, remedy)
 
 
-def _of_camera(line: Channel, is_awaited: bool) -> tuple[str, str]:
-    """Return problem and remedy of the pictures in front of the camera front end; empty without one, and over `uio`."""
+def size_doubts(line: Channel) -> list[Doubt]:
+    """Doubt a camera whose pictures have another size than CAMERA_PICTURE: the window is elsewhere in them."""
+    problem = _other_size(*fields[1:]) if (fields := _camera_fields(line)) else ""
+    return [doubt("size", f"{problem}: heights are wrong", remedy=SET_SIZE)] if problem else []
+
+
+def _camera_fields(line: Channel) -> list[dict[str, int]]:
+    """Return the fields of the registers `CAMERA`; empty without a camera front end, and over `uio`."""
     words = line.read([CAMERA_REGISTERS[name].offset for name in CAMERA])
     if len(words) < len(CAMERA):
-        return "", ""
-    status, size, picture = (CAMERA_REGISTERS[name].unpack(word) for name, word in zip(CAMERA, words, strict=True))
+        return []
+    return [CAMERA_REGISTERS[name].unpack(word) for name, word in zip(CAMERA, words, strict=True)]
+
+
+def _other_size(size: dict[str, int], picture: dict[str, int]) -> str:
+    """Say that pictures come in another size than `picture`; empty if they do not, or none has come."""
     columns, rows = size["columns"], size["rows"] or picture["rows"]
-    if columns and (columns, rows) != (picture["columns"], picture["rows"]):
-        problem = f"the camera sends {columns} x {rows}, CAMERA_PICTURE is {picture['columns']} x {picture['rows']}"
-        return problem, "set CAMERA_PICTURE or the camera: docs/camera.md"
+    if not columns or (columns, rows) == (picture["columns"], picture["rows"]):
+        return ""
+    return f"the camera sends {columns} x {rows}, CAMERA_PICTURE is {picture['columns']} x {picture['rows']}"
+
+
+def _of_camera(line: Channel, is_awaited: bool) -> tuple[str, str]:
+    """Return problem and remedy of the pictures in front of the camera front end; empty without one, and over `uio`."""
+    fields = _camera_fields(line)
+    if not fields:
+        return "", ""
+    if problem := _other_size(*fields[1:]):
+        return problem, SET_SIZE
+    status = fields[0]
     if status["hunting"]:
         return "words of the camera come without a start of picture, and are dropped", "set tuser: docs/camera.md"
     if is_awaited and status["waiting"]:

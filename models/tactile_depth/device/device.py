@@ -30,7 +30,7 @@ from tactile_depth.device.frame import DeviceFrame, seen_as
 from tactile_depth.device.registers import Registers, read_words, write_words
 from tactile_depth.device.self_test import expected_signature, signature_of
 from tactile_depth.device.status import DeviceStatus, status_of
-from tactile_depth.device.tables import load_tables, require_same, wait_in_use, window_doubts
+from tactile_depth.device.tables import camera_doubts, load_tables, require_same, wait_in_use
 from tactile_depth.pictures.doubts import Warned, tell
 from tactile_depth.pictures.frames import GREY
 from tactile_depth.pictures.pictures import Picture, Pictures
@@ -296,7 +296,7 @@ class Device(AbstractContextManager["Device"]):
             light = self._require_settings(line)
             self._set_dark_level(line, is_camera=pictures is None)
             if pictures is None:
-                doubts = [*window_doubts(line, self.pipeline), *held.reference_doubts(self.pipeline, self._unseen)]
+                doubts = [*camera_doubts(line, self.pipeline), *held.reference_doubts(self.pipeline, self._unseen)]
                 tell(self._told.new(doubts))
                 warned, known = Warned(), (*self._twin.doubts, *chain(*(each.doubts for each in self._unseen.values())))
                 self._last_old = last_begun(line)
@@ -397,7 +397,7 @@ class Device(AbstractContextManager["Device"]):
         if count not in accepted:
             raise InputError(Argument("frames", count), accepted=[str(number) for number in accepted])
         with self._capturing(table) as line:
-            tell(self._told.new(window_doubts(line, self.pipeline)))
+            tell(self._told.new(camera_doubts(line, self.pipeline)))
 
             def untouched() -> None:
                 line.send(self._untouched)

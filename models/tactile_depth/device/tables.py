@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from tactile_depth.base.errors import InputError
+from tactile_depth.chip.camera.camera_registers import WINDOW
 from tactile_depth.chip.camera_configuration import window_of
 from tactile_depth.chip.registers.axil_registers import Build
 from tactile_depth.chip.registers.register_map import CAMERA_REGISTERS, REGISTERS, TABLES, Field
@@ -16,6 +17,7 @@ from tactile_depth.chip.registers.table_banks import CAPTURES, COMMIT
 from tactile_depth.chip.table_entries import ONE_WORD, table_entries
 from tactile_depth.chip.tactile_depth import top_parameters
 from tactile_depth.depth.pipeline import Pipeline
+from tactile_depth.device.arrived import size_doubts
 from tactile_depth.device.channel import Channel
 from tactile_depth.device.errors import DeviceError
 from tactile_depth.device.registers import read_words, write_words
@@ -24,7 +26,6 @@ from tactile_depth.sensor.view import share_of
 
 ARITHMETIC = "ARITHMETIC"
 DESCRIPTION = ("GRID", "FORMAT", "DEVICE", "DEPTH_UNIT", "SLOPE_UNIT")
-CAMERA = ("CAMERA_PICTURE", "CAMERA_WINDOW", "CAMERA_WINDOW_SIZE")
 # Largest difference of a window from the calibration's view, in the length and the middle of each side, relative to the
 # length. A window that is rounded to half pixels per grid pixel differs by 0.02; one of 0.97 and 0.95 of the view makes
 # heights 4 and 7 % too large.
@@ -60,6 +61,25 @@ def require_same(line: Channel, pipeline: Pipeline) -> None:
     if words[ARITHMETIC] != expected[ARITHMETIC]:
         problem = "the device computes with other numbers than the pipeline (ARITHMETIC)"
         raise InputError(problem, remedy="build the device for this calibration")
+    _require_link(line, pipeline)
+
+
+def _require_link(line: Channel, pipeline: Pipeline) -> None:
+    """Raise InputError unless the link takes the rows and codes of depth as a device for a pipeline sends them."""
+    parameters, status = build_of(pipeline).parameters, line.status
+    wanted = {
+        "BottomFirst": (int(status.bottom_first), parameters["Tridiagonal"]),
+        "DataWidth": (status.data_width, parameters["DataWidth"]),
+    }
+    for name, (shown, right) in wanted.items():
+        if shown != right:
+            problem = f"link_unit of the device has {name}={shown}, its depth needs {right}"
+            raise InputError(problem, remedy=f"build link_unit with {name}={right}")
+
+
+def camera_doubts(line: Channel, pipeline: Pipeline) -> list[Doubt]:
+    """Doubt a device whose camera front end fits the calibration or the camera not."""
+    return [*window_doubts(line, pipeline), *size_doubts(line)]
 
 
 def window_doubts(line: Channel, pipeline: Pipeline) -> list[Doubt]:
@@ -68,10 +88,10 @@ def window_doubts(line: Channel, pipeline: Pipeline) -> list[Doubt]:
     The camera is taken to send the sensor's full picture. No doubt of a device without a camera front end, over `uio`,
     which does not reach its registers, and for a calibration whose view is unknown.
     """
-    view, words = pipeline.sensor.view, line.read([CAMERA_REGISTERS[name].offset for name in CAMERA])
-    if view is None or len(words) < len(CAMERA):
+    view, words = pipeline.sensor.view, line.read([CAMERA_REGISTERS[name].offset for name in WINDOW])
+    if view is None or len(words) < len(WINDOW):
         return []
-    picture, first, size = (CAMERA_REGISTERS[name].unpack(word) for name, word in zip(CAMERA, words, strict=True))
+    picture, first, size = (CAMERA_REGISTERS[name].unpack(word) for name, word in zip(WINDOW, words, strict=True))
     window = np.array((first["x"], first["y"], size["columns"], size["rows"]))
     expected = np.array(window_of((picture["rows"], picture["columns"]), pipeline.grid, share_of(view)))
     differs = np.concatenate((window[2:] - expected[2:], (window - expected)[:2] + (window - expected)[2:] / 2))
