@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Generator
 from typing import Any
@@ -109,6 +110,54 @@ def test_frames_of_before_a_call_are_no_lost_ones(
         frame = next(device.depth())
     assert 0 < (frame.record.frame - last) % (1 << 32) < 10
     assert frame.lost == 0
+
+
+@pytest.mark.filterwarnings("ignore:the reference is not from")
+@pytest.mark.parametrize("is_early", [True, False], ids=["before a frame", "after a frame"])
+def test_a_pipeline_that_was_reset_without_its_link(
+    is_early: bool, pipeline: td.Pipeline, sample: td.Sample, plug: Plug, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(exchange, "CAMERA_S", 0.1)
+    cable = plug(pipeline, camera_s=0.01)
+    with td.Device(cable.address, pipeline) as device:
+        device.load()
+        cable.serving.device.events.frames = 1000
+        film(cable, pipeline, sample.image)
+        frames = device.depth()
+        if is_early:
+            monkeypatch.setattr("tactile_depth.device.device.last_begun", lambda line: 1 << 20)
+        else:
+            next(frames)
+            cable.serving.device.events.frames = 0
+        with pytest.raises(td.DeviceError, match=r"the device was reset: call load\(\)"):
+            list(itertools.islice(frames, 100))
+        monkeypatch.undo()
+        device.load()
+        assert next(device.depth()).contact.touching
+
+
+@pytest.mark.filterwarnings("ignore:the reference is not from")
+@pytest.mark.parametrize(("name", "word"), [("TABLE_COMMIT.zero", 1), ("DEBOUNCE", 40)])
+def test_what_another_bus_master_changes_between_frames(
+    name: str, word: int, pipeline: td.Pipeline, sample: td.Sample, plug: Plug, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Checks lose no frame, and take the thresholds of this program."""
+    monkeypatch.setattr(exchange, "CHECK_S", 0.1)
+    cable = plug(pipeline, camera_s=0.05)
+    with td.Device(cable.address, pipeline) as device:
+        device.load()
+        film(cable, pipeline, sample.image)
+        frames = device.depth()
+        given: list[td.DeviceFrame] = []
+        for touch_mm in np.linspace(0.1, 0.2, 10):
+            device.set_thresholds(touch_mm)
+            given += itertools.islice(frames, 2)
+        assert {frame.lost for frame in given} == {0}
+        device.registers[name] = word
+        with pytest.raises(
+            td.DeviceError, match=r"(about to change|not those of this program) .*: call load\(\) first"
+        ):
+            list(itertools.islice(frames, 100))
 
 
 def test_frames_in_the_pipeline_are_those_that_came_in(monkeypatch: pytest.MonkeyPatch) -> None:

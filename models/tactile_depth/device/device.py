@@ -292,15 +292,14 @@ class Device(AbstractContextManager["Device"]):
             raise InputError(Argument("stream", stream), ": without pictures", remedy="give pictures")
         with self._alone(), self._open_line() as line:
             held.require_same_pipeline(self.pipeline, self._loaded, self._tables, self._unseen)
-            held.require_tables(line, self._tables)
-            light = self._require_settings(line)
+            light = self._require_held(line)
             self._set_dark_level(line, is_camera=pictures is None)
             if pictures is None:
                 doubts = [*camera_doubts(line, self.pipeline), *held.reference_doubts(self.pipeline, self._unseen)]
                 tell(self._told.new(doubts))
                 warned, known = Warned(), (*self._twin.doubts, *chain(*(each.doubts for each in self._unseen.values())))
                 self._last_old = last_begun(line)
-                for arrival in camera_frames(line, lambda: self._last_old):
+                for arrival in camera_frames(line, lambda: self._last_old, lambda: self._require_held(line)):
                     yield of_camera(self._frame(arrival), arrival.frame.shift, self._twin, known, self._dead, warned)
                 return
             self._require_seen(self._unseen)
@@ -458,11 +457,12 @@ class Device(AbstractContextManager["Device"]):
             problem = f"the {table} of the device is not known to this program"
             raise DeviceError(problem, remedy="call load() first, or capture from pictures")
 
-    def _require_settings(self, line: Channel) -> int:
-        """Return the word of `LIGHT`; raise DeviceError unless the other settings are those that this host wrote.
+    def _require_held(self, line: Channel) -> int:
+        """Return the word of `LIGHT`; raise DeviceError unless tables and other settings are those of this host.
 
         Settings of before this program are overwritten, once.
         """
+        held.require_tables(line, self._tables)
         words = read_words(line, [*self._words, LIGHT.name])
         if not self._is_set:
             words |= self._words | {LIGHT.name: words[LIGHT.name] | LIGHT.field("follow").mask}

@@ -18,6 +18,7 @@ from tactile_depth.device.registers import read_words
 MISSED = 5  # pictures without depth in a row after which the line is given up
 MOST_INSIDE = 4  # whole frames in the pipeline; counters that were cleared with frames inside give fewer than 0
 CAMERA_S = 2.0  # the slowest camera gives a picture in this time
+CHECK_S = 5.0  # between two checks that a device still holds what it should
 
 
 class Exchange(AbstractContextManager["Exchange"]):
@@ -106,40 +107,60 @@ def last_begun(line: Channel) -> int:
     return (number + min(inside % NUMBERS, MOST_INSIDE)) % NUMBERS
 
 
-def camera_frames(line: Channel, last_old: Callable[[], int]) -> Iterator[Arrival]:
+def camera_frames(line: Channel, last_old: Callable[[], int], check: Callable[[], object]) -> Iterator[Arrival]:
     """Give the depth frames of the device's camera as they come.
 
     Parameters
     ----------
     last_old : function
         Returns the number of a frame. Frames up to it are left out, and do not count as lost.
+    check : function
+        Raises DeviceError if the device holds something else than it should; called every `CHECK_S`.
 
     Raises
     ------
     DeviceError
-        No frame comes, the device does not answer, or it was reset.
+        No frame comes, the device does not answer, or it, or its pipeline alone, was reset.
     """
     line.collect(True)
     try:
         patience_s = line.depth_s + CAMERA_S
-        last, bad = time.monotonic(), line.bad_packets
+        last = checked = time.monotonic()
+        bad, before = line.bad_packets, None
         while True:
             line.check()
+            if time.monotonic() - checked > CHECK_S:
+                check()
+                checked = time.monotonic()
             arrival = line.frame(patience_s, line.lost)
-            if arrival is not None:
-                if 0 < (arrival.frame.record.frame - last_old()) % NUMBERS < NUMBERS // 2:
-                    yield arrival
+            is_late = time.monotonic() - last > patience_s
+            if arrival is None:
+                if is_late:
+                    raise _silence(line, patience_s, bad)
+                continue
+            number = arrival.frame.record.frame
+            goes_on = before is None or 0 < (number - before) % NUMBERS < NUMBERS // 2
+            behind = (last_old() - number) % NUMBERS  # from half of NUMBERS on, the frame is ahead
+            is_old = MOST_INSIDE <= behind < NUMBERS // 2  # it had left the pipeline before
+            if not goes_on or (is_old and is_late):
+                raise DeviceError("the device was reset", remedy="call load()")
+            before = number
+            if behind > NUMBERS // 2:
+                yield arrival
+            if not is_old:
                 last, bad = time.monotonic(), line.bad_packets
-            elif time.monotonic() - last > patience_s:
-                line.ask()
-                if line.bad_packets != bad:
-                    broken = counted(line.bad_packets - bad, "broken packet")
-                    problem = f"no depth frame came whole in {patience_s:.1f} s: {broken}"
-                    raise DeviceError(problem, remedy="check cable and baud rate")
-                came = arrived(line, is_awaited=True)
-                reason = f", {came.problem}" if came.problem else ""
-                problem = f"the device has sent no depth for {patience_s:.1f} s{reason}"
-                remedy = came.remedy or "let its camera send pictures of its grid, or give pictures"
-                raise DeviceError(problem, remedy=remedy)
     finally:
         line.collect(False)
+
+
+def _silence(line: Channel, patience_s: float, bad: int) -> DeviceError:
+    """Return the error of a camera whose frames do not come; `bad` broken packets had come with the last one."""
+    line.ask()
+    if line.bad_packets != bad:
+        broken = counted(line.bad_packets - bad, "broken packet")
+        problem = f"no depth frame came whole in {patience_s:.1f} s: {broken}"
+        return DeviceError(problem, remedy="check cable and baud rate")
+    came = arrived(line, is_awaited=True)
+    reason = f", {came.problem}" if came.problem else ""
+    problem = f"the device has sent no depth for {patience_s:.1f} s{reason}"
+    return DeviceError(problem, remedy=came.remedy or "let its camera send pictures of its grid, or give pictures")
