@@ -78,7 +78,7 @@ def _require_link(line: Channel, pipeline: Pipeline) -> None:
 
 
 def camera_doubts(line: Channel, pipeline: Pipeline) -> list[Doubt]:
-    """Doubt a device whose camera front end fits the calibration or the camera not."""
+    """Doubt a device whose camera front end does not fit the calibration, or its camera."""
     return [*window_doubts(line, pipeline), *size_doubts(line)]
 
 
