@@ -391,14 +391,18 @@ def test_pipelines_that_are_refused(sample: td.Sample, cable: Cable) -> None:
         td.Device(cable.address, "gelsight-mini")  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(("name", "shown", "right"), [("BottomFirst", 0, 1), ("DataWidth", 20, 24)])
+@pytest.mark.parametrize(
+    ("own", "message"),
+    [
+        ({"bottom_first": False}, "has BottomFirst=0, its depth needs 1: build link_unit with BottomFirst=1"),
+        ({"data_width": 20}, "takes depth codes of 20 bits, they have 24: build link_unit for these"),
+    ],
+)
 def test_a_link_that_is_not_built_for_its_device(
-    name: str, shown: int, right: int, cable: Cable, pipeline: td.Pipeline
+    own: dict[str, Any], message: str, cable: Cable, pipeline: td.Pipeline
 ) -> None:
     link = cable.serving.device.link
-    own: Any = {"BottomFirst": {"bottom_first": False}, "DataWidth": {"data_width": shown}}[name]
     link.build = replace(link.build, **own)
-    message = f"has {name}={shown}, its depth needs {right}: build link_unit with {name}={right}"
     with pytest.raises(td.InputError, match=message):
         td.Device(cable.address, pipeline)
 

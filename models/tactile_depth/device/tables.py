@@ -66,15 +66,14 @@ def require_same(line: Channel, pipeline: Pipeline) -> None:
 
 def _require_link(line: Channel, pipeline: Pipeline) -> None:
     """Raise InputError unless the link takes the rows and codes of depth as a device for a pipeline sends them."""
-    parameters, status = build_of(pipeline).parameters, line.status
-    wanted = {
-        "BottomFirst": (int(status.bottom_first), parameters["Tridiagonal"]),
-        "DataWidth": (status.data_width, parameters["DataWidth"]),
-    }
-    for name, (shown, right) in wanted.items():
-        if shown != right:
-            problem = f"link_unit of the device has {name}={shown}, its depth needs {right}"
-            raise InputError(problem, remedy=f"build link_unit with {name}={right}")
+    *_, bits, bottom_first = line.status.shape
+    codes, right = pipeline.config.depth.width, pipeline.config.solver == "tridiagonal"
+    if bits != codes:
+        problem = f"link_unit of the device takes depth codes of {bits} bits, they have {codes}"
+        raise InputError(problem, remedy="build link_unit for these")
+    if bottom_first != right:
+        problem = f"link_unit of the device has BottomFirst={bottom_first:d}, its depth needs {right:d}"
+        raise InputError(problem, remedy=f"build link_unit with BottomFirst={right:d}")
 
 
 def camera_doubts(line: Channel, pipeline: Pipeline) -> list[Doubt]:
