@@ -25,7 +25,7 @@ class RunSettings:
     Attributes
     ----------
     full : bool
-        Tests run every case (`make regress`) instead of a sample.
+        Tests run every case (`make regress`) instead of a sample; on Icarus benches of RTL do not, which take minutes.
     repeats : int
         Frames or bursts of tests whose cases are rare: ties, values that just clip. 0: 15 in full, otherwise 2.
     power_ups : int
