@@ -89,7 +89,7 @@ module divergence_sums
       if (rst || (en && ends)) sum <= RowWidth'($unsigned(Begin));
       else if (en && parts[s]) sum <= sum + RowWidth'(kept);
       if (en && ends) row_sum <= sum;  // the last column is part of no sum
-      if (en && !(turn[s] && adds)) addends[s] <= '0;
+      if (rst || (en && !(turn[s] && adds))) addends[s] <= '0;
       else if (en) addends[s] <= row_sum;
     end
   end
