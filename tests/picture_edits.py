@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from PIL import Image
 
 Edit = Callable[[np.ndarray], np.ndarray]
 X, Y = np.linspace(-1, 1, 320)[None, :, None], np.linspace(-1, 1, 240)[:, None, None]
@@ -61,6 +62,10 @@ def ordered(*order: int) -> Edit:
     return lambda picture: np.ascontiguousarray(picture[..., order])
 
 
+def few_colours(picture: np.ndarray) -> np.ndarray:
+    return np.array(Image.fromarray(picture).quantize(256).convert("RGB"))
+
+
 def mirrored(picture: np.ndarray) -> np.ndarray:
     return picture[:, ::-1].copy()
 
@@ -95,6 +100,7 @@ REFUSED: dict[str, tuple[Edit, str]] = {
     "the rest green": (rest_of(170, (0, 135, 0)), "of its rows are one row, repeated"),
     "the rest a row": (rest_of(100, None), "of its rows are one row, repeated"),
     "clipped": (in_light(2.2), "of its pixels are clipped"),
+    "few colours": (few_colours, "it has 2.. colours in all, as if reduced to a palette"),
     "clipped at 125": (lambda p: np.minimum(p, 125), "of its pixels are clipped"),
 }
 DOUBTED: dict[str, tuple[Edit, str]] = {

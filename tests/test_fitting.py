@@ -31,6 +31,7 @@ from tests.ball_presses import (
     weakness,
     write_table,
 )
+from tests.picture_edits import few_colours
 
 
 @pytest.fixture(scope="module")
@@ -263,6 +264,14 @@ def test_grey_pictures_are_refused() -> None:
     for change in (grey, tinted):
         with pytest.raises(InputError, match="the colours of all presses change alike, as in grey pictures"):
             td.fit(*in_memory(change, True), pitch_mm=PITCH, quiet=True)
+
+
+def test_pictures_reduced_to_a_palette_are_refused() -> None:
+    balls, background = in_memory(few_colours, True)
+    with pytest.raises(InputError, match=r"background: it has 2.. colours in all, as if reduced to a palette"):
+        td.fit(balls, background, pitch_mm=PITCH, quiet=True)
+    with pytest.raises(InputError, match=r"it has 2.. colours in all, .*: left out"):
+        td.fit(balls, pictures()["background.png"], pitch_mm=PITCH, quiet=True)
 
 
 def test_markers_on_the_gel_hide_no_circle(found: Any) -> None:

@@ -15,12 +15,15 @@ from hypothesis import strategies as st
 from PIL import Image
 from skimage import io  # type: ignore[attr-defined]
 
+import tactile_depth as td
 from tactile_depth.base.errors import InputError, InputWarning
 from tactile_depth.base.files import RECORD
 from tactile_depth.chip.resampling import resampling
 from tactile_depth.pictures.frames import EXIF_ORIENTATION, LARGEST_CAMERA, load_frames, read_picture
 from tactile_depth.sensor.scenes import SCENES, render, scene_pixel_pitch_mm
 from tactile_depth.sensor.synthetic import synthetic
+from tests.drawn_light import no_contact
+from tests.picture_edits import few_colours
 
 
 def noise(*shape: Any, seed: int = 1) -> Any:
@@ -134,6 +137,14 @@ def test_the_reference_comes_to_the_grid_as_the_frames_do(tmp_path: Path) -> Non
     np.testing.assert_array_equal(loaded.reference, as_frame.pixels[0])
     np.testing.assert_array_equal(loaded.pixels, load_frames(str(tmp_path / "i.png"), (16, 16)).pixels)
     assert as_frame.reference is None
+
+
+def test_pictures_reduced_to_a_palette_are_refused_with_a_reference(tmp_path: Path) -> None:
+    rest = no_contact(td.load("gelsight-mini"))
+    whole, reduced = (str(picture(tmp_path / f"{each.__name__}.png", each(rest))) for each in (np.array, few_colours))
+    for frames, reference in ((whole, reduced), (reduced, whole)):
+        assert "few_colours.png: it has 2" in refused(frames, (96, 128), reference)
+    load_frames(whole, (96, 128), whole)
 
 
 # Sources.

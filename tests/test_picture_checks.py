@@ -102,6 +102,14 @@ def test_drawn_contacts_are_certain(drawn: tuple[td.Pipeline, np.ndarray]) -> No
         certain(pipeline, in_light(light)(picture))
 
 
+def test_a_picture_of_a_real_sensor_is_doubted_by_the_synthetic_one(press: np.ndarray, reference: np.ndarray) -> None:
+    pipeline = td.Pipeline(td.load("synthetic"))
+    for picture in (press, reference):
+        doubted(pipeline, picture, "does not look like one of the synthetic sensor: give the calibration and a ref")
+    for name in BENCH:
+        certain(pipeline, td.sample(name).image)
+
+
 @pytest.mark.parametrize("kind", REFUSED)
 def test_a_picture_that_gives_no_depth_is_refused(pipeline: td.Pipeline, press: np.ndarray, kind: str) -> None:
     edit, message = REFUSED[kind]

@@ -13,6 +13,7 @@ from tactile_depth.base.errors import Argument, InputError, Part
 from tactile_depth.calibrate.ball_press import BallPress
 from tactile_depth.calibrate.press_folder import background_path, read_presses
 from tactile_depth.pictures.frames import read_picture
+from tactile_depth.pictures.picture_check import require_all_colours
 from tactile_depth.pictures.pictures import ROTATIONS, Picture, array_of, rotated
 from tactile_depth.sensor.view import require_field
 
@@ -43,13 +44,14 @@ class PressPictures:
     rotate: int = 0
 
     def image(self, press: BallPress) -> np.ndarray:
-        """Return the picture of a press, rotated; raise InputError if it is none of the background's size."""
+        """Return the picture of a press, rotated; raise InputError if it is none like the background."""
         image = _picture(press.image, press.name, self.rotate)
         if image.shape != self.background.shape:
             raise InputError(
                 f"{press.name}: {image.shape[0]} x {image.shape[1]} pixels, but the background has "
                 f"{self.background.shape[0]} x {self.background.shape[1]}"
             )
+        require_all_colours(image, self.background, press.name)
         return image
 
     @property
@@ -113,7 +115,9 @@ def gather(
     if repeated := next((one for one in names if names.count(one) > 1), None):
         problem = f": the name {repeated} stands twice"
         raise InputError(Argument("presses"), problem, remedy="give each press a name of its own")
-    return PressPictures(name, tuple(listed), _picture(background, BACKGROUND, rotate), tuple(notes), rotate)
+    untouched = _picture(background, BACKGROUND, rotate)
+    require_all_colours(untouched, untouched, BACKGROUND)
+    return PressPictures(name, tuple(listed), untouched, tuple(notes), rotate)
 
 
 def camera_pitch_mm(pictures: PressPictures, pitch_mm: float | None) -> float:

@@ -25,7 +25,7 @@ from tactile_depth.chip.resampling import WHOLE, Share
 from tactile_depth.pictures.blocks import Rest
 from tactile_depth.pictures.doubts import Warned, tell
 from tactile_depth.pictures.grid_sampler import grid_sampler, middle
-from tactile_depth.pictures.picture_check import check_picture
+from tactile_depth.pictures.picture_check import check_picture, require_all_colours
 from tactile_depth.pictures.reference_check import check_reference
 from tactile_depth.sensor.scenes import AS_EVER, SCENES, SYNTHETIC_PIXEL_PITCH_MM, Press, render, scene_pixel_pitch_mm
 from tactile_depth.sensor.sensor import Sensor
@@ -386,7 +386,11 @@ def _to_grid(
     pixels = np.empty((len(labels), *size, 3), np.uint8)
     words: np.ndarray | None = None
     sampler, picture = None, (0, 0)
+    if no_contact is not None:
+        require_all_colours(no_contact, no_contact, reference)
     for index, (label, image) in enumerate(zip(labels, images, strict=True)):
+        if no_contact is not None:
+            require_all_colours(image, no_contact, f"{name}: {label}")
         height, width = image.shape[:2]
         if sampler is None:
             picture = (height, width)

@@ -22,6 +22,7 @@ from tactile_depth.pictures.blocks import (
 )
 from tactile_depth.pictures.doubts import COLOURS, Doubt, UnusablePicture, clip_levels, clipped, doubt
 from tactile_depth.pictures.exchanges import CORRECT_IT, nearest_exchange, pattern
+from tactile_depth.sensor.scenes import REST
 from tactile_depth.sensor.sensor import TOO_DARK
 
 # Weakest colour over the strongest, each relative to the reference. Right: 0.98 and more, 5 % off in two colours 0.89
@@ -53,6 +54,14 @@ SEAM = 0.04
 # The same from which the rows below may be those of a damaged file: JPEG with a flipped bit, peaks 2 to 5 times too
 # large: 0.5 and more.
 CAST = 0.1
+
+# Colours of a picture of a real sensor: 25,000 and more, as JPEG of quality 15 500 and more. Reduced to a palette, with
+# the reference or without: heights 6 to 40 % too low. Pixels below which a picture may have so few, and of which some
+# are counted first.
+PALETTE, LEAST_PIXELS = 256, 1024
+# Without a reference the untouched gel has the drawn sensor's colour, in so many levels. Share of such blocks: of drawn
+# contacts 0.45 and more, of a real sensor's pictures 0.
+AT_REST, REST_SHARE = 6, 0.05
 
 COMPLETE = "give frames that are complete"
 OTHER_SENSOR = "touch less of the gel, or take the reference with the same sensor"
@@ -92,7 +101,7 @@ def check_picture(picture: np.ndarray, rest: Rest | None, name: Part) -> Checked
         raise UnusablePicture(name, problem, remedy="take it with the lights on, and leave out a camera's first frames")
     doubts = clipped(picture[None], name)
     if rest is None:
-        return Checked(name, None, doubts)
+        return Checked(name, None, doubts + _of_real_sensor(blocks, name))
     ratios = blocks / rest.blocks
     light = medians(ratios)
     constant = spread(blocks, 0.0) < 1
@@ -113,6 +122,33 @@ def check_picture(picture: np.ndarray, rest: Rest | None, name: Part) -> Checked
     if is_uneven(rest.blocks):  # else a flat facet has one level too
         doubts = clipped(picture[None], name, clip_levels(picture))
     return Checked(name, ratios, doubts + _other_pattern(blocks, rest.blocks, name))
+
+
+def require_all_colours(picture: np.ndarray, untouched: np.ndarray, name: Part) -> None:
+    """Refuse a picture of a real sensor, (rows, columns, 3), that has no more colours than a palette.
+
+    One with as many colours as levels, such as a black or a grey one, is refused elsewhere.
+    """
+    pixels = picture.reshape(-1, 3)
+    if len(pixels) < LEAST_PIXELS or _colours(pixels[:: len(pixels) // LEAST_PIXELS]) > PALETTE:
+        return
+    colours = _colours(pixels)
+    if max(len(np.unique(levels)) for levels in pixels.T) < colours <= PALETTE and is_uneven(block_means(untouched)):
+        problem = f": it has {colours} colours in all, as if reduced to a palette"
+        raise UnusablePicture(name, problem, remedy="save what the camera sends as PNG, with all its colours")
+
+
+def _colours(pixels: np.ndarray) -> int:
+    """Return how many colours pixels (pixels, 3) have."""
+    return len(np.unique(pixels @ np.array([1 << 16, 1 << 8, 1], np.uint32)))
+
+
+def _of_real_sensor(blocks: np.ndarray, name: Part) -> list[Doubt]:
+    """Doubt a picture, by its blocks, that is none of the drawn sensor."""
+    if (largest(np.abs(blocks - REST)) < AT_REST).mean() >= REST_SHARE:
+        return []
+    remedy = "give the calibration and a reference of the sensor that took it"
+    return [doubt("pattern", name, ": it does not look like one of the synthetic sensor", remedy=remedy)]
 
 
 def is_uneven(rest: np.ndarray) -> bool:

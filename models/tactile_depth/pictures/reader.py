@@ -10,6 +10,7 @@ import numpy as np
 from tactile_depth.base.errors import Argument, InputError, InputWarning, Part, warn
 from tactile_depth.chip.resampling import WHOLE, Share
 from tactile_depth.pictures.grid_sampler import GridSampler, grid_sampler, middle, picture_grid
+from tactile_depth.pictures.picture_check import require_all_colours
 from tactile_depth.pictures.pictures import Pictures, pictures_of
 from tactile_depth.sensor.sensor import Sensor
 
@@ -51,11 +52,12 @@ class Reader:
         check_shape(grid, sensor)
         self.sensor, self.share, self._grid = sensor, share, grid
         self._samplers: dict[tuple[int, int], GridSampler] = {}
+        self._untouched: np.ndarray | None = None  # a picture of the reference
 
     def pictures(self, given: Pictures, name: Part) -> tuple[Iterator[tuple[Part, np.ndarray]], bool]:
         """Return frames on the grid, uint8 (rows, columns, 3), each with its name, and True for a single picture."""
         read, single = pictures_of(given, name)
-        return ((each, self._on_grid(picture, each)) for each, picture in read), single
+        return ((each, self._checked(picture, each)) for each, picture in read), single
 
     def reference(self, given: Pictures, name: Argument, largest_log2: int) -> tuple[np.ndarray, np.ndarray]:
         """Return 1, 2, 4 .. 2**largest_log2 pictures, cut and on the grid, uint8 (frames, rows, columns, 3)."""
@@ -68,7 +70,14 @@ class Reader:
                 size = f"{picture.shape[1]} x {picture.shape[0]}"
                 problem = f": {size} pixels (columns x rows), but the first picture had {columns} x {rows}"
                 raise InputError(each, problem, remedy=ONE_SIZE)
+            require_all_colours(picture, picture, each)
+        self._untouched = read[0][1]
         return middle(np.stack([picture for _, picture in read]), self.share), frames
+
+    def _checked(self, picture: np.ndarray, name: Part) -> np.ndarray:
+        if self._untouched is not None:
+            require_all_colours(picture, self._untouched, name)
+        return self._on_grid(picture, name)
 
     def _on_grid(self, picture: np.ndarray, name: Part) -> np.ndarray:
         size = (picture.shape[0], picture.shape[1])
