@@ -120,6 +120,10 @@ DOUBTED: dict[str, tuple[Edit, str]] = {
         lambda p: np.minimum(in_light(1.5)(p), 235),
         "of its pixels are clipped, heights there are too small",
     ),
+    "a reflection": (
+        lambda p: np.where(np.hypot(320 * X / 2 - 60, 240 * Y / 2 + 30) < 8, 255, p).astype(np.uint8),
+        "of its pixels are white, as in a reflection",
+    ),
     "rows of a damaged file": (
         lambda p: np.vstack((p[:-32], np.clip(p[-32:] * (0.5, 1.1, 0.7), 0, 255).astype(np.uint8))),
         "its lowest 12 % have other colours along the whole width",

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures and streams that a pipeline takes, and those that it refuses with a remedy."""
 
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,14 @@ def drawn() -> td.Sample:
 @pytest.fixture(scope="module")
 def pipeline(drawn: td.Sample) -> td.Pipeline:
     return td.Pipeline(drawn.sensor, drawn.reference, grid=(24, 32))
+
+
+def test_a_memory_map_and_a_grid_of_numpy_are_taken(pipeline: td.Pipeline, drawn: td.Sample, tmp_path: Path) -> None:
+    np.save(tmp_path / "p.npy", np.stack([drawn.image, drawn.reference]))
+    mapped, right = np.load(tmp_path / "p.npy", mmap_mode="r"), pipeline(drawn.image).codes
+    of_numpy = td.Pipeline(drawn.sensor, drawn.reference, grid=tuple(np.array([24, 32])))
+    for codes in (pipeline(mapped).codes[0], pipeline(mapped[0]).codes, of_numpy(drawn.image).codes):
+        np.testing.assert_array_equal(codes, right)
 
 
 @pytest.mark.parametrize("mode", ["YCbCr", "HSV", "L", "RGBA", "CMYK"])
@@ -93,6 +102,18 @@ def test_steps_that_are_coarser_than_a_press_are_warned_of(drawn: td.Sample) -> 
     for mended in ({"depth_range_mm": float(shallower)}, {"data_width": int(wider)}):
         fine = td.Pipeline(drawn.sensor, drawn.reference, grid=(96, 128), **(COARSE | mended))
         assert fine.doubts == ()
+
+
+def test_words_too_short_for_a_fine_grid_are_warned_of(drawn: td.Sample) -> None:
+    """Measure 0.87 to 1.37 of real heights at 14 bits on this grid, 0.98 to 1.01 at the default of 24."""
+    with pytest.warns(
+        td.InputWarning, match=r"data_width=14 and a depth range of .* have steps of .*data_width=1[6-9]"
+    ):
+        td.Pipeline(drawn.sensor, drawn.reference, grid=(192, 256), data_width=14)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        td.Pipeline(drawn.sensor, drawn.reference, grid=(192, 256))
+        td.Pipeline(drawn.sensor, drawn.reference, data_width=15)
 
 
 def test_double_precision_has_no_steps(drawn: td.Sample) -> None:

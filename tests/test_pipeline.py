@@ -431,6 +431,9 @@ def test_an_upright_grid_of_wide_pictures_is_warned_of(ball: Any, recwarn: pytes
     message = r"grid=\(64, 32\) is rows and columns, and shows 0\.38 of the width .*give grid=\(32, 64\)"
     with pytest.warns(td.InputWarning, match=message):
         td.Pipeline(ball.sensor, ball.reference, grid=(64, 32))
+    message = r"grid=\(24, 64\) is rows and columns, and shows 0\.5 of the height .*give grid=\(48, 64\)"
+    with pytest.warns(td.InputWarning, match=message):
+        td.Pipeline(ball.sensor, ball.reference, grid=(24, 64))
 
 
 @pytest.mark.parametrize(

@@ -208,11 +208,26 @@ def test_another_tone_of_the_camera_is_warned_of(mini: Own, tone: str) -> None:
         assert text not in doubts(sensor, right)
 
 
+@pytest.mark.parametrize("side", [X, -X, Y, -Y])
+def test_light_from_a_side_is_warned_of(mini: Own, side: np.ndarray) -> None:
+    sensor, background, _ = mini
+    for added in (8, 16):
+        assert "light falls in from a side" in doubts(sensor, levels(background + added * (side + 1) / 2))
+    assert "a side" not in doubts(sensor, levels(background * (1 + 0.1 * side)))
+
+
+def test_a_reference_that_is_dark_in_part_is_warned_of(mini: Own) -> None:
+    sensor, background, _ = mini
+    assert "of it have a colour below 16 of 255, their slopes are lost" in doubts(sensor, levels(0.4 * background))
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_another_specimen_is_no_other_tone(own: Own, seed: int) -> None:
     sensor, background, _ = own
     with contextlib.suppress(UnusablePicture):
-        assert "gamma" not in doubts(sensor, specimen(background, seed))
+        told = doubts(sensor, specimen(background, seed))
+        assert "gamma" not in told
+        assert "a side" not in told
 
 
 def dented(background: np.ndarray, press: np.ndarray, share: float) -> np.ndarray:

@@ -136,7 +136,7 @@ class Pipeline:
         self._sources = Sources(sensor, crop, zero_offset)
         sensor, share = shown(sensor, crop)
         sensor.require_reference(reference is not None)
-        rows, columns = self._grid = default_grid(sensor, solver) if grid is None else grid
+        rows, columns = self._grid = default_grid(sensor, solver) if grid is None else (int(grid[0]), int(grid[1]))
         self._arithmetic, self._is_of_hardware = arithmetic, is_grid_of_hardware(rows, columns, solver)
         kind = Configuration if self._is_of_hardware or arithmetic == "chip" else ExactConfiguration
         shape: dict[str, Any] = {"columns": columns, "rows": rows, "solver": solver, "neumann": boundary == "neumann"}

@@ -26,7 +26,7 @@ from tactile_depth.sensor.sensor import HeightError
 *_, RANGE = WORDS  # of depth, as an argument
 LIGHTEST_MM, LIGHTEST_BALL_MM = 0.12, 4.0
 """Lightest contact that is seen for sure: the depth of a ball of this diameter."""
-COARSE_STEP_MM = 0.02
+COARSE_STEP_MM, COARSE_STEP = 0.02, 0.07
 """Step of a stored mode of depth from which heights are warned of. Peaks of 6 real presses differ from double precision
 by up to 5 % at 0.02 mm, 7 % at 0.022, 23 % at 0.044, 47 % at 0.11, 74 % at 0.22; the default is far below."""
 SMALLEST_MM2 = 0.1
@@ -91,10 +91,11 @@ def check_steps(config: Configuration, pitch_mm: float, arithmetic: str) -> tupl
         return ()
     modes = config.column_inverse if config.solver == "spectral" else config.elimination_store
     step_mm, range_mm = modes.lsb * config.depth_limit_px * pitch_mm, config.deepest_px * pitch_mm
-    if step_mm <= COARSE_STEP_MM:
+    coarse_mm = min(COARSE_STEP_MM, COARSE_STEP * pitch_mm)
+    if step_mm <= coarse_mm:
         return ()
-    shallower = Argument(RANGE, f"{0.95 * range_mm * COARSE_STEP_MM / step_mm:.2g}")
-    enough = config.depth.width + math.ceil(math.log2(step_mm / COARSE_STEP_MM))
+    shallower = Argument(RANGE, f"{0.95 * range_mm * coarse_mm / step_mm:.2g}")
+    enough = config.depth.width + math.ceil(math.log2(step_mm / coarse_mm))
     wider = (" or ", Argument(STORED, enough)) if enough <= WIDTHS[STORED].accepted[1] else ()
     words = (Argument(STORED, config.depth.width), f" and a depth range of {range_mm:.3g} mm")
     text = f" have steps of {step_mm:.2g} mm inside, so heights may be wrong by 10 % and more"

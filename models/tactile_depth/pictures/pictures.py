@@ -36,7 +36,7 @@ def is_array(value: object) -> bool:
 
 def array_of(given: object, name: Part) -> np.ndarray:
     """Return what numpy takes as an array; refuse a PIL image whose channels are not red, green and blue."""
-    mode = getattr(given, "mode", RGB)
+    mode = RGB if isinstance(given, np.ndarray) else getattr(given, "mode", RGB)  # a memory map has one of its own
     if isinstance(mode, str) and mode != RGB:
         raise InputError(name, f": a PIL image of mode {mode}", accepted=RGB, remedy='give it after .convert("RGB")')
     if isinstance(given, np.ma.MaskedArray):

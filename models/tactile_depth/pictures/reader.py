@@ -15,6 +15,7 @@ from tactile_depth.pictures.pictures import Pictures, pictures_of
 from tactile_depth.sensor.sensor import Sensor
 
 SYNTHETIC_GRID = (128, 128)
+LEAST_PART = 0.6  # of the width or height; a square shows 0.75 of pictures of 4:3
 ONE_SIZE = "give pictures of one size"
 
 
@@ -26,12 +27,15 @@ def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]
 
 
 def check_shape(grid: tuple[int, int], sensor: Sensor) -> None:
-    """Warn of a grid that is upright where pictures of a sensor are wide, or the other way round."""
+    """Warn of a grid that shows a small part of the pictures of a sensor, such as an upright one of wide pictures."""
     rows, columns = default_grid(sensor)
-    if (grid[0] - grid[1]) * (rows - columns) < 0:
-        part, side = grid[1] / grid[0] * rows / columns, "width" if columns > rows else "height"
+    part = grid[1] / grid[0] * rows / columns
+    if min(part, 1 / part) < LEAST_PART:
+        side = "width" if part < 1 else "height"
+        is_turned = (grid[0] - grid[1]) * (rows - columns) < 0
+        whole = grid[::-1] if is_turned else (round(grid[1] * rows / columns), grid[1])
         problem = f" is rows and columns, and shows {min(part, 1 / part):.2g} of the {side} of the pictures"
-        warn(InputWarning(Argument("grid", grid), problem, remedy=("to see more give ", Argument("grid", grid[::-1]))))
+        warn(InputWarning(Argument("grid", grid), problem, remedy=("to see more give ", Argument("grid", whole))))
 
 
 class Reader:

@@ -45,6 +45,9 @@ SMOOTH_SCALE = 0.01  # distance from the polynomials from which a value loses it
 # their depth 93 of 115 are beyond the limit.
 DENT_MM = 0.02
 UNTOUCHED = "capture the zero offset with the gel untouched"
+# Share of pixels with a colour below `TOO_DARK`, whose slopes are lost. Right: 0; in half of the light, presses too,
+# 0.036, heights 1 % off; in 0.4 of it 0.09, and up to 20 % too low.
+DARK = 0.06
 STEADY = 0.05  # brightness of the frames of one reference, relative to their median
 
 
@@ -80,6 +83,9 @@ def check_reference(
     rest = pictures.mean(axis=0, dtype=np.float32)
     levels = clip_levels(pictures) if is_uneven(blocks.mean(axis=0)) else (CLIPPED,) * 3
     doubts = [*clipped(pictures, name, levels), *_other_lighting(sensor, rest, name, share)]
+    if (dark := float((rest.min(axis=-1) < TOO_DARK).mean())) > DARK:
+        text = f": {100 * dark:.0f} % of it have a colour below {TOO_DARK} of 255, their slopes are lost"
+        doubts.append(doubt("dark", name, text, remedy="take it and the pictures in more light"))
     doubts = doubts or _contact(sensor, rest, blocks.mean(axis=0), name)
     tell(doubts)
     return tuple(doubts)
