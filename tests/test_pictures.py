@@ -105,7 +105,7 @@ def test_steps_that_are_coarser_than_a_press_are_warned_of(drawn: td.Sample) -> 
 
 
 def test_words_too_short_for_a_fine_grid_are_warned_of(drawn: td.Sample) -> None:
-    """Measure 0.87 to 1.37 of real heights at 14 bits on this grid, 0.98 to 1.01 at the default of 24."""
+    """Real heights read 0.87 to 1.37 of what double precision gives with 14 bits on this grid."""
     with pytest.warns(
         td.InputWarning, match=r"data_width=14 and a depth range of .* have steps of .*data_width=1[6-9]"
     ):
