@@ -70,10 +70,10 @@ def test_the_readme_has_the_figures_of_the_pages() -> None:
     cycles = cells(real, "last pixel to first depth, cycles")[1]
     assert f"gives its first depth {cycles} cycles after the last pixel (real sensor, 128 x 128)" in words
     clock = next(run[1] for run in figures.runs("fpga TARGET=ulx3s") if run[1]["data_width"] == 15)
-    assert (
-        f"is routed at {clock['fmax_mhz']:.1f} MHz (15-bit words, parity and self-check, median of five seeds" in words
-    )
-    assert len(clock["fmax_mhz_by_seed"]) == 5
+    middle, seeds = clock["fmax_mhz"], clock["fmax_mhz_by_seed"].values()
+    assert f"is routed at {middle:.1f} MHz (15-bit words, parity and self-check, median of five" in words
+    assert f"seeds, the best {max(seeds):.1f}" in words
+    assert len(seeds) == 5
 
 
 def test_the_arithmetic_adds_less_than_a_tenth_of_a_micrometre() -> None:
