@@ -127,10 +127,12 @@ def check_picture(picture: np.ndarray, rest: Rest | None, name: Part) -> Checked
 def require_all_colours(picture: np.ndarray, untouched: np.ndarray, name: Part) -> None:
     """Refuse a picture of a real sensor, (rows, columns, 3), that has no more colours than a palette.
 
-    One with as many colours as levels, such as a black or a grey one, is refused elsewhere.
+    One with as many colours as levels, such as a grey one, and a dark one are refused elsewhere.
     """
     pixels = picture.reshape(-1, 3)
     if len(pixels) < LEAST_PIXELS or _colours(pixels[:: len(pixels) // LEAST_PIXELS]) > PALETTE:
+        return
+    if pixels.mean() < TOO_DARK:
         return
     colours = _colours(pixels)
     if max(len(np.unique(levels)) for levels in pixels.T) < colours <= PALETTE and is_uneven(block_means(untouched)):
