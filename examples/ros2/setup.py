@@ -7,7 +7,7 @@ NAME = "tactile_depth_ros"
 
 setup(
     name=NAME,
-    version="0.2.0",
+    version="0.2.1",
     packages=[NAME],
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
