@@ -434,6 +434,11 @@ def test_an_upright_grid_of_wide_pictures_is_warned_of(ball: Any, recwarn: pytes
     message = r"grid=\(24, 64\) is rows and columns, and shows 0\.5 of the height .*give grid=\(48, 64\)"
     with pytest.warns(td.InputWarning, match=message):
         td.Pipeline(ball.sensor, ball.reference, grid=(24, 64))
+    with pytest.warns(td.InputWarning, match=r"shows 0\.67 of the width"):
+        td.Pipeline(ball.sensor, ball.reference, grid=(36, 32))
+    recwarn.clear()
+    td.Pipeline(td.load("synthetic"), grid=(24, 64))  # takes pictures of any shape
+    assert not recwarn
 
 
 @pytest.mark.parametrize(

@@ -27,12 +27,12 @@ def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]
 
 
 def check_shape(grid: tuple[int, int], sensor: Sensor) -> None:
-    """Warn of a grid that shows a small part of the pictures of a sensor, such as an upright one of wide pictures."""
+    """Warn of a grid that is upright where pictures of a sensor are wide, or shows a small part of them."""
     rows, columns = default_grid(sensor)
     part = grid[1] / grid[0] * rows / columns
-    if min(part, 1 / part) < LEAST_PART:
+    is_turned = (grid[0] - grid[1]) * (rows - columns) < 0
+    if is_turned or (sensor.camera is not None and min(part, 1 / part) < LEAST_PART):
         side = "width" if part < 1 else "height"
-        is_turned = (grid[0] - grid[1]) * (rows - columns) < 0
         whole = grid[::-1] if is_turned else (round(grid[1] * rows / columns), grid[1])
         problem = f" is rows and columns, and shows {min(part, 1 / part):.2g} of the {side} of the pictures"
         warn(InputWarning(Argument("grid", grid), problem, remedy=("to see more give ", Argument("grid", whole))))

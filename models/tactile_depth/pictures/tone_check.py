@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Check of a reference for another gamma, brightness, contrast or saturation of the camera than the calibration's."""
+"""Check of a reference for another gamma, brightness, contrast or saturation of the camera, and for stray light."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ DARK = 60  # grey levels: a darker area counts less, as a level more or less cha
 
 
 def other_tone(reference: np.ndarray, untouched: np.ndarray, name: Part) -> list[Doubt]:
-    """Doubt a reference whose levels are those of the calibration's picture, but for more than a change of the light.
+    """Doubt a reference that is the calibration's picture with other levels, or with light added, beside a factor.
 
     Parameters
     ----------
