@@ -27,9 +27,10 @@ from tactile_depth.sensor.sensor import HeightError
 LIGHTEST_MM, LIGHTEST_BALL_MM = 0.12, 4.0
 """Lightest contact that is seen for sure: the depth of a ball of this diameter."""
 COARSE_STEP_MM, COARSE_STEP = 0.02, 0.07
-"""Step of a stored mode of depth from which heights are warned of, in mm and over the pitch of the grid. Peaks of 6 real presses differ from double precision
-by up to 5 % at 0.02 mm, 7 % at 0.022, 23 % at 0.044, 47 % at 0.11, 74 % at 0.22; the default is far below. On finer
-grids: by up to 5 % at 0.053 of the pitch, 12 % at 0.105, 43 % at 0.17 and more."""
+"""Step of a stored mode of depth from which heights are warned of, in mm and over the pitch of the grid. Peaks of 6
+real presses differ from double precision by up to 5 % at 0.02 mm, 7 % at 0.022, 23 % at 0.044, 47 % at 0.11, 74 % at
+0.22; on finer grids by up to 5 % at 0.053 of the pitch, 12 % at 0.105, 43 % at 0.17 and more. The default is far
+below."""
 SMALLEST_MM2 = 0.1
 """Least area of a contact whatever the threshold: a disc with a diameter of 0.36 mm, 4 pixels of a usual grid."""
 MOST_AT_REST = 0.02
